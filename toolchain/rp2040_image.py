@@ -68,7 +68,7 @@ def uf2(elf: bytes) -> bytes:
 def _segments(elf: bytes) -> Iterator[tuple[int, int, bytes]]:
     """Yields offset, load address and content of each segment that has content."""
     if elf[:6] != b"\x7fELF\x01\x01":
-        raise NotAnImage("it is no 32-bit little-endian ELF file")
+        raise NotAnImage("is not a 32-bit little-endian ELF file; name the linked image")
     offset, size, count = struct.unpack_from("<I", elf, 28)[0], *struct.unpack_from("<HH", elf, 42)
     for index in range(count):
         kind, start, _, address, length = struct.unpack_from("<5I", elf, offset + index * size)

@@ -43,8 +43,8 @@ def parser_for(emulator: str, preset: str) -> argparse.ArgumentParser:
     """Returns a parser with the arguments that all boards have."""
     parser = argparse.ArgumentParser(
         prog="run",
-        description=f"Runs a firmware image in {emulator}. The first line it prints is the pseudo-terminal that is "
-        "the module's RS-485 line. Press Ctrl-C or send SIGTERM to end it.",
+        description=f"Runs a firmware image in {emulator}. The first line that it prints is the path of the "
+        "pseudo-terminal that is the module's RS-485 line. Press Ctrl-C or send SIGTERM to end it.",
     )
     parser.add_argument("image", metavar="IMAGE.elf", type=Path, help=f"an image of the preset {preset}")
     parser.add_argument(

@@ -7,7 +7,7 @@ namespace ex9000::hal::doubles {
 
 void Memory::begin(bool writing, std::uint16_t address, std::size_t size) {
   if (busy()) {
-    throw std::logic_error("memory: a job was started while another is under way");
+    throw std::logic_error("memory: a job starts while another one is running; wait until busy() is false");
   }
   if (address + size > kSize || (writing && address / kPage != (address + size - 1) / kPage)) {
     throw std::logic_error(

@@ -89,7 +89,8 @@ std::optional<PanelSetup> parse_panel_option(const std::string& text) {
   return parse_panel(text == kUsualPort ? "" : text);
 }
 
-/// Applies the options that are not those of a line. They override the keys of a bus file.
+/// Applies the options that belong to the program, not to a line. These options override the keys of a bus
+/// file.
 void apply_options(const Texts& texts, Setup& setup) {
   take_option("--speed", texts.speed, parse_speed, setup.speed);
   take_option("--threads", texts.threads, parse_threads, setup.threads);
@@ -256,7 +257,8 @@ std::vector<const CLI::Option*> given_of(const CLI::App& app) {
   return given;
 }
 
-/// Returns the name of an option as the user wrote it; for a module, the module itself.
+/// Returns the name of an option. A module has no option name, so this function returns the module as the
+/// user wrote it.
 std::string name_of(const CLI::Option& option) {
   return option.get_positional() ? option.results().front() : option.get_name();
 }
@@ -277,8 +279,8 @@ void reject_arguments_before(const CLI::App& subcommand, const CLI::App& app) {
                        : ", where it has no effect; leave it out, or see 'ex9000-sim " + name + " --help'"));
 }
 
-/// Rejects arguments in addition to an option that prints text and runs nothing. Throws std::invalid_argument
-/// with a one-line message.
+/// Rejects all arguments except `printing`, an option that prints text and runs nothing. Throws
+/// std::invalid_argument with a one-line message.
 void reject_other_arguments(const std::string& printing, const CLI::App& app) {
   for (const CLI::Option* option : given_of(app)) {
     if (option->get_name() != printing) {

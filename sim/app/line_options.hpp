@@ -28,8 +28,8 @@ struct LineTexts {
 /// Returns the line that the arguments define. Throws std::invalid_argument with a one-line message.
 LineSetup line_of(const LineTexts& texts);
 
-/// Rejects modules and options of a line in addition to a bus file, because the bus file defines them. Throws
-/// std::invalid_argument with a one-line message.
+/// Rejects modules and options of a line if the arguments also name a bus file, because the bus file defines
+/// the lines. Throws std::invalid_argument with a one-line message.
 void reject_line_options(const LineTexts& texts);
 
 }  // namespace ex9000::sim

@@ -40,7 +40,9 @@ void run(const Setup& setup) {
     }
   };
   boost::asio::signal_set signals(io);
-  add_stop_signals(signals);  // before the program creates files that it has to remove
+  // From here on, a stop signal does not kill the process, so the program can remove the files that it
+  // creates.
+  add_stop_signals(signals);
   signals.async_wait([&io](const boost::system::error_code& /*error*/, int /*signal*/) { io.stop(); });
   const auto greet = [&errors](const std::string& text) { errors.write(text + "\n"); };
   std::optional<TerminalOutput> terminal;
@@ -91,7 +93,7 @@ void occupy_standard_streams() {
 int run_program(int argc, const char* const* argv) {
   occupy_standard_streams();
   // While these signals are ignored, a write to a closed pipe or beyond the file-size limit does not end the
-  // program. It fails, and the code that writes handles that.
+  // program. Instead, the write fails, and its caller handles the error.
   static_cast<void>(std::signal(SIGPIPE, SIG_IGN));
   static_cast<void>(std::signal(SIGXFSZ, SIG_IGN));
   try {

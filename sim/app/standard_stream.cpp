@@ -16,7 +16,8 @@ namespace ex9000::sim {
 StandardStream::StandardStream(int file, std::string name, std::function<bool()> gives_up)
     : file_(file), name_(std::move(name)), gives_up_(std::move(gives_up)) {}
 
-/// Writes at most PIPE_BUF bytes at a time. If a pipe has room, it accepts this number without blocking.
+/// Writes at most PIPE_BUF bytes in each system call, because a pipe that has room accepts this number
+/// without blocking.
 bool StandardStream::write(const std::string& text) {
   for (std::size_t done = 0; done < text.size() && !ended_;) {
     if (!wait_for_room()) {
@@ -39,7 +40,8 @@ bool StandardStream::write(const std::string& text) {
 
 /// Waits until the stream accepts output. Returns false if `gives_up` has returned true.
 bool StandardStream::wait_for_room() const {
-  constexpr int kAskEvery = 100;  // ms; a signal ends the wait, but not if another thread receives it
+  // A signal interrupts poll() only if this thread receives the signal. The limit is in milliseconds.
+  constexpr int kAskEvery = 100;
   pollfd stream{file_, POLLOUT, 0};
   while (poll(&stream, 1, 0) == 0) {
     if (gives_up_()) {

@@ -1,4 +1,4 @@
-// Writing to standard output and standard error.
+// Writes to standard output and standard error.
 #pragma once
 
 #include <functional>

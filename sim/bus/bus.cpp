@@ -93,7 +93,7 @@ void Bus::drive(End& end, bool on) {
   }
 }
 
-/// `right`: the levels of `byte`. `sent`: those that the station sends.
+/// `right`: the correct levels of `byte`. `sent`: the levels that the station sends.
 void Bus::put(End& end, std::uint8_t byte, SerialMode mode, Levels right, Levels sent) {
   Wave wave{clock_.virtual_now(), on_the_wires(mode), sent};
   if (disturbance_ != nullptr) {
@@ -148,7 +148,7 @@ bool Bus::has_other_listeners(SerialMode mode) const {
          (listeners_.size() == 1 && listeners_.begin()->first != std::pair(mode.baud, mode.format));
 }
 
-/// Returns whether the receiver has the mode of the byte and has listened since its start.
+/// Returns whether the receiver has the mode of the byte and has listened since the start of the byte.
 bool Bus::has_heard_from_the_start(const Receiver& receiver, const Wave& wave) {
   return wave.mode == receiver.mode && receiver.sampler.position() <= wave.start;
 }
@@ -214,11 +214,11 @@ void Bus::run_samplers() {
   }
 }
 
-/// Removes the bytes that have ended from the wires, and delivers those that were not cut off.
+/// Marks the bytes that have ended, and delivers those that were not cut off.
 void Bus::finish_bytes() {
   const VirtualTime now = clock_.virtual_now();
   next_byte_end_ = kNever;
-  for (std::size_t next = 0; next < waves_.size();) {  // receivers may put bytes
+  for (std::size_t next = 0; next < waves_.size();) {  // receivers may add bytes
     Wave& wave = waves_[next++];
     if (wave.over) {
       continue;

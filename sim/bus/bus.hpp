@@ -26,8 +26,8 @@ class Station {
   /// The bus calls this at the time that the station has set with BusEnd::run_at. Before the call, the bus
   /// clears that time.
   virtual void run() = 0;
-  /// The bus calls this after the stop bit of a byte, if the station listens. A station also receives its own
-  /// bytes, because both directions share the two wires.
+  /// The bus calls this after the first stop bit of a byte, if the station listens. A station also receives
+  /// its own bytes, because both directions share the two wires.
   virtual void receive(std::uint8_t /*byte*/, ByteStatus /*status*/) {}
 
  protected:
@@ -53,7 +53,7 @@ class BusEnd : public Wire {
 /// The bus notifies observers of each event on the wires.
 class BusObserver {
  public:
-  /// Called when the driver of `station` was enabled or disabled. `station` counts from 0 in the order of
+  /// Called after the driver of `station` is enabled or disabled. `station` counts from 0 in the order of
   /// attachment.
   virtual void driver(std::size_t /*station*/, bool /*on*/, VirtualTime /*now*/) {}
   /// Called when the byte that `station` begins to send now has wrong parity, or when the disturbance has
@@ -89,7 +89,8 @@ class Disturbance {
 /// A half-duplex line. A byte lasts ten or eleven bit times at the rate of its sender. A receiver with the
 /// same rate and parity gets the byte after its first stop bit. A receiver with another rate or parity
 /// samples the wave in its own mode and gets framing errors, parity errors and wrong bytes. If two drivers
-/// are enabled at the same time, a 0 from either driver wins, and receivers sample the resulting wave.
+/// are enabled at the same time, the level of the line is 0 while either driver sends a 0, and receivers
+/// sample the resulting wave.
 ///
 /// The clock jumps from event to event; this class does not depend on real time.
 ///
@@ -105,6 +106,7 @@ class Bus {
   /// Adds a station, which does not listen yet. `station` must live as long as the bus is used; the returned
   /// end of the wires is valid for the same time.
   BusEnd& attach(Station& station);
+  /// `observer` must live as long as the bus is used.
   void observe(BusObserver& observer) { observers_.push_back(&observer); }
   /// From now on `disturbance` may change each byte that is sent. It must live as long as the bus is used.
   void disturb(Disturbance& disturbance) { disturbance_ = &disturbance; }
@@ -135,7 +137,7 @@ class Bus {
   struct Receiver {
     Station* station = nullptr;
     SerialMode mode = {};  ///< on the wires; a rate of 0: the station does not listen
-    bool samples = false;  ///< samples the wires, because whole bytes are not possible
+    bool samples = false;  ///< samples the wires, because it cannot get every byte unchanged
     UartSampler sampler = {};
   };
 

@@ -19,7 +19,7 @@ class DueTimes {
  public:
   /// Adds a station without a due time. Returns its number, counted from 0.
   std::size_t add();
-  /// Sets the due time of a station in place of its last one; kNever: none.
+  /// Replaces the due time of a station; kNever: the station has none.
   void set(std::size_t station, VirtualTime when) {
     times_[station] = when;
     changed_[station / kBlock] = 1;
@@ -35,9 +35,9 @@ class DueTimes {
     }
     return earliest_;
   }
-  /// Calls `run` with the number of each station whose due time is not after `now`, until no such station is
-  /// left. The lowest number is always the first. Before the call the due time is removed. `run` may set due
-  /// times of all stations, but it must not call `run_due`.
+  /// Calls `run` with the number of each station whose due time is not after `now`, until no station is due.
+  /// Of the stations that are due, the one with the lowest number is always the next. Removes its due time
+  /// before the call. `run` may set due times of all stations, but it must not call `run_due`.
   template <class Run>
   void run_due(VirtualTime now, Run run) {
     running_ = now;

@@ -21,10 +21,9 @@ class Master final : public Station {
 
   /// Returns how long `bytes` bytes take on this line.
   [[nodiscard]] VirtualTime takes(std::size_t bytes) const { return wire_.takes(bytes, mode_); }
-  /// Sends the bytes after those that already wait or are on the wires. If there are none, sends them at
-  /// once, but not before `not_before`. The driver is enabled from the first byte to the last. Does not
-  /// block.
-  /// The bytes at the positions `damaged` have wrong parity, if the format has one.
+  /// Sends the bytes after those that already wait or are on the wires. If there are none, sends them
+  /// immediately, but not before `not_before`. The driver is enabled from the first byte to the last. Does
+  /// not block. The bytes at the positions `damaged` have wrong parity, if the format has one.
   void send(const std::uint8_t* bytes, std::size_t size, VirtualTime not_before = VirtualTime(0),
             const std::vector<std::size_t>& damaged = {});
   /// Returns whether bytes wait or are on the wires.
@@ -34,14 +33,16 @@ class Master final : public Station {
   /// Returns how many bytes wait for their start bit.
   [[nodiscard]] std::size_t waiting() const { return waiting_.size(); }
 
-  /// Sets the rate and format. The receiver uses them at once, and the sender from the next byte on.
+  /// Sets the rate and format. The receiver uses them immediately, and the sender uses them from the next
+  /// byte on.
   void set_mode(SerialMode mode);
   /// Sets the rate in bits per second and keeps the format.
   void set_baud(std::uint32_t baud) { set_mode({baud, mode_.format}); }
   /// Sets the format and keeps the rate.
   void set_format(LineFormat format) { set_mode({mode_.baud, format}); }
 
-  /// Sets a function that gets each received byte too, before `receive` of the constructor.
+  /// Sets a second function to call for each received byte. The master calls it before the `receive` of the
+  /// constructor.
   void also_receive(Receive receive) { also_receive_ = std::move(receive); }
 
   [[nodiscard]] SerialMode mode() const { return mode_; }

@@ -78,7 +78,8 @@ void SimulatedModule::start(ResetReason reason) {
 void SimulatedModule::stop() {
   mcu_->line.abort();
   wire_.abort();
-  memory_.cut();  // before the buffers that it writes from are destroyed
+  // A write reads its data from buffers in `mcu_`, so it must end before they are destroyed.
+  memory_.cut();
   mcu_.reset();
   outputs_.drive(0);
 }
@@ -270,7 +271,7 @@ void SimulatedModule::turn() {
     return;
   }
   do {
-    mcu_->device.on_wake_timer();  // runs due work at once: the slow tick would delay it visibly
+    mcu_->device.on_wake_timer();  // the slow tick would delay due work visibly
   } while (mcu_->device.turn() || mcu_->device.has_work());
 }
 

@@ -37,11 +37,11 @@ class SimulatedModule final : public Station {
 
   // --- actions from outside, between two runs of the bus ---
 
-  /// Switches the supply on or off. Switching off interrupts a write in progress and clears all state except
-  /// the memory.
+  /// Switches the supply on or off. Switching off interrupts a write in progress and clears the state of the
+  /// firmware. The memory, the input levels and INIT* keep their state.
   void power(bool on);
-  /// Simulates a supply failure while the switch is on, or the end of the failure. A failure has the same
-  /// effects as switching off.
+  /// Starts or ends a supply failure. A failure has the same effects as switching off, but does not change
+  /// the switch.
   void interrupt_supply(bool interrupted);
   [[nodiscard]] bool powered() const { return mcu_.has_value(); }
   /// Returns whether the switch of the supply is on. It stays on during a supply failure.
@@ -129,8 +129,8 @@ class SimulatedModule final : public Station {
   void run_memory();
   void run_timers();
   [[gnu::noinline]] void receive_after_silence(std::uint8_t byte, ByteStatus status);
-  /// Returns whether an interrupt has woken the main loop. A host OK could wait until the next turn, but
-  /// viewers show the time that is left of the host watchdog.
+  /// Returns whether the main loop has work to do. A host OK could wait until the next turn, but viewers show
+  /// the remaining time of the host watchdog.
   [[nodiscard]] bool has_work() const {
     return mcu_->device.has_work() || mcu_->device.module().host_ok_waits();
   }

@@ -33,7 +33,7 @@ class ModuleWire final : public Wire {
   /// Called when the driver is disabled, even if the reply is not on the wires yet.
   using Ends = std::function<void()>;
   /// Called with `on` true before the driver is enabled on the wires for a reply. Called with false after the
-  /// driver is disabled, or if the power fails earlier. `reply` is the number of the reply, from 1. Lost
+  /// driver is disabled, or when `abort` drops the reply. `reply` is the number of the reply, from 1. Lost
   /// replies have a number too, but are not reported.
   using OnTheWires = std::function<void(std::uint64_t reply, bool on)>;
   void watch(Begins begins, Ends ends, OnTheWires on_the_wires);
@@ -42,11 +42,12 @@ class ModuleWire final : public Wire {
   /// Returns `mode` with the forced rate, if there is one and the UART is on.
   [[nodiscard]] SerialMode forced(SerialMode mode) const { return with_rate(forced_, mode); }
 
-  /// Returns whether a late reply is on the wires. The UART may have sent it completely before that.
+  /// Returns whether a late reply is on the wires. The UART may already have sent it completely.
   [[nodiscard]] bool sends_late() const { return driving_late_; }
   [[nodiscard]] VirtualTime next() const { return late_.empty() ? kNever : late_.front().when; }
   void run();
-  /// Ends the delay of the first late reply. The replies after it keep their distance in time from it.
+  /// Ends the delay of the first late reply, if this reply has not begun. Moves all later replies forward by
+  /// the same time.
   void end_first_delay();
   /// Drops all bytes that have not been sent. Call this when the module loses its supply or is reset.
   void abort();

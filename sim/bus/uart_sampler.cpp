@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::int64_t kSecond = 1'000'000'000;
 
-/// Returns the level of the line. If the levels of two waves differ, a 0 wins.
+/// Returns the level of the line, which is 0 if the level of at least one wave is 0.
 bool level_of(const Waves& waves, VirtualTime at) {
   return std::all_of(waves.begin(), waves.end(), [at](const Wave& wave) { return wave.level(at); });
 }

@@ -1,5 +1,5 @@
-// The receiver of a UART that samples the wave on the wires. The bus uses it if the receiver cannot get a
-// byte unchanged, for example because the sender has another rate.
+// A UART receiver that samples the levels on the wires. The bus uses it for a station that cannot get a byte
+// unchanged, for example because the sender has another rate.
 #pragma once
 
 #include <cstdint>
@@ -84,7 +84,7 @@ struct Wave {
   /// Returns the time at which bit `index` begins; for `bits()`, the end of the first stop bit.
   [[nodiscard]] VirtualTime boundary(unsigned index) const;
   [[nodiscard]] VirtualTime end() const { return ends; }
-  /// Returns true for the idle level. Outside the byte the level is idle too.
+  /// Returns true for the idle level. Outside the byte, the level is idle too.
   [[nodiscard]] bool level(VirtualTime at) const;
 
   VirtualTime start;
@@ -95,9 +95,10 @@ struct Wave {
   std::size_t station = 0;
   SerialMode nominal;  ///< the rate and format that the station is set to
   std::uint8_t byte = 0;
-  bool disturbed = false;  ///< the levels are not those of `byte`
-  bool collided = false;   ///< another driver was enabled, or another byte was on the wires
-  bool over = false;       ///< has ended; samplers may still read it
+  bool disturbed = false;  ///< the levels differ from those of `byte`
+  /// Another driver was enabled, another byte was on the wires, or the byte was cut off.
+  bool collided = false;
+  bool over = false;  ///< has ended; samplers may still read it
 
   /// Returns whether a receiver with the same mode gets the byte unchanged.
   [[nodiscard]] bool arrives_whole() const { return !collided && !disturbed; }
@@ -113,8 +114,8 @@ class UartSampler {
     ByteStatus status;
   };
 
-  /// Samples the wires up to `until`. Returns a byte when its first stop bit is over; call this again then.
-  /// `mode` has the bit rate on the wires, and must be the same in all calls.
+  /// Samples the wires up to `until`. Returns a byte when its first stop bit is over; the caller must then
+  /// call this function again. `mode` has the bit rate on the wires, and must be the same in all calls.
   std::optional<Received> advance(const Waves& waves, SerialMode mode, VirtualTime until);
 
   /// Returns whether the sampler is in the middle of a byte or waits for the line to become idle.
@@ -133,7 +134,7 @@ class UartSampler {
   Levels levels_ = 0;  ///< the bits that have been sampled so far
   VirtualTime start_{0};
   VirtualTime position_{0};
-  std::optional<Received> complete_;  ///< a byte whose stop bit has been sampled, but has not ended
+  std::optional<Received> complete_;  ///< a byte whose stop bit has been sampled but is not over
 };
 
 }  // namespace ex9000::sim

@@ -7,7 +7,7 @@
 
 namespace ex9000::sim {
 
-/// Returns whether an argument names a bus file. The name of a bus file ends with .json.
+/// Returns whether an argument names a bus file, that is, ends with `.json`.
 bool is_bus_file(const std::string& argument);
 
 /// Reads and checks a bus file. Throws std::invalid_argument with a one-line message, `PATH:LINE: KEY: what

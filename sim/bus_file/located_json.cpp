@@ -36,8 +36,8 @@ class CountingIterator {
 };
 
 /// Records the line number of each value. The parser detects the end of a number only at the next character,
-/// which may be on a new line. Therefore a scalar gets the line of its key, or of the previous token in an
-/// array.
+/// which may be on a new line. Therefore a scalar gets the line of its key or, in an array, the line of the
+/// previous token.
 class Locator final : public nlohmann::json_sax<json> {
  public:
   explicit Locator(const unsigned& line) : line_(line) {}
@@ -95,7 +95,7 @@ class Locator final : public nlohmann::json_sax<json> {
     return text.substr(first, text.find(',', first) - first) + text.substr(text.find(": ", first));
   }
 
-  /// Rejects NUL, because it would end a path.
+  /// Rejects a text that contains NUL, because the operating system would end a path there.
   void reject_nul(const std::string& text) const {
     if (text.find('\0') != std::string::npos) {
       throw std::invalid_argument(std::to_string(line_) + ": a text contains NUL; leave out \\u0000");

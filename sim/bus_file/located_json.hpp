@@ -18,8 +18,9 @@ struct LocatedJson {
 /// or an object has the same key twice.
 LocatedJson parse_located(const std::string& text);
 
-/// Return the path of a member or an element of the value at `path`.
+/// Returns the path of a member of the object at `path`.
 std::string member_of(const std::string& path, const std::string& key);
+/// Returns the path of an element of the array at `path`; `index` counts from 0.
 std::string element_of(const std::string& path, std::size_t index);
 
 }  // namespace ex9000::sim

@@ -21,9 +21,10 @@ class CaptureFile {
 
   /// Deletes the content of a regular file. Throws std::runtime_error with a one-line message if this fails.
   void begin();
-  /// Writes the whole block or nothing, directly to the kernel. A reader of the file sees only whole blocks,
-  /// even if the program is killed. Blocks while the reader of a pipe does not read. Throws
-  /// std::runtime_error with a one-line message if the disk is full or the reader has closed the pipe.
+  /// Writes the block to the kernel, without a buffer in the program: blocks that were written stay in the
+  /// file even if the program is killed. If a write to a regular file fails, removes the incomplete block.
+  /// Blocks while the reader of a pipe does not read. Throws std::runtime_error with a one-line message if
+  /// the disk is full or the reader has closed the pipe.
   void append(const std::vector<std::uint8_t>& block);
 
  private:

@@ -40,8 +40,8 @@ void put_option(Block& block, std::uint16_t code, const std::string& value) {
   put_padded(block, fitting);
 }
 
-/// Adds the frame of a block (3.1): type and length before the body, and the length again after it. `body` is
-/// complete except for the end of options.
+/// Returns a complete block (3.1): type and length, the body, and the length again. `body` must lack only the
+/// end of options.
 Block framed(std::uint32_t type, Block body) {
   put_option(body, kEndOfOptions, "");
   constexpr std::size_t kTypeAndLengths = 12;

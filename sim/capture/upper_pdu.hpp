@@ -1,7 +1,6 @@
 // The header that lets Wireshark dissect a frame without the layers below it: LINKTYPE_WIRESHARK_UPPER_PDU,
-// see https://wiki.wireshark.org/Protocols/exported_pdu. This link type also records which side sends the
-// request, which no link type for serial lines does. It also names the dissector, so that users need not
-// configure one.
+// see https://wiki.wireshark.org/Protocols/exported_pdu. Unlike the link types for serial lines, this one
+// records which side sends the request. It also names the dissector, so that users need not configure one.
 #pragma once
 
 #include <cstdint>

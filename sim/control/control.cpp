@@ -103,7 +103,7 @@ std::string status(SimulatedModule& module, const Words& /*args*/) {
   return text + rest.str();
 }
 
-/// Returns one number for each channel, with a space between them.
+/// Returns the numbers of all channels, separated by spaces.
 template <class NumberOf>
 std::string for_each_channel(unsigned channels, NumberOf number_of) {
   std::string text;
@@ -140,10 +140,11 @@ constexpr std::array<Verb, 12> kVerbs{{
     {"reset", "", 0, 0, "resets the module; the supply stays on", reset},
     {"init", "on|off", 1, 1, "ties INIT* to GND, or releases it", init},
     {"input", "C on|off", 2, 2, "sets the level of input C, from 0", input},
-    {"pulse", "C [COUNT]", 1, 2, "gives COUNT full pulses on input C at once (default 1)", pulse},
+    {"pulse", "C [COUNT]", 1, 2, "applies COUNT full pulses to input C immediately (default 1)", pulse},
     {"inputs", "", 0, 0, "reads the input levels in hex; bit n is input n", inputs},
     {"outputs", "", 0, 0, "reads the outputs in hex; bit n is output n", outputs},
-    {"timers", "", 0, 0, "reads what is left of each timed output in 0.1 s; 0: not timed", timers},
+    {"timers", "", 0, 0, "reads the remaining time of each timed output in units of 0.1 s; 0: not timed",
+     timers},
     {"filters", "", 0, 0, "reads the filter of each input in ms", filters},
     {"led", "", 0, 0, "reads the status LED: on, off or flashing", led},
     {"hang", "", 0, 0, "stops the main loop until the module watchdog resets the module", hang},
@@ -167,8 +168,8 @@ constexpr std::array<LineVerb, 6> kLineVerbs{{
     {"format", "FORMAT", "sets the line's format: 8N1, 8N2, 8E1 or 8O1; a serial port has its own"},
     {"sent", "", "reads how many bytes the line has written to its ports"},
     {"fault", "FAULT", "adds a fault, see below; replies with its number. With N: for that module"},
-    {"fault off", "K|all", "ends the fault with this number, or all"},
-    {"faults", "", "lists the faults: number, * if active now, how often it was active, text"},
+    {"fault off", "K|all", "removes the fault with this number, or all faults"},
+    {"faults", "", "lists the faults: number, * if in progress, how many times it has occurred, text"},
 }};
 
 std::string shape(const Verb& verb) {
@@ -258,7 +259,7 @@ std::string list_faults(Line& line, std::size_t position) {
   std::string text = std::to_string(faults.size()) + (faults.size() == 1 ? " fault:" : " faults:");
   for (const Faults::Info& fault : faults) {
     text += (&fault == faults.data() ? " " : "; ") + std::to_string(fault.number) +
-            (fault.strikes != 0 ? "*" : "") + " x" + std::to_string(fault.strikes_so_far) + " " +
+            (fault.in_progress != 0 ? "*" : "") + " x" + std::to_string(fault.occurrences_so_far) + " " +
             (fault.module ? std::to_string(position + *fault.module + 1) + " " : "") + fault.text;
   }
   return text;
@@ -266,7 +267,7 @@ std::string list_faults(Line& line, std::size_t position) {
 
 void require_no_serial_port(const Control::ControlledLine& controlled, const std::string& key) {
   if (controlled.has_serial_port) {
-    fail("the line's serial port keeps its " + key + "; start the program with another one");
+    fail("the line's serial port keeps its " + key + "; start the program with another " + key);
   }
 }
 
@@ -372,7 +373,7 @@ Control::Reply Control::carry_out(const std::string& command) {
       }
       result = quit ? "" : first == "list" ? list(lines_) : all_shapes();
     } else if (first == "advance") {
-      fail("'advance' requires --speed step; the lines' time moves by itself");
+      fail("'advance' requires --speed step; without it, the lines' time advances by itself");
     } else if (first == "line" || first == "fault" || first == "faults" || first == "baud" ||
                first == "format" || first == "sent") {
       result = on_some_line(lines_, words);
@@ -402,7 +403,8 @@ std::string control_commands() {
   row("line NAME ...", "one of the six above, for that line; required if there are several lines");
   text << "  advance TIME [after N] [quiet]\n";
   row("", "with --speed step: waits until N bytes have arrived at the ports, sends all of them on the");
-  row("", "lines, and lets TIME pass; with 'quiet' only until nothing is pending. Replies with the time");
+  row("", "lines, and advances the time by TIME; with 'quiet', only until nothing is pending. Replies");
+  row("", "with the time");
   row("list", "lists the modules");
   row("help", "lists the commands");
   row("quit", "ends the simulator");

@@ -21,7 +21,7 @@ class Control {
     Line& line;
     /// Returns the number of bytes written to the line's ports so far; null: the line has no ports.
     std::function<std::uint64_t()> sent = nullptr;
-    bool has_serial_port = false;  ///< the line is a real one, whose rate and format stay the same
+    bool has_serial_port = false;  ///< commands cannot change the rate and the format of a serial port
   };
 
   /// Modules are numbered from 1 across all `lines`.

@@ -20,7 +20,8 @@ namespace {
 using Local = boost::asio::local::stream_protocol;
 
 constexpr std::size_t kLongestLine = 1000;  // characters, without the newline
-/// The limit for clients. Only clients that never disconnect can exceed it.
+/// The largest number of clients at the same time. Usually, the number is reached only if clients do not
+/// disconnect.
 constexpr std::size_t kMostClients = 64;
 
 [[noreturn]] void refuse(const std::string& path, const std::string& why) {
@@ -145,7 +146,7 @@ void ControlSocket::send(const std::shared_ptr<Client>& client, const std::strin
         if (then == Then::Quit) {
           quit_();
         } else if (then == Then::ReadOn) {
-          read(client);  // even if the client has disconnected, to carry out the commands that it has sent
+          read(client);  // even after the client has disconnected, because its last commands may be unread
         }
       });
 }

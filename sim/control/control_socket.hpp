@@ -16,9 +16,9 @@
 
 namespace ex9000::sim {
 
-/// Serves any number of clients. Each line from a client is a command. The reply to each command is one line,
-/// and replies keep the order of the commands. No function blocks: the server does not read from a client
-/// that does not read its replies.
+/// Serves up to 64 clients at the same time, and disconnects further clients. Each line from a client is a
+/// command. The reply to each command is one line, and replies keep the order of the commands. A client that
+/// does not read its replies does not block the server, which then stops reading from this client.
 class ControlSocket {
  public:
   using Answer = std::function<void(const Control::Reply&)>;
@@ -31,12 +31,12 @@ class ControlSocket {
   /// sent before `quit` is called.
   ControlSocket(boost::asio::io_context& io, std::string path, CarryOut carry_out,
                 std::function<void()> quit);
-  /// Removes the socket file, if it still belongs to this object.
+  /// Removes the socket file if it still belongs to this object.
   ~ControlSocket();
   ControlSocket(const ControlSocket&) = delete;
   ControlSocket& operator=(const ControlSocket&) = delete;
 
-  /// Accepts clients. Call this when the line is ready for commands.
+  /// Starts to accept clients. Does not block. Call this function when the line is ready for commands.
   void start();
 
  private:

@@ -12,7 +12,7 @@ namespace {
 struct Row {
   std::string model;
   std::string table;    ///< `DCON command`, or the table of the coil or register
-  std::string address;  ///< of a coil or register: the protocol address in decimal
+  std::string address;  ///< the protocol address of a coil or register, in decimal
   std::string plc_number;
   std::string channel;
   std::string functions;  ///< hex codes

@@ -12,7 +12,7 @@ namespace ex9000::sim {
 
 // The commands and registers, generated from the firmware's tables.
 
-/// Returns Markdown that describes all models: the content of firmware/registers.md.
+/// Returns Markdown that describes all models: the generated section of firmware/registers.md.
 std::string markdown_of_all();
 /// Returns Markdown that describes one model.
 std::string markdown_of(const Model& model);
@@ -34,16 +34,16 @@ std::string csv_of(const Models& models);
 struct NetworkAddress {
   TcpAddress tcp{"127.0.0.1", 5020};
   std::uint8_t address = 0x01;  ///< 1 to 247
-  bool modbus_tcp = false;      ///< the port speaks Modbus TCP; false: the bytes of the line
+  bool modbus_tcp = false;      ///< the port uses Modbus TCP; false: the port passes RTU frames
 };
 
 /// Returns YAML for Home Assistant's modbus integration: a hub with switches, binary sensors and sensors. The
 /// user saves the text as FILE and adds `modbus: !include FILE` to configuration.yaml.
 std::string home_assistant_hub(const Model& model, const NetworkAddress& network_address);
 
-/// Returns a flow to import into Node-RED with node-red-contrib-modbus, as a JSON array: a tab that reads all
-/// values, switches outputs, and clears latches, counters and the timeout status. The ids depend only on the
-/// model and the address.
+/// Returns a flow to import into Node-RED with node-red-contrib-modbus, as a JSON array: a tab that reads the
+/// values of `shown_by`, switches outputs, and clears latches, counters and the timeout status. The ids
+/// depend only on the model and the address.
 std::string node_red_flow(const Model& model, const NetworkAddress& network_address);
 
 /// Returns a device template of Wiren Board's wb-mqtt-serial, for /etc/wb-mqtt-serial.conf.d/templates.

@@ -49,7 +49,7 @@ class Hub {
     return hub;
   }
 
-  /// Returns the actions that let polls restart the host watchdog.
+  /// Returns the actions that let polls restart the host watchdog, and the actions to call after a timeout.
   [[nodiscard]] std::string watchdog_actions() const {
     const std::string after =
         model_.outputs == 0 ? "the timeout status stays set" : "the outputs keep their safe values";
@@ -64,8 +64,8 @@ class Hub {
            write("coil", "timeout-status", "state: true") + write("coil", "watchdog-enable", "state: true");
   }
 
-  /// Returns actions for the items of role Button, which have no entity. Automations and dashboards can call
-  /// these actions.
+  /// Returns actions for the items with the role Button, because these items have no entity. Automations and
+  /// dashboards can call the actions.
   [[nodiscard]] std::string actions() const {
     std::string text;
     for (const Shown& shown : shown_by(model_)) {

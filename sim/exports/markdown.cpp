@@ -127,18 +127,19 @@ std::string dcon_notes(const Models& models) {
   const bool outputs = any_has(models, [](const Model& model) { return model.has_outputs(); });
   const bool inputs = any_has(models, [](const Model& model) { return model.has_inputs(); });
   std::string text =
-      "- `AA` is the module's address in hex, `**` all modules, which do not answer. CR ends every request "
-      "and reply. With the checksum enabled, two hex digits stand before CR: the sum of all characters "
+      "- `AA` is the module's address in hex, `**` addresses all modules, which do not reply. CR ends every "
+      "request "
+      "and reply. With the checksum enabled, two hex digits precede CR: the sum of all characters "
       "before them, modulo 256.\n"
-      "- `(First)` and `(Second)` are two hex digits each; the table above says of which channels (relay RL1 "
-      "is DO0), and bit 0 is the lowest of them.";
+      "- `(First)` and `(Second)` are two hex digits each; the table above lists their channels (relay RL1 "
+      "is DO0); bit 0 is the lowest channel.";
   text += inputs ? " `$AALS` has latches in place of inputs, and 00 in place of outputs." : "";
   text += outputs ? " `~AA4V` has 00 in place of inputs." : "";
   text +=
       "\n- `TT` is 40; `CC` the baud rate: " + baud_codes() +
       "; `FF` is 80 if the counters count rising edges, otherwise 00; the checksum adds 40.\n"
-      "- `SS` is 04 or 84 after a timeout of the host watchdog, 80 while it is enabled, else 00; the table "
-      "above says which of them a model has.\n"
+      "- `SS` is 04 or 84 after a timeout of the host watchdog, 80 while it is enabled, otherwise 00; the "
+      "table above lists the values of each model.\n"
       "- The reply to a rejected command is `?AA`.";
   text += outputs ? " Models with outputs reply `?` to a rejected command that sets outputs, and `!` to one "
                     "that is ignored because the timeout status is set."
@@ -193,7 +194,7 @@ std::string functions_table(const Models& models) {
     }
     Cells cells{hex_byte_text(function.row.code), std::string(function.name),
                 function.row.at_broadcast == modbus::AtBroadcast::CarriedOut
-                    ? "done by all modules, without answer"
+                    ? "all modules execute it without a reply"
                     : "ignored"};
     add_who(models, cells, who(models, has));
     text += table_line(cells);

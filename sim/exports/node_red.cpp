@@ -102,7 +102,7 @@ class Flow {
     }
   }
 
-  /// Adds a node that reads all channels at once, and a node that shows them.
+  /// Adds a node that reads all channels with one request, and a node that shows them.
   void add_reading(const Shown& shown) {
     const std::string name = "read " + std::string(shown.id);
     Json read = node(name, "modbus-read", 1);

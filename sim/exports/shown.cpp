@@ -14,7 +14,7 @@ struct Reading {
   std::string_view id;
   std::optional<Role> role;  ///< nullopt: the row is excluded
   std::string_view name;
-  // The action that starts when 1 is written to the coil; empty: none.
+  // The id and the name of the action that starts when 1 is written to the coil; empty: there is no action.
   std::string_view button_id{};
   std::string_view button_name{};
 };

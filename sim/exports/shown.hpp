@@ -40,9 +40,9 @@ struct Shown {
 };
 
 /// Returns the rows in the order of the map; empty if the model does not support Modbus. A row that is in two
-/// areas appears only in the first of them. The result excludes the rows that would disconnect the client
-/// (address, rate, protocol), the row that never gets a reply (host OK), the row that never changes (the
-/// module's code), and the coils that repeat the inputs.
+/// areas appears only in the first of them. The result excludes host OK, the module's code, the counting
+/// edge, the coils that repeat the inputs, the extensions, and the settings that would disconnect the client
+/// (address, rate and protocol).
 std::vector<Shown> shown_by(const Model& model);
 
 /// Returns an id of the model that every tool accepts, for example `ex9042d_m`.

@@ -40,7 +40,7 @@ bool is_block(const Json& value) { return value.is_structured() && !value.empty(
 
 void write(const Json& value, const std::string& indent, std::string& text);
 
-/// Writes an item after `- `, so the first line has its indentation already.
+/// Writes an item after `- `, without the indentation of its first line.
 void write_item(const Json& value, const std::string& indent, std::string& text) {
   std::string block;
   if (is_block(value)) {

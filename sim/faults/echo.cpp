@@ -23,7 +23,7 @@ void Echo::receive(std::uint8_t byte, ByteStatus /*status*/) {
 
 void Echo::run() {
   if (!driving_ && bus_.carries()) {
-    // A byte on the wires may already have ended the silence; `receive` is called only after its stop bit.
+    // The next byte may already be on the wires, because `receive` is called only after the stop bit.
     wake_at(clock_.virtual_now() + wire_.takes(1, mode_));
     return;
   }

@@ -22,7 +22,7 @@ std::uint64_t parse_count(const std::string& word) {
 struct Row {
   std::string_view name;
   std::string_view value;  ///< name of the fault's value in the help text; empty: the fault has no value
-  std::string_view usual;  ///< a usual value and, for some faults, a usual schedule
+  std::string_view usual;  ///< a typical value and, for some faults, a typical schedule
   Trouble trouble;
   bool of_a_module;
   void (*take)(Fault& fault, const std::string& word);
@@ -52,15 +52,16 @@ constexpr std::array<Row, 13> kRows{{
     {"stray-zeros", "P", "0.01", Trouble::StrayZeros, false, take_probability,
      "adds 00 after a byte with this probability, like the turn-around of a line"},
     {"echo", "TIME", "5ms", Trouble::Echo, false, take_silence,
-     "repeats everything that was sent, after this silence"},
+     "repeats all bytes after a pause of this length"},
     {"foreign-traffic", "HEX", "0501000000083C48 every 1s", Trouble::ForeignTraffic, false, take_bytes,
      "sends these bytes, as another device would"},
     {"lost-reply", "", "every 3rd reply", Trouble::LostReply, true, take_nothing, "drops the reply"},
     {"late-reply", "TIME", "50ms", Trouble::LateReply, true, take_time, "delays the reply"},
-    {"late-driver", "TIME", "2ms", Trouble::LateDriver, true, take_time, "releases the driver late"},
+    {"late-driver", "TIME", "2ms", Trouble::LateDriver, true, take_time,
+     "disables the driver this time later"},
     {"wrong-rate", "RATE", "19200", Trouble::WrongRate, true, take_rate,
-     "lets the module listen and send at this rate"},
-    {"gone", "", "", Trouble::Gone, true, take_nothing, "switches the supply off, and on again"},
+     "makes the module receive and send at this rate"},
+    {"gone", "", "", Trouble::Gone, true, take_nothing, "switches the supply off until the fault ends"},
     {"power-cut", "", "every 10s", Trouble::PowerCut, true, take_nothing,
      "cuts the supply, for 1s by default"},
     {"hang", "", "every 10s", Trouble::Hang, true, take_nothing,
@@ -173,7 +174,8 @@ class ScheduleReader {
   Schedule schedule_;
 };
 
-/// Rejects combinations that have no effect or never end.
+/// Rejects a schedule that requires a duration and has none, a duration that is not shorter than the period,
+/// and a duration that has no effect.
 void check(const Fault& fault) {
   const Schedule& schedule = fault.schedule;
   const bool lasting = fault.trouble != Trouble::ForeignTraffic && fault.trouble != Trouble::Hang &&
@@ -193,7 +195,7 @@ void check(const Fault& fault) {
     fail("has no end; add 'for TIME'");
   }
   if (schedule.lasts && (fault.trouble == Trouble::ForeignTraffic || fault.trouble == Trouble::Hang)) {
-    fail("'for': this fault takes no time; leave it out");
+    fail("'for': this fault has no duration; leave it out");
   }
 }
 

@@ -38,15 +38,15 @@ enum class Trouble {
 /// The duration of a power cut without `for`.
 inline constexpr VirtualTime kPowerCutLasts = std::chrono::seconds(1);
 
-/// The times at which a fault strikes, that is, takes effect.
+/// The times at which a fault occurs, that is, takes effect.
 struct Schedule {
   enum class When { Always, At, EveryTime, EveryReply, Probably, AfterWrites };
 
   When when = When::Always;
-  VirtualTime time{0};      ///< At: since the start of the line's time; EveryTime: the period
+  VirtualTime time{0};      ///< At: from the start of the line's time; EveryTime: the period
   std::uint64_t count = 1;  ///< EveryReply, AfterWrites
   double probability = 0;   ///< Probably: for each reply
-  /// How long the fault lasts after it strikes. nullopt: a power cut lasts kPowerCutLasts, another fault that
+  /// How long the fault lasts after it begins. nullopt: a power cut lasts kPowerCutLasts, another fault that
   /// depends on replies lasts until the end of the reply, and any other fault with a duration is permanent.
   std::optional<VirtualTime> lasts;
 
@@ -56,7 +56,7 @@ struct Schedule {
 struct Fault {
   Trouble trouble = Trouble::BitErrors;
   double probability = 0;           ///< the probability for each bit or byte
-  VirtualTime time{0};              ///< the delay of faults that make something late, or before an echo
+  VirtualTime time{0};              ///< the delay of a late reply, a late driver or an echo
   std::uint32_t baud = 0;           ///< the wrong rate
   std::vector<std::uint8_t> bytes;  ///< the foreign bytes
   Schedule schedule;
@@ -67,14 +67,15 @@ struct Fault {
 /// Returns true if the fault affects a module, false if it affects the wires.
 bool concerns_a_module(Trouble trouble);
 
-/// Parses `TROUBLE [VALUE] [SCHEDULE]`. A fault of modules applies to all modules of the line. Throws
-/// std::invalid_argument with a one-line message that says what is wrong and what would be right.
+/// Parses `TROUBLE [VALUE] [SCHEDULE]`. The result applies to all modules of the line; the caller may set
+/// `module`. Throws std::invalid_argument with a one-line message that says what is wrong and what would be
+/// right.
 Fault parse_fault(const std::string& text);
 
-/// Returns one usual fault of each kind, in the notation of the user.
+/// Returns a typical fault of each kind, in the notation of the user.
 std::vector<std::string> usual_faults();
 
-/// Returns the syntax of faults, one line each, for --help and the manual.
+/// Returns one line for each kind of fault, with its syntax and its effect, for --help and the manual.
 std::string fault_help();
 
 }  // namespace ex9000::sim

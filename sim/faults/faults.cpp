@@ -71,7 +71,7 @@ std::size_t Faults::add(const Fault& fault) {
   return numbers_;
 }
 
-/// Attaches only the stations that the fault requires.
+/// Attaches the station that the fault requires, if it is not attached yet.
 void Faults::prepare(Trouble trouble) {
   if (is_noise(trouble) && !noise_) {
     noise_ = std::make_unique<Noise>(bus_, NoiseRates(), chance_.number());
@@ -117,7 +117,7 @@ std::vector<Faults::Info> Faults::list() const {
   std::vector<Info> all;
   for (const Armed& armed : armed_) {
     all.push_back(
-        {armed.number, armed.fault.text, armed.fault.module, armed.strikes_now(), armed.strikes_so_far});
+        {armed.number, armed.fault.text, armed.fault.module, armed.occurring(), armed.occurrences_so_far});
   }
   return all;
 }
@@ -133,8 +133,8 @@ VirtualTime Faults::next() const {
   VirtualTime next = kNever;
   for (const Armed& armed : armed_) {
     next = std::min(next, armed.begins);
-    for (const Strike& strike : armed.strikes) {
-      next = std::min(next, strike.ends);
+    for (const Occurrence& occurrence : armed.occurrences) {
+      next = std::min(next, occurrence.ends);
     }
   }
   return next;
@@ -142,17 +142,17 @@ VirtualTime Faults::next() const {
 
 void Faults::run() { act(); }
 
-/// Processes everything that is due: ends strikes first, then begins new ones.
+/// Processes everything that is due: ends occurrences first, then begins new ones.
 void Faults::act() {
   const VirtualTime now = bus_.clock().virtual_now();
   for (Armed& armed : armed_) {
-    end_strikes(armed, [now](const Strike& strike) { return strike.ends <= now; });
+    end_occurrences(armed, [now](const Occurrence& occurrence) { return occurrence.ends <= now; });
   }
   for (Armed& armed : armed_) {
     if (armed.begins <= now) {
       armed.begins =
           armed.fault.schedule.when == When::EveryTime ? armed.begins + armed.fault.schedule.time : kNever;
-      strike(armed, std::nullopt);
+      begin(armed, std::nullopt);
     }
   }
   if (changed_) {
@@ -162,25 +162,26 @@ void Faults::act() {
   end_.run_at(next());
 }
 
-/// Requests that the effects are updated as soon as the modules have finished their present actions.
+/// Schedules an update of the effects at the present time, after the present actions of the modules.
 void Faults::change() {
   changed_ = true;
   end_.run_at(bus_.clock().virtual_now());
 }
 
-/// Begins a strike. A module may cause this call during its work; therefore this function does not change
-/// the modules. The next call of `act` applies the strike.
-void Faults::strike(Armed& armed, std::optional<std::size_t> reply_of) {
+/// Begins an occurrence. A module may cause this call in the middle of an action. This function therefore
+/// does not change any module; the next call of `act` changes the modules.
+void Faults::begin(Armed& armed, std::optional<std::size_t> reply_of) {
   const Fault& fault = armed.fault;
-  ++armed.strikes_so_far;
+  ++armed.occurrences_so_far;
   change();
-  say(armed, "strikes");
+  say(armed, "occurs");
   if (fault.trouble == Trouble::ForeignTraffic) {
     to_say_.push_back(fault.bytes);
   }
   if (fault.trouble == Trouble::Hang) {
     for (std::size_t i = 0; i < modules_.size(); ++i) {
-      // A strike on a reply affects its sender; any other strike affects all modules of the fault.
+      // If a reply triggered the occurrence, it affects only the sender of the reply. Any other occurrence
+      // affects all modules of the fault.
       if (is_of(fault, i) && reply_of.value_or(i) == i) {
         hanging_.push_back(i);
       }
@@ -194,39 +195,41 @@ void Faults::strike(Armed& armed, std::optional<std::size_t> reply_of) {
     lasts = kPowerCutLasts;
   }
   if (reply_of && is_noise(fault.trouble)) {
-    armed.strikes.push_back({reply_of, kNever, replies_[*reply_of], true});
+    armed.occurrences.push_back({reply_of, kNever, replies_[*reply_of], true});
     return;
   }
   const VirtualTime ends = lasts ? bus_.clock().virtual_now() + *lasts : kNever;
-  for (Strike& known : armed.strikes) {
+  for (Occurrence& known : armed.occurrences) {
     if (known.reply_of == reply_of) {
       known.ends = ends;
       return;
     }
   }
-  armed.strikes.push_back({reply_of, ends});
+  armed.occurrences.push_back({reply_of, ends});
 }
 
-/// Ends the strikes for which `over` is true.
+/// Ends the occurrences for which `over` returns true.
 template <class Over>
-void Faults::end_strikes(Armed& armed, Over over) {
-  auto& strikes = armed.strikes;
-  const auto rest = std::remove_if(strikes.begin(), strikes.end(), over);
-  if (rest != strikes.end()) {
-    strikes.erase(rest, strikes.end());
+void Faults::end_occurrences(Armed& armed, Over over) {
+  auto& occurrences = armed.occurrences;
+  const auto rest = std::remove_if(occurrences.begin(), occurrences.end(), over);
+  if (rest != occurrences.end()) {
+    occurrences.erase(rest, occurrences.end());
     change();
     say(armed, "is over");
   }
 }
 
-std::size_t Faults::Armed::strikes_now() const {
+std::size_t Faults::Armed::occurring() const {
   return static_cast<std::size_t>(
-      std::count_if(strikes.begin(), strikes.end(), [](const Strike& strike) { return !strike.waits; }));
+      std::count_if(occurrences.begin(), occurrences.end(),
+                    [](const Occurrence& occurrence) { return !occurrence.waits; }));
 }
 
-bool Faults::Armed::strikes_module(std::size_t module) const {
-  return is_of(fault, module) && std::any_of(strikes.begin(), strikes.end(), [module](const Strike& strike) {
-           return strike.reply_of.value_or(module) == module;
+bool Faults::Armed::occurs_at(std::size_t module) const {
+  return is_of(fault, module) &&
+         std::any_of(occurrences.begin(), occurrences.end(), [module](const Occurrence& occurrence) {
+           return occurrence.reply_of.value_or(module) == module;
          });
 }
 
@@ -236,16 +239,17 @@ void Faults::say(const Armed& armed, const std::string& what) const {
   }
 }
 
-/// Removes earlier strikes on replies of the same module, because the latest one lasts longer.
-void Faults::forget_others_of(Armed& armed, const Strike& latest) {
-  const Strike kept = latest;
-  auto& strikes = armed.strikes;
-  strikes.erase(std::remove_if(strikes.begin(), strikes.end(),
-                               [&kept](const Strike& strike) {
-                                 return strike.reply_of == kept.reply_of && !strike.waits &&
-                                        strike.reply != kept.reply;
-                               }),
-                strikes.end());
+/// Removes the earlier occurrences that replies of the same module triggered, because the latest occurrence
+/// ends last.
+void Faults::forget_others_of(Armed& armed, const Occurrence& latest) {
+  const Occurrence kept = latest;
+  auto& occurrences = armed.occurrences;
+  occurrences.erase(std::remove_if(occurrences.begin(), occurrences.end(),
+                                   [&kept](const Occurrence& occurrence) {
+                                     return occurrence.reply_of == kept.reply_of && !occurrence.waits &&
+                                            occurrence.reply != kept.reply;
+                                   }),
+                    occurrences.end());
 }
 
 ReplyFate Faults::reply_begins(std::size_t module) {
@@ -255,21 +259,21 @@ ReplyFate Faults::reply_begins(std::size_t module) {
     if (!schedule.of_replies() || !is_of(armed.fault, module)) {
       continue;
     }
-    const bool strikes = schedule.when == When::Probably ? chance_.happens(schedule.probability)
-                                                         : ++armed.counted % schedule.count == 0;
-    if (strikes) {
-      strike(armed, module);
+    const bool occurs = schedule.when == When::Probably ? chance_.happens(schedule.probability)
+                                                        : ++armed.counted % schedule.count == 0;
+    if (occurs) {
+      begin(armed, module);
     }
   }
   if (changed_) {
     set_late_drivers();
   }
   ReplyFate fate;
-  fate.lost = struck_by(Trouble::LostReply, module);
+  fate.lost = affected_by(Trouble::LostReply, module);
   if (fate.lost) {
     reply_on_the_wires(module, replies_[module], false);
   }
-  if (const Fault* late = striking(Trouble::LateReply, module)) {
+  if (const Fault* late = active(Trouble::LateReply, module)) {
     fate.late_by = late->time;
   }
   return fate;
@@ -278,8 +282,8 @@ ReplyFate Faults::reply_begins(std::size_t module) {
 void Faults::reply_ends(std::size_t module) {
   for (Armed& armed : armed_) {
     if (!is_noise(armed.fault.trouble)) {
-      end_strikes(armed, [module](const Strike& strike) {
-        return strike.reply_of == module && strike.ends == kNever;
+      end_occurrences(armed, [module](const Occurrence& occurrence) {
+        return occurrence.reply_of == module && occurrence.ends == kNever;
       });
     }
   }
@@ -292,19 +296,19 @@ void Faults::reply_on_the_wires(std::size_t module, std::uint64_t reply, bool on
     if (!is_noise(armed.fault.trouble)) {
       continue;
     }
-    const auto of_it = [=](const Strike& strike) {
-      return strike.reply_of == module && strike.reply == reply && strike.ends == kNever;
+    const auto of_it = [=](const Occurrence& occurrence) {
+      return occurrence.reply_of == module && occurrence.reply == reply && occurrence.ends == kNever;
     };
     if (!on) {
-      end_strikes(armed, of_it);
+      end_occurrences(armed, of_it);
       continue;
     }
-    const auto strike = std::find_if(armed.strikes.begin(), armed.strikes.end(), of_it);
-    if (strike != armed.strikes.end()) {
-      strike->waits = false;
+    const auto occurrence = std::find_if(armed.occurrences.begin(), armed.occurrences.end(), of_it);
+    if (occurrence != armed.occurrences.end()) {
+      occurrence->waits = false;
       if (const auto lasts = armed.fault.schedule.lasts) {
-        strike->ends = bus_.clock().virtual_now() + *lasts;
-        forget_others_of(armed, *strike);
+        occurrence->ends = bus_.clock().virtual_now() + *lasts;
+        forget_others_of(armed, *occurrence);
       }
     }
   }
@@ -318,25 +322,25 @@ void Faults::written(std::size_t module) {
     const Schedule& schedule = armed.fault.schedule;
     if (schedule.when == When::AfterWrites && is_of(armed.fault, module) &&
         ++armed.counted == schedule.count) {
-      strike(armed, std::nullopt);
+      begin(armed, std::nullopt);
     }
   }
 }
 
-/// Returns a fault of this kind that affects the module at present, or null. A strike on a module's reply
-/// affects only that module.
-const Fault* Faults::striking(Trouble trouble, std::size_t module) const {
+/// Returns a fault of this kind that affects the module at present, or null. If a reply triggered an
+/// occurrence, the occurrence affects only the module that sent the reply.
+const Fault* Faults::active(Trouble trouble, std::size_t module) const {
   for (const Armed& armed : armed_) {
-    if (armed.fault.trouble == trouble && armed.strikes_module(module)) {
+    if (armed.fault.trouble == trouble && armed.occurs_at(module)) {
       return &armed.fault;
     }
   }
   return nullptr;
 }
 
-const Fault* Faults::striking_the_line(Trouble trouble) const {
+const Fault* Faults::active_on_the_line(Trouble trouble) const {
   for (const Armed& armed : armed_) {
-    if (armed.strikes_now() != 0 && armed.fault.trouble == trouble) {
+    if (armed.occurring() != 0 && armed.fault.trouble == trouble) {
       return &armed.fault;
     }
   }
@@ -346,7 +350,7 @@ const Fault* Faults::striking_the_line(Trouble trouble) const {
 void Faults::take_effect() {
   set_powers();
   for (std::size_t i = 0; i < modules_.size(); ++i) {
-    const Fault* const wrong = striking(Trouble::WrongRate, i);
+    const Fault* const wrong = active(Trouble::WrongRate, i);
     modules_[i]->force_rate(wrong == nullptr ? 0 : wrong->baud);
   }
   set_late_drivers();
@@ -362,22 +366,22 @@ void Faults::take_effect() {
 
 void Faults::set_powers() {
   for (std::size_t i = 0; i < modules_.size(); ++i) {
-    modules_[i]->interrupt_supply(struck_by(Trouble::Gone, i) || struck_by(Trouble::PowerCut, i));
+    modules_[i]->interrupt_supply(affected_by(Trouble::Gone, i) || affected_by(Trouble::PowerCut, i));
   }
 }
 
 void Faults::set_late_drivers() {
   for (std::size_t i = 0; i < modules_.size(); ++i) {
-    const Fault* const late = striking(Trouble::LateDriver, i);
+    const Fault* const late = active(Trouble::LateDriver, i);
     modules_[i]->release_driver_late(late == nullptr ? VirtualTime(0) : late->time);
   }
 }
 
-/// Returns the highest probability of the faults in progress.
+/// Returns the highest probability of the faults of this kind that are in progress; 0 if there is none.
 double Faults::rate_of(Trouble trouble) const {
   double rate = 0;
   for (const Armed& armed : armed_) {
-    if (armed.strikes_now() != 0 && armed.fault.trouble == trouble) {
+    if (armed.occurring() != 0 && armed.fault.trouble == trouble) {
       rate = std::max(rate, armed.fault.probability);
     }
   }
@@ -396,7 +400,7 @@ void Faults::set_noise() {
 }
 
 void Faults::set_echo() {
-  const Fault* const fault = striking_the_line(Trouble::Echo);
+  const Fault* const fault = active_on_the_line(Trouble::Echo);
   if (!echo_) {
     return;
   }

@@ -19,12 +19,13 @@
 
 namespace ex9000::sim {
 
-/// The same faults, the same seed and the same traffic produce strikes at the same times.
+/// The same faults, the same seed and the same traffic produce the same occurrences at the same times. Call
+/// the functions only between two runs of the bus; only the bus calls `run`.
 class Faults final : public Station {
  public:
   using Modules = std::vector<std::unique_ptr<SimulatedModule>>;
-  /// Receives one line of text for people when a fault strikes or ends. Faults that depend on replies and
-  /// faults without a schedule of strikes (When::Always) are not reported.
+  /// Receives one line of text for people when a fault occurs or ends. Faults that depend on replies and
+  /// faults without a schedule (When::Always) are not reported.
   using Notice = std::function<void(const std::string&)>;
 
   /// Attaches itself to `bus`. `master` has the line's rate; `notice` may be empty. All arguments must live
@@ -33,9 +34,8 @@ class Faults final : public Station {
   Faults(const Faults&) = delete;
   Faults& operator=(const Faults&) = delete;
 
-  /// Adds a fault, effective immediately, and returns its number, counted from 1. Call this and the other
-  /// functions between two runs of the bus. Throws std::invalid_argument if the line lacks the module or the
-  /// scheduled time has passed.
+  /// Adds a fault and returns its number, counted from 1. A fault without a schedule begins immediately.
+  /// Throws std::invalid_argument if the line does not have the module, or if the scheduled time has passed.
   std::size_t add(const Fault& fault);
   /// Removes a fault and ends its effects. Returns false if no fault has this number.
   bool remove(std::size_t number);
@@ -45,8 +45,8 @@ class Faults final : public Station {
     std::size_t number;
     std::string text;
     std::optional<std::size_t> module;
-    std::size_t strikes;  ///< in progress: at most one, or one per module if the fault depends on replies
-    std::uint64_t strikes_so_far;
+    std::size_t in_progress;  ///< at most one, or one for each module if the fault depends on replies
+    std::uint64_t occurrences_so_far;
   };
   [[nodiscard]] std::vector<Info> list() const;
 
@@ -57,30 +57,30 @@ class Faults final : public Station {
   void run() override;
 
  private:
-  /// One strike in progress.
-  struct Strike {
-    /// The module whose reply the strike affects; the strike does not affect other modules. nullopt: the
-    /// strike does not depend on a reply.
+  /// One occurrence that is in progress or waits for its reply.
+  struct Occurrence {
+    /// The module whose reply triggered the occurrence. The occurrence does not affect other modules.
+    /// nullopt: no reply triggered the occurrence.
     std::optional<std::size_t> reply_of;
-    /// The end in the line's time; kNever: a strike on a reply ends with the reply, any other strike does not
-    /// end by itself.
+    /// The end in the line's time. kNever: an occurrence that a reply triggered ends with this reply; any
+    /// other occurrence does not end by itself.
     VirtualTime ends = kNever;
     /// For noise: the number of the reply in the module's count.
     std::uint64_t reply = 0;
     bool waits = false;  ///< for noise: true until the reply is on the wires
   };
-  /// A fault that was added, and its strikes.
+  /// A fault that was added, with its occurrences.
   struct Armed {
     std::size_t number = 0;
     Fault fault;
     VirtualTime begins = kNever;  ///< in the line's time
-    std::vector<Strike> strikes;  ///< strikes in progress, and strikes that wait for their reply
-    std::uint64_t counted = 0;    ///< replies or writes
-    std::uint64_t strikes_so_far = 0;
+    std::vector<Occurrence> occurrences;
+    std::uint64_t counted = 0;  ///< replies or writes
+    std::uint64_t occurrences_so_far = 0;
 
-    /// Returns how many strikes are in progress, without those that wait.
-    [[nodiscard]] std::size_t strikes_now() const;
-    [[nodiscard]] bool strikes_module(std::size_t module) const;
+    /// Returns the number of occurrences in progress. Does not count occurrences that wait for their reply.
+    [[nodiscard]] std::size_t occurring() const;
+    [[nodiscard]] bool occurs_at(std::size_t module) const;
   };
 
   [[nodiscard]] VirtualTime next() const;
@@ -89,21 +89,21 @@ class Faults final : public Station {
   void reply_ends(std::size_t module);
   void reply_on_the_wires(std::size_t module, std::uint64_t reply, bool on);
   void written(std::size_t module);
-  void strike(Armed& armed, std::optional<std::size_t> reply_of);
-  static void forget_others_of(Armed& armed, const Strike& latest);
+  void begin(Armed& armed, std::optional<std::size_t> reply_of);
+  static void forget_others_of(Armed& armed, const Occurrence& latest);
   void release_late_replies();
   template <class Over>
-  void end_strikes(Armed& armed, Over over);
+  void end_occurrences(Armed& armed, Over over);
   void say(const Armed& armed, const std::string& what) const;
   void act();
   void take_effect();
   void prepare(Trouble trouble);
   void set_powers();
   void set_late_drivers();
-  [[nodiscard]] const Fault* striking(Trouble trouble, std::size_t module) const;
-  [[nodiscard]] const Fault* striking_the_line(Trouble trouble) const;
-  [[nodiscard]] bool struck_by(Trouble trouble, std::size_t module) const {
-    return striking(trouble, module) != nullptr;
+  [[nodiscard]] const Fault* active(Trouble trouble, std::size_t module) const;
+  [[nodiscard]] const Fault* active_on_the_line(Trouble trouble) const;
+  [[nodiscard]] bool affected_by(Trouble trouble, std::size_t module) const {
+    return active(trouble, module) != nullptr;
   }
   [[nodiscard]] double rate_of(Trouble trouble) const;
   void set_noise();
@@ -119,7 +119,7 @@ class Faults final : public Station {
   std::vector<Armed> armed_;
   std::vector<std::uint64_t> replies_;  ///< number of replies that each module has begun
   std::size_t numbers_ = 0;
-  bool changed_ = false;  ///< effects have to be updated as soon as no module is in the middle of an action
+  bool changed_ = false;  ///< the next call of `act` must update the effects
   std::vector<std::size_t> hanging_;
   std::vector<std::vector<std::uint8_t>> to_say_;
   // Created when the first fault needs them.

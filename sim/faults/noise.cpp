@@ -34,15 +34,16 @@ Levels Noise::disturbed(const Sent& sent) {
     strays_.insert(later, {sent.ends, byte, sent.mode});
     wait_for_next();
   }
-  strikes_ += levels != sent.levels ? 1U : 0U;
+  changes_ += levels != sent.levels ? 1U : 0U;
   return levels;
 }
 
-/// Puts the next stray character on the wires. The driver enable stays off, because no station sends it.
+/// Puts the next stray character on the wires. The driver enable stays off, because no station sends this
+/// character.
 void Noise::run() {
   const Stray stray = strays_.front();
   strays_.pop_front();
-  ++strikes_;
+  ++changes_;
   straying_ = true;
   wire_.put(stray.byte, stray.mode);
   straying_ = false;

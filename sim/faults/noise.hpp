@@ -13,12 +13,12 @@ namespace ex9000::sim {
 struct NoiseRates {
   double flipped_bit = 0;     ///< for each bit, including start and stop bits
   double lost_character = 0;  ///< for each character: receivers see an idle line
-  /// After each character: a character with a random byte follows directly. If the sender continues without a
-  /// gap, the two collide.
+  /// For each character: a random byte follows it directly. If the sender's next character also follows
+  /// without a gap, the two collide.
   double stray_character = 0;
-  /// After each character: a byte 00 follows, as after the turn-around of a real line.
+  /// For each character: a byte 00 follows it directly, as after the turn-around of a real line.
   double stray_zero = 0;
-  /// For each 0 that is sent while another driver is enabled and holds the idle level.
+  /// For each 0 bit that is sent while another driver is enabled: receivers see the idle level.
   double lost_in_contention = 0;
 };
 
@@ -32,7 +32,7 @@ class Noise final : public Disturbance, public Station {
 
   void set_rates(NoiseRates rates) { rates_ = rates; }
   /// Returns the number of characters changed, removed or added so far.
-  [[nodiscard]] std::uint64_t strikes() const { return strikes_; }
+  [[nodiscard]] std::uint64_t changes() const { return changes_; }
 
   // --- Disturbance ---
   Levels disturbed(const Sent& sent) override;
@@ -52,8 +52,8 @@ class Noise final : public Disturbance, public Station {
   BusEnd& wire_;
   NoiseRates rates_;
   Chance chance_;
-  std::uint64_t strikes_ = 0;
-  std::deque<Stray> strays_;  ///< characters that have not been added yet, the next one first
+  std::uint64_t changes_ = 0;
+  std::deque<Stray> strays_;  ///< stray characters that have not been sent yet, the next one first
   bool straying_ = false;
 };
 

@@ -19,11 +19,12 @@ namespace {
 
 constexpr std::size_t kSize = hal::doubles::Memory::kSize;
 
-/// A file that gets its name when it is complete. If the process ends earlier, no incomplete file remains.
+/// A file that gets its final name only when it is complete.
 class Draft {
  public:
-  /// Opens the file in the folder of `path`. Some file systems do not support files without a name, and only
-  /// /proc can give such a file a name; otherwise, the file has a temporary name.
+  /// Opens a file without a name in the folder of `path`, so that nothing remains if the process is killed.
+  /// If the file system does not support such files, or if /proc is missing, opens a file with a temporary
+  /// name instead. Without /proc, a file without a name cannot get a name.
   explicit Draft(const std::string& path) {
     const std::filesystem::path folder = std::filesystem::path(path).parent_path();
     constexpr mode_t kAsUmaskPermits = 0666;

@@ -16,19 +16,19 @@ namespace ex9000::sim {
 struct Frame {
   /// A byte that was sent with wrong parity or that a disturbance has changed.
   struct Change {
-    std::size_t position = 0;  ///< among the sent bytes, from 0
+    std::size_t position = 0;  ///< position among the sent bytes, from 0
     std::uint8_t sent = 0;
     Levels arrives = 0;
     LineFormat format = LineFormat::k8N1;
 
-    /// Returns the byte that receivers read; nullopt if it has no start bit, because receivers do not detect
-    /// it.
+    /// Returns the byte that receivers read; nullopt if the start bit is lost, because receivers then do not
+    /// detect the byte.
     [[nodiscard]] std::optional<std::uint8_t> byte() const;
-    /// Returns the status at receivers that detect the byte.
+    /// Returns the status that receivers report if they detect the byte.
     [[nodiscard]] ByteStatus status() const { return status_of(arrives, format); }
   };
 
-  std::size_t station = 0;  ///< in the order of attachment; 0 is the master
+  std::size_t station = 0;  ///< number in the order of attachment; 0 is the master
   /// The bytes as a receiver in the sender's mode gets them. A collision does not change them here. If a
   /// start bit is lost, the data that a receiver reads from the rest of the byte is not included.
   FrameBytes bytes;
@@ -38,15 +38,16 @@ struct Frame {
   /// rate and parity are equal. A change of the mode during the frame is not reported.
   SerialMode sent_in;
   SerialMode line_in;
-  VirtualTime began{0};  ///< first start bit
-  VirtualTime ended{0};  ///< last stop bit
+  VirtualTime began{0};  ///< start of the first start bit
+  VirtualTime ended{0};  ///< end of the last stop bit
 
   [[nodiscard]] Speaker speaker() const { return station == 0 ? Speaker::Master : Speaker::Module; }
 };
 
-/// A frame of a module ends when its driver is disabled. A frame of the master, whose writes may arrive in
-/// pieces, ends when no byte follows for some time, when a module replies, or when a gap follows a correct
-/// CRC. A DCON frame, which a person may type, ends with CR. Every frame ends after 300 bytes at the latest.
+/// Combines bytes into frames by these rules. A frame of a module ends when its driver is disabled. An RTU
+/// frame of the master may arrive in pieces; it ends when no byte follows for some time, when a module
+/// replies, or when a gap follows a correct CRC. A person may type a DCON frame; it ends with CR, or when no
+/// byte follows for 5 s. Every frame ends after 300 bytes at the latest.
 class FrameWatch final : public BusObserver {
  public:
   using Take = std::function<void(const Frame&)>;
@@ -55,7 +56,7 @@ class FrameWatch final : public BusObserver {
 
   explicit FrameWatch(Mode line_mode) : line_mode_(std::move(line_mode)) {}
 
-  /// Registers a receiver: `take` is called with each later frame when the frame has ended.
+  /// Adds a receiver. FrameWatch calls `take` with each later frame when the frame has ended.
   void add_receiver(Take take) { takers_.push_back(std::move(take)); }
 
   /// Returns the time at which `run` must pass on the first unfinished frame if no byte follows; kNever if

@@ -9,7 +9,7 @@ FrameSpacing::FrameSpacing(Line& line) : line_(line) { line.bus().observe(*this)
 VirtualTime FrameSpacing::after_own() const { return last_byte_ + line_.rtu_silence(); }
 
 VirtualTime FrameSpacing::after_others(std::uint8_t address) const {
-  if (last_speaker_ > line_.size()) {  // a foreign station, whose bytes all modules have received
+  if (last_speaker_ > line_.size()) {  // a station that a fault has added; all modules receive its bytes
     return is_for_modbus(address) ? last_byte_ + line_.rtu_separate() : VirtualTime(0);
   }
   const SimulatedModule& speaker = line_.module(last_speaker_ - 1);

@@ -1,4 +1,4 @@
-// The silence that the master keeps before a frame.
+// Calculates when the master may begin a frame.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,8 @@ namespace ex9000::sim {
 
 class Line;
 
-/// Observes who has sent last, so that modules do not treat two frames as one.
+/// Observes which station has sent last, so that the master can begin a frame late enough: modules must not
+/// treat two frames as one.
 class FrameSpacing final : private BusObserver {
  public:
   /// Observes the bus of `line`, which must outlive this object.
@@ -21,11 +22,11 @@ class FrameSpacing final : private BusObserver {
   /// Returns whether the master has sent that byte.
   [[nodiscard]] bool master_was_last() const { return last_speaker_ == 0; }
 
-  /// Returns the time from which a frame to `address`, its first byte, is a frame of its own for the module
-  /// at this address. Call this only if another station than the master has sent last. The time may have
-  /// passed.
+  /// Returns the earliest start of a frame that the module at `address` treats as a separate frame. `address`
+  /// is the first byte of the frame. The returned time may be in the past. Call this only if a station other
+  /// than the master has sent last.
   [[nodiscard]] VirtualTime after_others(std::uint8_t address) const;
-  /// Returns the time from which a frame is separate from an earlier frame of the master.
+  /// Returns the earliest start of a frame that modules do not join to the previous frame of the master.
   [[nodiscard]] VirtualTime after_own() const;
 
  private:

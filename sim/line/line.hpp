@@ -26,16 +26,16 @@ constexpr LineKind kPaced{};
 /// Bytes take their real time, and modules follow the standard strictly: a gap of more than T1.5 makes a
 /// Modbus frame invalid.
 constexpr LineKind kStrictlyPaced{1, LineTiming::strictly_at};
-/// Returns the timing of an instant line: a Modbus frame ends when no byte follows at once and its CRC is
-/// correct, otherwise after a silence of 2 ms.
+/// Returns the timing of an instant line: a Modbus frame with a correct CRC ends when no byte follows
+/// immediately; any other Modbus frame ends after a silence of 2 ms.
 LineTiming instantly(std::uint32_t baud, LineFormat format);
-/// Bytes take almost no time: 0.02 us at 115200 baud and 2 us at 1200 baud.
+/// Bytes take almost no time: each takes 0.02 us at 115200 baud and 2 us at 1200 baud.
 constexpr LineKind kInstant{4000, instantly};
 
 /// Station 0 of the bus is the master; the modules follow in the given order.
 class Line {
  public:
-  /// Creates a line with these modules. Their supply is off at first. The master uses the factory's rate, and
+  /// Creates a line with these modules. Their supply is off at first. The master uses the factory baud rate.
   /// `receive` gets each byte that the master receives.
   Line(const std::vector<ModuleSpec>& modules, LineKind kind, Master::Receive receive);
 
@@ -48,8 +48,8 @@ class Line {
   Master& master() { return master_; }
   [[nodiscard]] const Master& master() const { return master_; }
   [[nodiscard]] const FrameSpacing& spacing() const { return spacing_; }
-  /// Returns the queue of requests that other clients than the ports send. The first call attaches it to the
-  /// bus.
+  /// Returns the queue for the requests of the Modbus TCP gateway and of the panel. The first call attaches
+  /// the queue to the bus.
   RequestQueue& requests();
   [[nodiscard]] std::size_t size() const { return modules_.size(); }
   SimulatedModule& module(std::size_t index) { return *modules_[index]; }
@@ -64,9 +64,9 @@ class Line {
   /// Starts `program`, which changes the level of an input of the module at `index`.
   void move_input(std::size_t index, const InputProgram& program);
   /// Returns whether something is in progress that ends by itself, usually within milliseconds: bytes on the
-  /// wires or in a queue, the silence after a Modbus frame, a delayed reply, a store, a module that
-  /// starts up. Events that only depend on the clock do not count: a host watchdog, a scheduled fault, an
-  /// input program.
+  /// wires or in a queue, the silence after a Modbus frame, a delayed reply, a store, a module that starts
+  /// up. Events that depend only on the clock do not count: a host watchdog, a scheduled fault, an input
+  /// program.
   [[nodiscard]] bool unsettled() const;
   /// Returns whether the line is unsettled, or a request of the queue waits for the line or for its reply.
   [[nodiscard]] bool pending() const;

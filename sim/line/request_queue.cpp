@@ -9,7 +9,7 @@ namespace ex9000::sim {
 
 namespace {
 
-/// The most bytes of a frame on the line: those of Modbus RTU. DCON frames are shorter.
+/// The maximum size of a frame in bytes: that of a Modbus RTU frame. DCON frames are shorter.
 constexpr std::size_t kLongestFrame = 256;
 
 }  // namespace
@@ -39,13 +39,14 @@ void RequestQueue::send_next() {
   send();
 }
 
-/// Returns whether another master, or a late reply, is or was on the line and has not settled yet.
+/// Returns whether bytes of another master, or a late reply, are on the line or have not settled yet.
 bool RequestQueue::others_use_the_line() const {
   return line_.master().sending() || line_.bus().carries() ||
          (line_.spacing().last_byte() != own_byte_ && line_.unsettled());
 }
 
-/// Sends the first request, perhaps later.
+/// Sends the first request. While others use the line, tries again after 1 ms. At the deadline, sends the
+/// request anyway; if another master is still sending, reports instead that the request was not sent.
 void RequestQueue::send() {
   constexpr VirtualTime kBetweenLooks = std::chrono::milliseconds(1);
   Master& master = line_.master();
@@ -54,7 +55,7 @@ void RequestQueue::send() {
     enter(State::WaitsForLine, now + kBetweenLooks);
     return;
   }
-  if (master.sending()) {  // the request would follow the bytes of the other master much later
+  if (master.sending()) {  // the request would wait until all these bytes are sent
     Reply none;
     none.sent = false;
     finish(none);
@@ -85,7 +86,7 @@ void RequestQueue::hear(std::uint8_t byte, ByteStatus status) {
   VirtualTime ends = now + line_.rtu_silence();
   if (reply_.bytes.size() < kLongestFrame) {
     reply_.bytes.push_back(byte);
-  } else {  // not a frame; a station that never stops sending must not hold the request for ever
+  } else {  // no frame is so long; a station that never stops sending must not block the queue
     reply_.damaged = true;
     ends = std::min(ends, std::max(now, deadline_));
   }
@@ -122,7 +123,7 @@ void RequestQueue::run() {
 }
 
 /// Returns whether the received frame is the reply to the request in progress. If another master has sent
-/// meanwhile, it may be the reply to that master.
+/// bytes since then, returns false, because the frame may be the reply to that master.
 bool RequestQueue::is_reply() const {
   const Request& request = waiting_.front();
   const bool is_for_this_queue = line_.master().taken() == taken_;
@@ -131,7 +132,8 @@ bool RequestQueue::is_reply() const {
           (!reply_.damaged && request.is_reply({reply_.bytes.data(), reply_.bytes.size()})));
 }
 
-/// Sends the next request before it reports this one, so that a request which the report causes comes last.
+/// Sends the next request before it reports the reply to this one, because `done` may add a request, which
+/// must follow those that already wait.
 void RequestQueue::finish(const Reply& reply) {
   const Request request = std::move(waiting_.front());
   waiting_.pop_front();

@@ -14,35 +14,36 @@ namespace ex9000::sim {
 class Line;
 
 /// Sends each request as the master of the line, then waits for its reply, as a serial device server does.
-/// Keeps the order of the requests, and the silence between frames that modules require. No function blocks;
-/// all times are in line time.
+/// Keeps the order of the requests, and leaves the silence that modules require between frames. No function
+/// blocks. All times are in line time.
 ///
 /// If another master has used the line, or a reply is late, a request first waits until everything on the
-/// line has settled, for at most kReplyTimeout. The other master does not wait for this queue. If it sends
-/// during a request, the request gets no reply.
+/// line has settled, for at most kReplyTimeout. The other master does not wait for this queue. If the other
+/// master sends during a request, the request gets no reply.
 class RequestQueue final : private Station {
  public:
-  /// How long the first byte of a reply may take after the last byte of a request: more than twice the time
-  /// that a module may take to store settings and to reply (wire.md section 7).
+  /// The maximum time from the last byte of a request to the first byte of its reply. This is more than twice
+  /// the time in which a module must store settings and reply (wire.md section 7).
   static constexpr VirtualTime kReplyTimeout = std::chrono::milliseconds(500);
-  /// The time after a request without a reply in which modules can process the request (Modbus over Serial
-  /// Line V1.02, 2.4.1: 100 ms to 200 ms).
+  /// The turn-around time: after a broadcast, the queue waits for this time, so that modules can process the
+  /// request (Modbus over Serial Line V1.02, 2.4.1: 100 ms to 200 ms).
   static constexpr VirtualTime kTurnaround = std::chrono::milliseconds(100);
 
   struct Reply {
     std::vector<std::uint8_t> bytes;  ///< at most 256; empty: no reply in time, or none expected
     bool sent = true;                 ///< false: the request was not sent, because others used the line
-    bool damaged = false;             ///< a byte had a framing or parity error, or more bytes followed
+    bool damaged = false;             ///< a byte had a line error, or more than 256 bytes arrived
     VirtualTime delay{0};             ///< from the end of the request to the end of the first byte
   };
 
   struct Request {
     std::vector<std::uint8_t> bytes;  ///< the frame on the line, at least one byte
     bool expects_reply = true;
-    /// Returns whether the frame is the reply. Other frames are ignored, as if they had not arrived. Empty:
-    /// every frame is the reply, even a damaged one.
+    /// Returns whether the frame is the reply. Other frames are ignored, as if they had not arrived. If this
+    /// function is empty, every frame is the reply, even a damaged one.
     std::function<bool(Bytes frame)> is_reply;
-    /// Called exactly once, unless the owner no longer exists before the request is sent.
+    /// The queue calls this function exactly once, unless the owner is destroyed before the queue sends the
+    /// request.
     std::function<void(const Reply& reply)> done;
     std::weak_ptr<void> owner;  ///< the client
   };
@@ -56,7 +57,7 @@ class RequestQueue final : private Station {
   void ask(Request request);
   /// Call this for each byte that the master's end of the line receives.
   void hear(std::uint8_t byte, ByteStatus status);
-  /// Returns whether a request is in progress.
+  /// Returns whether a request waits or is in progress.
   [[nodiscard]] bool busy() const { return state_ != State::Idle; }
 
  private:
@@ -80,10 +81,10 @@ class RequestQueue final : private Station {
   BusEnd& timer_;
   State state_ = State::Idle;
   std::deque<Request> waiting_;  ///< the first one is in progress, unless the state is Idle or WaitsForLine
-  VirtualTime own_byte_{0};      ///< end of the last reply; nobody has used the line if no byte followed it
-  std::uint64_t taken_ = 0;      ///< see Master::taken, when the request was sent
+  VirtualTime own_byte_{0};      ///< end of the last reply; a later byte means that others have used the line
+  std::uint64_t taken_ = 0;      ///< the value of Master::taken when the request was sent
   VirtualTime sent_{0};          ///< end of the last byte of the request
-  VirtualTime deadline_{0};      ///< of the line in WaitsForLine, of the reply in WaitsForReply and Receives
+  VirtualTime deadline_{0};      ///< when the wait for the line, or for the reply, ends
   Reply reply_;
 };
 

@@ -29,13 +29,14 @@ inline std::vector<std::uint8_t> rtu_frame(std::uint8_t address, const std::vect
 /// Returns the PDU in a frame of at least three bytes.
 inline Bytes pdu_of(Bytes frame) { return frame.first(frame.size - 2).from(1); }
 
-/// Returns whether `frame` is a valid reply, perhaps an exception, to `request`; both are complete frames. A
-/// reply has the address and the function of its request, and the length and the values that these require
-/// (MODBUS Application Protocol V1.1b3, section 6). This tells it from an echo, and from most late replies to
-/// other requests. Functions with other codes may have any reply.
+/// Returns whether `frame` is a valid reply, perhaps an exception, to `request`; both are complete frames.
+/// The address and the function code must be those of the request. For the functions 01 to 06, 0F and 10, the
+/// length and the values must fit the request too (MODBUS Application Protocol V1.1b3, section 6); for other
+/// functions, they may be any. These checks reject nearly all echoes of requests that read, and most late
+/// replies to other requests.
 inline bool is_rtu_reply(Bytes request, Bytes frame) {
   constexpr std::size_t kException = 5;        // size of an exception; no reply is shorter
-  constexpr std::size_t kAddressAndCount = 8;  // least size of the requests below
+  constexpr std::size_t kAddressAndCount = 8;  // minimum size of the requests below
   if (frame.size < kException || crc16(frame).value() != 0 || frame[0] != request[0] ||
       (frame[1] | kRtuException) != (request[1] | kRtuException)) {
     return false;
@@ -53,7 +54,7 @@ inline bool is_rtu_reply(Bytes request, Bytes frame) {
   if (request.size < kAddressAndCount) {
     return false;
   }
-  if (writes) {  // repeats the address, and the value or the count
+  if (writes) {  // the reply repeats the address, and the value or the count
     return frame.size == kAddressAndCount && std::equal(frame.begin(), frame.begin() + 6, request.begin());
   }
   const std::size_t count = request.word(4);

@@ -27,8 +27,8 @@ std::string quoted(const std::string& path) {
 /// The options that set a line format.
 struct FormatOptions {
   LineFormat format;
-  const char* mbpoll;   ///< its default is 8E1
-  const char* picocom;  ///< its default is 8N1
+  const char* mbpoll;   ///< for mbpoll, whose default is 8E1
+  const char* picocom;  ///< for picocom, whose default is 8N1
 };
 
 constexpr FormatOptions kFormatOptions[] = {
@@ -38,7 +38,7 @@ constexpr FormatOptions kFormatOptions[] = {
     {LineFormat::k8O1, " -P odd", " -y o"},
 };
 
-/// A pseudo-terminal ignores the format, but a real bus does not.
+/// Returns the options for `format`. A pseudo-terminal ignores the format, but a real bus does not.
 const FormatOptions& options_of(LineFormat format) {
   return *std::find_if(std::begin(kFormatOptions), std::end(kFormatOptions),
                        [format](const FormatOptions& options) { return options.format == format; });
@@ -100,7 +100,7 @@ std::string ports(const LineSummary& line) {
     text += "  pseudo-terminal " + quoted(line.pty) + " (" + line.pty_device + ")\n";
   }
   if (!line.tcp.empty()) {
-    text += "  TCP " + line.tcp + ", the bytes as they are: Modbus RTU (not Modbus TCP) and ASCII\n";
+    text += "  TCP " + line.tcp + ", raw bytes: Modbus RTU (not Modbus TCP) and ASCII\n";
   }
   if (!line.modbus_tcp.empty()) {
     text += "  Modbus TCP " + line.modbus_tcp + ", a gateway to the modules that speak Modbus RTU\n";

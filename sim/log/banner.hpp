@@ -27,7 +27,7 @@ struct LineSummary {
   std::vector<ModuleSummary> modules;
   std::string pty;         ///< link of the pseudo-terminal; empty: none
   std::string pty_device;  ///< the device to which the link points
-  std::string tcp;         ///< HOST:PORT of the line's bytes; empty: none
+  std::string tcp;         ///< HOST:PORT of the TCP port; empty: none
   std::string modbus_tcp;  ///< HOST:PORT of the gateway; empty: none
   std::string serial;      ///< the serial port; empty: none
 };
@@ -38,9 +38,9 @@ struct BannerContent {
   std::string control;  ///< path of the control socket; empty: none
 };
 
-/// Returns several lines of text: the lines, their ports and their modules. For each module on a
-/// pseudo-terminal or behind a gateway, adds commands that the user can paste to read the module or to switch
-/// an output.
+/// Returns a text of several lines that names the simulated lines, their ports and their modules. For each
+/// module that masters can reach through a pseudo-terminal or a gateway, the text contains commands that the
+/// user can paste to read the module or to switch an output.
 std::string greeting(const BannerContent& all);
 
 }  // namespace ex9000::sim

@@ -1,4 +1,4 @@
-// Writes the log of the bus: one line of text for each frame.
+// Writes the log of the bus: one line of text for each frame and for each note.
 #pragma once
 
 #include <functional>
@@ -35,7 +35,7 @@ class BusLog {
   virtual ~BusLog() = default;
 
   virtual void frame(const Frame& frame) = 0;
-  /// Writes a remark about the line at `now`.
+  /// Writes a note about the line; `now` is the time in the log.
   virtual void note(VirtualTime now, const std::string& text) = 0;
 };
 

@@ -14,7 +14,7 @@ namespace ex9000::sim {
 ///   bytes     in hex, without blanks
 ///   text      present if the bytes are DCON
 ///   meaning   present if it is known and there was no collision
-///   error     collisions, noise, wrong CRC or checksum; present if there are any
+///   error     collision, wrong rate or format, noise, wrong CRC or checksum; present if there is any
 ///   collided  whether another driver was enabled
 /// Members of a note: time, line, note.
 class JsonLog final : public BusLog {

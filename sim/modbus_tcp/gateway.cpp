@@ -40,7 +40,7 @@ void Gateway::ask(const MbapFrame& request, const std::weak_ptr<void>& owner, co
   line_.requests().ask(std::move(asked));
 }
 
-/// Returns whether modules listen, and all of these speak ASCII.
+/// Returns whether at least one module listens, and all modules that listen speak ASCII.
 bool Gateway::speaks_only_ascii() const {
   bool ascii = false;
   for (std::size_t i = 0; i < line_.size(); ++i) {

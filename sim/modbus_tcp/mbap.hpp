@@ -25,8 +25,8 @@ class MbapReader {
   /// Removes and returns the next complete frame; nullopt if it is not complete yet, or if the stream is
   /// broken.
   std::optional<MbapFrame> next();
-  /// Returns whether a header has a wrong protocol or length. Where the next frame begins is unknown then, so
-  /// the connection must be closed. Frames before that header are still valid.
+  /// Returns whether a header has a wrong protocol or length. In this case the start of the next frame is
+  /// unknown, so the caller must close the connection. Frames before that header are still valid.
   [[nodiscard]] bool broken() const { return broken_; }
   /// Returns the number of bytes that `next` has not returned yet.
   [[nodiscard]] std::size_t size() const { return bytes_.size(); }

@@ -14,7 +14,7 @@ void MbapSession::resume() {
 
 void MbapSession::pass_on() {
   if (passing_on_) {
-    return;  // an answer that came at once; the loop below continues
+    return;  // `ask` below has called `answer`; the loop continues
   }
   passing_on_ = true;
   while (!waiting_ && !blocked_) {

@@ -15,14 +15,14 @@
 namespace ex9000::sim {
 
 /// Takes the requests from the bytes of a client, and passes them to the gateway one after the other, so that
-/// the clients of a line take turns. Replies have the order of the requests. Requests that have not been sent
-/// when this object is destroyed are dropped. No function blocks.
+/// the clients of a line take turns. Replies have the order of the requests. The destructor drops requests
+/// that have not been sent. No function blocks.
 class MbapSession {
  public:
   /// Sends a reply to the client. Returns false if the client accepts no more at present.
   using Send = std::function<bool(const std::vector<std::uint8_t>& bytes)>;
 
-  /// `gateway` must outlive this object. `answered` is called after each request that was answered.
+  /// `gateway` must outlive this object. `answered` is called after each answer of the gateway.
   MbapSession(Gateway& gateway, Send send, std::function<void()> answered)
       : gateway_(gateway), send_(std::move(send)), answered_(std::move(answered)) {}
   MbapSession(const MbapSession&) = delete;

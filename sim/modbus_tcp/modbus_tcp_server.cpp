@@ -14,13 +14,13 @@ namespace {
 
 using boost::asio::ip::tcp;
 
-/// The maximum number of clients. The next one is disconnected.
+/// The maximum number of clients. The server disconnects each further client.
 constexpr std::size_t kMostClients = 64;
-/// The server reads nothing more from a client while this many of its bytes wait to become requests. This is
-/// also the most for which `advance ... after N` can wait, see SteppedLine::kMostBytes.
+/// The server stops reading from a client while this many bytes of the client wait to become requests. The
+/// limit is not lower than SteppedLine::kMostBytes, the largest N of `advance ... after N`.
 constexpr std::size_t kMostUnread = 65536;
-/// The system stores about this many bytes of replies to a client that does not read. Then the server passes
-/// on no more requests of this client.
+/// The size of the send buffer of each client, in bytes. When the buffer of a client that does not read is
+/// full, the server passes on no more requests of this client.
 constexpr int kMostUnsent = 65536;
 
 }  // namespace
@@ -43,7 +43,7 @@ struct ModbusTcpServer::Client : std::enable_shared_from_this<Client> {
 
   tcp::socket socket;
   std::array<std::uint8_t, 4096> bytes{};
-  std::size_t arriving = 0;           ///< pieces that `session` has not received yet
+  std::size_t arriving = 0;           ///< calls of `deliver` whose `action` has not run yet
   std::vector<std::uint8_t> replies;  ///< bytes that the client has not accepted yet
   bool reading = false;               ///< an asynchronous read is pending
   bool writing = false;               ///< an asynchronous write is pending
@@ -128,7 +128,7 @@ boost::system::error_code ModbusTcpServer::take(const ClientPointer& client) {
   return error;
 }
 
-/// Lets `action` act on the line at its present time.
+/// Passes `action` to `received_`, which runs it when the line has reached its present time.
 void ModbusTcpServer::deliver(const ClientPointer& client, std::size_t size,
                               const std::function<void()>& action) {
   ++client->arriving;
@@ -141,8 +141,8 @@ void ModbusTcpServer::deliver(const ClientPointer& client, std::size_t size,
   });
 }
 
-/// Writes what the client accepts at once; the rest follows when it accepts more. Returns whether that was
-/// everything.
+/// Writes the replies that the client accepts now, and the rest when the client accepts more. Returns whether
+/// all replies have been written.
 bool ModbusTcpServer::write(const ClientPointer& client) {
   if (client->writing || !client->socket.is_open()) {
     return false;
@@ -184,9 +184,9 @@ void ModbusTcpServer::go_on(const ClientPointer& client) {
   }
 }
 
-/// Closes the connection. The client lives until the functions that are running now have returned. Bytes that
-/// have arrived are read first: otherwise the close would reset the connection, and the client could lose its
-/// last replies.
+/// Closes the connection. Reads the bytes that have arrived first: otherwise the close would reset the
+/// connection, and the client could lose its last replies. The Client object remains until the functions that
+/// are running now have returned.
 void ModbusTcpServer::forget(const ClientPointer& client) {
   constexpr int kMostPieces = 64;
   boost::system::error_code ended;

@@ -1,4 +1,4 @@
-// The clients of Modbus TCP on one line.
+// Accepts the Modbus TCP clients of one line.
 #pragma once
 
 #include <boost/asio/io_context.hpp>
@@ -16,13 +16,15 @@
 
 namespace ex9000::sim {
 
-/// A gateway like a serial device server: Modbus TCP in, Modbus RTU on the line. Each client may send further
-/// requests before it has received its replies. A client that sends a frame with a wrong protocol or length
-/// is disconnected after the replies to its earlier requests. No function blocks.
+/// Receives requests over Modbus TCP and sends them on the line as Modbus RTU frames, like a serial device
+/// server. Each client may send further requests before it has received its replies. A client that sends a
+/// frame with a wrong protocol or length is disconnected after the replies to its earlier requests. No
+/// function blocks.
 class ModbusTcpServer {
  public:
-  /// Accepts `size` bytes of a client that have arrived. `process` acts on the line: it must be called once,
-  /// at the line's present time, now or later. Returns false if the server must read no more until `resume`.
+  /// The server calls this function when `size` bytes of a client have arrived. The function must call
+  /// `process` once, immediately or later, when the line's clock has the present time, because `process`
+  /// sends requests on the line. The function returns false if the server must stop reading until `resume`.
   using Received = std::function<bool(std::size_t size, std::function<void()> process)>;
 
   /// Starts to listen. Throws std::invalid_argument with a one-line message if the address is not available.
@@ -32,12 +34,12 @@ class ModbusTcpServer {
   ModbusTcpServer& operator=(const ModbusTcpServer&) = delete;
   ~ModbusTcpServer();
 
-  /// Accepts clients. Call this once. `received` is called while the io_context runs.
+  /// Starts to accept clients. Call this once. The server calls `received` while the io_context runs.
   void start(Received received);
   /// Continues to read after `received` has returned false.
   void resume();
-  /// Calls `received` at once for all bytes that have arrived; the io_context need not run. Call this only if
-  /// `received` can take more bytes.
+  /// Calls `received` during this call for all bytes that have arrived; the io_context need not run. Call
+  /// this only if `received` can accept more bytes.
   void read_waiting();
   /// Returns the HOST:PORT on which the server listens.
   [[nodiscard]] std::string address() const { return listener_.address(); }

@@ -17,7 +17,7 @@ foreach(file ${FILES})
   string(APPEND rows "    {\"/${name}\", \"${types_${ending}}; charset=utf-8\", {kFile${index}, sizeof kFile${index}}},\n")
   math(EXPR index "${index} + 1")
 endforeach()
-file(WRITE ${OUT} "// Made of sim/panel/page by embed.cmake.
+file(WRITE ${OUT} "// Generated from sim/panel/page by embed.cmake.
 #include \"sim/panel/page_files.hpp\"
 
 namespace ex9000::sim {

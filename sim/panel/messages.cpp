@@ -113,8 +113,8 @@ Message message_of(const std::vector<Faults::Info>& faults, std::size_t first) {
     message.push_back({{"number", fault.number},
                        {"text", fault.text},
                        {"module", fault.module ? Message(first + *fault.module) : Message()},
-                       {"strikes", fault.strikes},
-                       {"soFar", fault.strikes_so_far}});
+                       {"inProgress", fault.in_progress},
+                       {"soFar", fault.occurrences_so_far}});
   }
   return message;
 }

@@ -42,7 +42,7 @@ struct PageRequest {
 /// Returns nullopt if `message` is not a request.
 std::optional<PageRequest> parse_page_request(const Message& message);
 
-/// Returns the message in `text`; a message that is no object if `text` is not JSON.
+/// Returns the message in `text`; a message that is not an object if `text` is not JSON.
 Message message_in(const std::string& text);
 /// Returns the text to send over the socket; invalid UTF-8 is replaced.
 std::string text_of(const Message& message);

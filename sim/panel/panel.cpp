@@ -53,8 +53,8 @@ std::string random_id() {
 }  // namespace
 
 bool operator==(const Faults::Info& a, const Faults::Info& b) {
-  return a.number == b.number && a.text == b.text && a.module == b.module && a.strikes == b.strikes &&
-         a.strikes_so_far == b.strikes_so_far;
+  return a.number == b.number && a.text == b.text && a.module == b.module && a.in_progress == b.in_progress &&
+         a.occurrences_so_far == b.occurrences_so_far;
 }
 
 struct Panel::Module {

@@ -21,8 +21,8 @@ class Panel final : public PanelSource {
  public:
   using CarryOut = std::function<Control::Reply(const std::string& command)>;
 
-  /// Sends a request on a line; `line` is its position, from 0. `done` must be called on the thread of this
-  /// object.
+  /// Sends a request on a line; `line` is its position, from 0. `done` must be called on the thread that uses
+  /// this Panel.
   using Ask = std::function<void(std::size_t line, RequestQueue::Request request)>;
 
   using WallClock = std::function<std::chrono::steady_clock::time_point()>;

@@ -373,8 +373,8 @@ std::size_t PanelServer::Listener::pages() const {
   }));
 }
 
-/// Captures the present state at once for a new page. When the first page opens, starts to capture the state
-/// regularly.
+/// Captures the present state immediately for a new page. When the first page opens, starts to capture the
+/// state regularly.
 void PanelServer::Listener::watch() {
   if (looking_) {
     look();

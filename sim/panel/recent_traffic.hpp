@@ -1,4 +1,4 @@
-// The last frames and notes of a line, for viewers that look at it from time to time.
+// The last frames and notes of a line, for viewers that read them at intervals.
 #pragma once
 
 #include <algorithm>

@@ -69,7 +69,7 @@ class BusTarget : public Target {
   std::vector<std::unique_ptr<sim::Line>> lines_;
   std::vector<Bytes> heard_;  ///< bytes received by each master that no call has returned yet
   std::size_t line_ = 0;
-  std::size_t module_ = 0;  ///< position on that line
+  std::size_t module_ = 0;  ///< position on the chosen line
 };
 
 }  // namespace ex9000::play

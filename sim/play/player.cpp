@@ -18,8 +18,8 @@ constexpr std::chrono::milliseconds kAfterReply{2};
 /// its first character.
 constexpr std::chrono::milliseconds kReplyBegins{65};
 
-/// Returns the checksum of DCON. It does not use the firmware's code, so that the tests do not check the
-/// firmware with its own code.
+/// Returns the DCON checksum. Does not use the firmware's code, so that the tests do not check the firmware
+/// with its own code.
 std::string checksum_of(const std::string& text) {
   unsigned sum = 0;
   for (const char character : text) {

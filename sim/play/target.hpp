@@ -1,4 +1,4 @@
-// The interface to the modules that a transcript is played against.
+// The interface through which the player uses the modules.
 #pragma once
 
 #include <chrono>

@@ -105,7 +105,7 @@ struct Transcript {
 /// The duration of a `silence` step, in which no byte may arrive. Without faults, any reply begins earlier.
 constexpr std::chrono::milliseconds kSilence{250};
 
-/// Describes what is wrong if `model` lacks an input with this number; empty: the input exists.
+/// Returns what is wrong if `model` lacks an input with this number; empty if the input exists.
 std::string missing_input(const Model& model, unsigned channel);
 
 /// Returns the transcripts below `directory`, sorted by path.

@@ -8,7 +8,7 @@
 namespace ex9000::sim {
 
 /// Reads the bytes of a port with the flags INPCK and PARMRK (POSIX.1-2017, 11.2.2): FF 00 X is a byte X with
-/// a line error, FF FF is a byte FF, and all other bytes are themselves. A mark may be split between two
+/// a line error, FF FF is a byte FF, and all other bytes are unchanged. A mark may be split between two
 /// reads.
 class ParityMarks {
  public:

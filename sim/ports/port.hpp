@@ -9,8 +9,8 @@
 
 namespace ex9000::sim {
 
-/// No function blocks. All calls, including those of `Received`, come from the one thread that runs the
-/// program's io_context.
+/// No function blocks. Only one thread at a time uses a port: the thread that runs the io_context of the
+/// line, or the main thread during a pause (see LineThreads).
 class Port {
  public:
   /// Positions of bytes, in ascending order.
@@ -28,12 +28,12 @@ class Port {
   virtual void start(Received received) = 0;
   /// Continues to deliver bytes after `received` has returned false.
   virtual void resume() = 0;
-  /// Calls `received` at once for all bytes that have arrived; the io_context need not run. Call this only if
-  /// `received` can take more bytes.
+  /// Calls `received` during this call for all bytes that have arrived; the io_context need not run. Call
+  /// this only if `received` can accept more bytes.
   virtual void read_waiting() {}
 
-  /// Sends bytes from modules. They are lost if no master has the port open, as on real wires. Returns how
-  /// many bytes were dropped because a master has the port open and does not read.
+  /// Sends bytes from modules. The bytes are lost if no master has the port open, as on real wires. Returns
+  /// how many bytes were dropped because a master has the port open and does not read.
   virtual std::size_t send(const std::vector<std::uint8_t>& bytes) = 0;
   /// Called when a module has turned its driver off, so that no more bytes of its reply follow.
   virtual void sent() {}

@@ -44,8 +44,8 @@ void remove_stale(const std::string& link, const Claim& claim) {
   unlink(link.c_str());
 }
 
-/// Opens the slave for a moment, for operations that work only there. The system reports this as if a master
-/// had opened the slave. Therefore use it only before visits are watched or while a master has the slave
+/// Opens the slave briefly, for operations that work only there. The system reports this as if a master had
+/// opened the slave. Therefore create a Slave only before visits are watched or while a master has the slave
 /// open.
 class Slave {
  public:

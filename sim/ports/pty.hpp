@@ -35,8 +35,8 @@ class Pty {
   /// any master, discards unread bytes, as a serial port does: a new master must not receive a reply to the
   /// previous one.
   void take_visit();
-  /// Returns whether a master has the slave open. Do not write otherwise: the bytes would wait for the next
-  /// master.
+  /// Returns whether a master has the slave open. If none has, do not write: the bytes would wait for the
+  /// next master.
   [[nodiscard]] bool visited() const;
 
   /// Returns the rate set on the slave, in bits per second; nullopt if it is not a known rate.

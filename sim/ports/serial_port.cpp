@@ -49,7 +49,8 @@ void set_up(int fd, const std::string& device, hal::SerialMode mode) {
   }
   termios settings = before;
   cfmakeraw(&settings);
-  // No XON/XOFF, because XOFF would go out on the line. Bytes with wrong parity are marked, see ParityMarks.
+  // Disables XON/XOFF, because the port would send XOFF on the line. Bytes with wrong parity are marked, see
+  // ParityMarks.
   settings.c_iflag = has_parity(mode.format) ? INPCK | PARMRK : 0;
   settings.c_cflag &= ~static_cast<tcflag_t>(kTermiosFormat | CRTSCTS);
   settings.c_cflag |= CLOCAL | CREAD | termios_format(mode.format);
@@ -150,7 +151,7 @@ std::size_t SerialPort::send(const std::vector<std::uint8_t>& bytes) {
     write_out();
     under_way_ = true;
   }
-  return 0;  // a real line takes the bytes at its rate
+  return 0;  // the port sends the bytes even if no master reads them
 }
 
 void SerialPort::sent() {

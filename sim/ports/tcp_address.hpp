@@ -15,8 +15,8 @@ struct TcpAddress {
 /// Parses HOST:PORT, :PORT, PORT or [IPV6]:PORT. Without HOST, the result has the loopback address 127.0.0.1.
 /// Throws std::invalid_argument with a one-line message.
 TcpAddress parse_tcp_address(const std::string& text);
-/// Parses an address to listen on, likewise. HOST is a numeric address, or `localhost` for 127.0.0.1. Other
-/// names would require the name services of the system, which a static program cannot use.
+/// Parses an address to listen on, in the same syntax. HOST is a numeric address, or `localhost` for
+/// 127.0.0.1. Other names would require the name services of the system, which a static program cannot use.
 TcpAddress parse_listening_address(const std::string& text);
 
 }  // namespace ex9000::sim

@@ -23,7 +23,7 @@ class TcpListener {
 
   /// Calls `admit` for each client while the io_context runs. Call this once.
   void start(Admit admit);
-  /// Calls `admit` at once for all clients that have connected; the io_context need not run.
+  /// Calls `admit` during this call for all clients that have connected; the io_context need not run.
   void accept_waiting();
   /// Returns the HOST:PORT on which this object listens.
   [[nodiscard]] std::string address() const;

@@ -11,7 +11,8 @@ namespace {
 
 using boost::asio::ip::tcp;
 
-/// The maximum number of masters on one line. In practice only clients that never disconnect reach it.
+/// The maximum number of masters on one line. In practice only clients that never disconnect reach this
+/// limit.
 constexpr std::size_t kMostMasters = 64;
 
 }  // namespace

@@ -1,4 +1,4 @@
-// The line's bytes over TCP, in the same form as from a serial device server.
+// Transfers the bytes of a line over TCP, like a serial device server.
 #pragma once
 
 #include <boost/asio/io_context.hpp>
@@ -39,8 +39,8 @@ class TcpPort final : public Port {
   struct Client;
 
   void admit(boost::asio::ip::tcp::socket socket);
-  /// Shared with pending asynchronous reads: a client may be removed during a read because a reply to it
-  /// fails.
+  /// Shared with pending asynchronous reads: a client may be removed during a read, because the port cannot
+  /// send a reply to it.
   using ClientPointer = std::shared_ptr<Client>;
 
   void read(const ClientPointer& client);

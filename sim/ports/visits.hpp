@@ -21,9 +21,9 @@ class Visits final : public boost::asio::io_context::service {
   Visits(const Visits&) = delete;
   Visits& operator=(const Visits&) = delete;
 
-  /// From now on calls `visited` after a process has opened or closed `device`, while the io_context runs or
-  /// from `take`. Returns the number of the watch. Throws std::runtime_error with a one-line message if the
-  /// system cannot watch the device.
+  /// Starts to watch `device`: after a process has opened or closed it, `visited` is called while the
+  /// io_context runs, or by `take`. Returns the number of the watch. Throws std::runtime_error with a
+  /// one-line message if the system cannot watch the device.
   int watch(const std::string& device, std::function<void()> visited);
   /// Ends a watch. Its function is not called any more.
   void ignore(int watch);

@@ -1,4 +1,4 @@
-// Connects the ports of a line to its master's end.
+// Connects the ports of a line to the master's end of the line.
 #pragma once
 
 #include <cstddef>
@@ -21,8 +21,8 @@ class LinePorts final : private BusObserver {
   using All = std::vector<std::unique_ptr<Port>>;
   using Notice = std::function<void(const std::string&)>;
 
-  /// All arguments must live as long as the line's bus is used. `notice` receives one line of text for people
-  /// for each module that cannot receive because of its rate or format, and for bytes that a port drops.
+  /// All arguments must live as long as the line's bus is used. `notice` receives a one-line message for each
+  /// module that cannot receive because of its rate or format, and for bytes that a port drops.
   LinePorts(Line& line, const All& ports, Notice notice);
 
   /// Stores a byte that the master's end of the line has received. The line calls this for each such byte.
@@ -36,7 +36,7 @@ class LinePorts final : private BusObserver {
   void take_rate(const Port& port);
   /// Returns the number of bytes written to each port so far, including dropped bytes.
   [[nodiscard]] std::uint64_t sent() const { return sent_; }
-  /// Reports each mismatch of rates and formats once, until it ends.
+  /// Reports each mismatch of rates or formats once. A mismatch that ends and begins again is reported again.
   void report_mismatches();
 
   [[nodiscard]] const All& all() const { return ports_; }
@@ -56,7 +56,7 @@ class LinePorts final : private BusObserver {
   std::vector<std::uint8_t> heard_;
   std::uint64_t sent_ = 0;
   std::vector<const Port*> full_;  ///< ports whose dropped bytes have been reported
-  bool stopped_sending_ = false;   ///< a module has stopped since `heard_` was passed on
+  bool stopped_sending_ = false;   ///< a module has stopped sending since the last `hand_out`
 };
 
 }  // namespace ex9000::sim

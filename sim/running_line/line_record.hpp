@@ -12,7 +12,7 @@
 
 namespace ex9000::sim {
 
-/// Records no frames until `print_frames`, `keep_in` or `tell` requests it.
+/// Records no frames until `print_frames`, `keep_in` or `tell` is called.
 class LineRecord final : private Station {
  public:
   using Print = BusLog::Print;
@@ -21,14 +21,14 @@ class LineRecord final : private Station {
   /// `print` receives the lines of its log.
   LineRecord(Line& line, std::string name, LogFormat format, const Print& print);
 
-  /// Writes a remark about the line at its present time; remarks are printed even if frames are not.
+  /// Writes a note with the line's present time. Notes are printed even if frames are not.
   void note(const std::string& text);
-  /// Requests that frames are printed.
+  /// Starts to print frames.
   void print_frames();
-  /// Requests that frames are written to `capture`, which must outlive this object. `began` is the wall clock
-  /// time (since 1970-01-01 00:00:00 UTC) that corresponds to time 0 of the line.
+  /// Starts to write frames to `capture`, which must outlive this object. `began` is the wall clock time
+  /// (since 1970-01-01 00:00:00 UTC) that corresponds to time 0 of the line.
   void keep_in(Capture& capture, VirtualTime began);
-  /// Requests that `take` is called with each frame when the frame has ended, and `note` with each remark.
+  /// Starts to call `take` with each frame when the frame has ended, and `note` with each note.
   void tell(FrameWatch::Take take, BusLog::Note note);
   /// Ends the log and the capture at `end` in the line's time. The line may run beyond `end`, because the
   /// program reads the wall clock only at some moments; the log and the capture do not depend on this.

@@ -12,14 +12,15 @@ namespace ex9000::sim {
 
 namespace {
 
-/// If this many bytes wait for the line, masters have to wait, as with a full UART.
+/// When this many bytes wait for the line, masters have to wait, as with a full UART.
 constexpr std::size_t kMostWaiting = 4096;
 
 /// Limits how far virtual time runs ahead, so that watchdogs do not expire early after many transactions in a
 /// row.
 constexpr std::chrono::milliseconds kFarthestAhead{5};
 
-/// By default the kernel may delay timers by 50 us to save power; that is half a character at 115200 baud.
+/// By default the kernel may delay timers by 50 us to save power; this is more than half a character at
+/// 115200 baud.
 constexpr unsigned long kTimerSlackNanoseconds = 1;
 
 /// The shortest delay that is reported. A master may notice a reply that is late by this time, and a user
@@ -116,7 +117,7 @@ void Pacer::follow() {
   arm_timer();
 }
 
-/// Lets masters wait if the line is full. Returns whether they wait.
+/// Makes masters wait if the line is full. Returns whether masters wait.
 bool Pacer::pause_if_full() {
   if (is_full()) {
     paused_ = true;
@@ -199,9 +200,9 @@ bool Pacer::receive(const Port& port, Bytes bytes, const Port::Positions& damage
   return !pause_if_full();
 }
 
-/// Returns the size of the first frame in `bytes`. After a request without a reply the next request often
-/// follows at once, and both are read in one piece. On an instant line a frame ends as soon as its CRC is
-/// correct. If the CRC of all bytes is correct, they are a single frame.
+/// Returns the size of the first frame in `bytes`. Many masters send the next request immediately after a
+/// request without a reply, and the program reads both in one piece. On an instant line a frame ends as soon
+/// as its CRC is correct. If the CRC of all bytes is correct, they are a single frame.
 std::size_t Pacer::first_frame_size(Bytes bytes) {
   constexpr std::size_t kShortest = 4;
   Crc16 crc;
@@ -215,8 +216,8 @@ std::size_t Pacer::first_frame_size(Bytes bytes) {
   return crc.value() == 0 ? bytes.size : first;
 }
 
-/// Returns the earliest time of a frame to `address`, so that a module that has received the earlier bytes
-/// does not treat both as one frame.
+/// Returns the earliest start of a frame to `address`. From this time on, a module that has received earlier
+/// bytes does not join the frame to them.
 VirtualTime Pacer::earliest_frame(std::uint8_t address) const {
   if (!pace_.keep_frames_apart) {
     return VirtualTime(0);

@@ -21,9 +21,9 @@ struct Pace {
   /// written up to this much earlier, but never before an event that has already happened. Without this, the
   /// host's delays would extend every transaction.
   VirtualTime host_latency = std::chrono::microseconds(300);
-  /// Events while a byte is on the wires, or within this time after one, do not wait for the wall clock. When
-  /// virtual time is therefore some milliseconds ahead, masters have to wait. Zero: events happen when the
-  /// wall clock has reached them, so a transaction can only take longer than on a real line.
+  /// While a byte is on the wires, and for this time after it, the pacer processes events without waiting for
+  /// the wall clock. If virtual time is then more than some milliseconds ahead, masters have to wait. If this
+  /// value is zero, every event waits for the wall clock.
   VirtualTime lead{0};
   /// A frame to a module other than the last sender waits until a silence of T3.5 has passed; a frame to a
   /// Modbus module after an ASCII reply waits until the module no longer treats the reply as part of a frame.
@@ -53,7 +53,7 @@ class Pacer final {
         LinePorts::Notice notice);
 
   void start();
-  /// Starts `server`, whose requests go to the line, too. Call this after `start`; `server` must live as long
+  /// Starts `server` and puts its requests on the line. Call this after `start`; `server` must live as long
   /// as `io` runs.
   void serve(ModbusTcpServer& server);
   /// See LinePorts::hear.
@@ -62,7 +62,7 @@ class Pacer final {
   [[nodiscard]] std::uint64_t sent() const { return ports_.sent(); }
   /// Returns the line's present time. The line's clock has the time of the last event, which may be earlier.
   [[nodiscard]] VirtualTime present() const { return std::max(wall(), line_.clock().virtual_now()); }
-  /// Runs `action`, which acts on the line from outside, at the line's present time.
+  /// Advances the line to its present time, then runs `action`, which acts on the line.
   void now(const std::function<void()>& action);
 
  private:

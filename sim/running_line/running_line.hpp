@@ -26,8 +26,8 @@ class RunningLine {
 
   /// Opens everything that `setup` names. Throws std::invalid_argument or std::runtime_error with a one-line
   /// message. After an exception, everything is closed again, and no file has been created or changed. All
-  /// arguments must outlive this object. `stepped`: the behaviour of the ports does not depend on the wall
-  /// clock.
+  /// arguments must outlive this object. If `stepped` is true, the behaviour of the ports does not depend on
+  /// the wall clock.
   RunningLine(boost::asio::io_context& io, const LineSetup& setup, std::uint64_t seed, LogFormat format,
               bool stepped, Print print);
   RunningLine(const RunningLine&) = delete;
@@ -45,8 +45,8 @@ class RunningLine {
   void start();
   /// Starts to process the line as soon as `io` runs, at `speed` times the speed of the wall clock.
   void start_paced(boost::asio::io_context& io, double speed);
-  /// Starts to process the line. Its time does not pass until the caller moves it. `arrived` is called when
-  /// bytes from masters have arrived.
+  /// Starts to process the line. The line's time does not pass until the caller advances it. `arrived` is
+  /// called when bytes from masters have arrived.
   SteppedLine& start_stepped(SteppedLine::Arrived arrived);
   /// Ends the log and the capture when the modules have been up for `up`. Call this before `start`.
   void end_at(VirtualTime up) { record_->end_at(came_up_ + up); }
@@ -58,13 +58,13 @@ class RunningLine {
   [[nodiscard]] const std::string& name() const { return setup_.name; }
   [[nodiscard]] bool has_serial_port() const { return setup_.serial.has_value(); }
   Line& line() { return *line_; }
-  /// Call this only if the line follows the clock.
+  /// Call this only after `start_paced`.
   Pacer& pacer() { return *pacer_; }
   /// See LinePorts::sent.
   [[nodiscard]] std::uint64_t sent() const {
     return pacer_ ? pacer_->sent() : stepped_ ? stepped_->sent() : 0;
   }
-  /// Returns the time at which the modules have been up for `up`.
+  /// Returns the line time at which the modules have been up for `up`.
   [[nodiscard]] VirtualTime when_up_for(VirtualTime up) const { return came_up_ + up; }
   [[nodiscard]] const LineSummary& introduced() const { return introduced_; }
 
@@ -84,7 +84,7 @@ class RunningLine {
   LinePorts::All ports_;
   std::unique_ptr<ModbusTcpServer> modbus_tcp_;  ///< null: none
   std::unique_ptr<LineRecord> record_;
-  std::unique_ptr<Pacer> pacer_;          ///< null unless the line follows the clock
+  std::unique_ptr<Pacer> pacer_;          ///< null unless the line follows the wall clock
   std::unique_ptr<SteppedLine> stepped_;  ///< null unless the line is in stepped time
 };
 

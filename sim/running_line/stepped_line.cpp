@@ -63,7 +63,7 @@ void SteppedLine::put_on_line() {
 void SteppedLine::run_until(VirtualTime until) {
   line_.bus().run_until(until);
   if (ports_.reply_is_complete()) {
-    ports_.hand_out();  // the whole reply at once, not byte by byte
+    ports_.hand_out();  // passes on the complete reply in one piece
   }
   if (frames_ != nullptr) {
     frames_->run(until);

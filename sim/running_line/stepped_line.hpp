@@ -27,7 +27,7 @@ class SteppedLine {
 
   /// Accepts masters. `arrived` is called whenever bytes have arrived.
   void start(Arrived arrived);
-  /// Starts `server`, whose requests go to the line, too. Call this after `start`; `server` must outlive this
+  /// Starts `server` and puts its requests on the line. Call this after `start`; `server` must outlive this
   /// object.
   void serve(ModbusTcpServer& server);
   /// See LinePorts::hear.

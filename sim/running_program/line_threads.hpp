@@ -1,4 +1,4 @@
-// The threads that the lines of a program run on.
+// Runs the lines of a program on several threads.
 #pragma once
 
 #include <boost/asio/executor_work_guard.hpp>
@@ -14,11 +14,12 @@
 
 namespace ex9000::sim {
 
-/// Each line runs on one of the threads, and the lines share nothing. The main thread can use a line only
-/// during a pause. All functions are for the main thread.
+/// Runs each line on one of the threads. The main thread may use a line only during a pause. Only the main
+/// thread may call the functions of this class.
 class LineThreads {
  public:
-  /// With fewer than two threads, the lines run in `main` too. `main` must outlive this object.
+  /// With fewer than two threads, the lines run on the main thread, in `main`. `main` must outlive this
+  /// object.
   LineThreads(boost::asio::io_context& main, std::size_t threads);
   ~LineThreads() { end(); }
   LineThreads(const LineThreads&) = delete;
@@ -26,7 +27,7 @@ class LineThreads {
 
   /// Returns the io_context of a line. `line` is its position, from 0.
   [[nodiscard]] boost::asio::io_context& io(std::size_t line);
-  /// Starts the threads. If a handler of a line throws, `main` is stopped. Throws std::runtime_error with a
+  /// Starts the threads. An exception in a handler of a line stops `main`. Throws std::runtime_error with a
   /// one-line message if the system cannot start a thread.
   void start();
   /// Runs `action` while no handler of a line runs. Blocks until the present handlers have ended.

@@ -15,7 +15,7 @@ namespace ex9000::sim {
 namespace {
 
 /// Returns the number of threads for the lines. Lines that do not follow the wall clock run on the main
-/// thread, which moves their time.
+/// thread, which advances their time.
 std::size_t threads_of(const Setup& setup) {
   if (!setup.speed.paced()) {
     return 1;
@@ -41,7 +41,7 @@ RunningProgram::RunningProgram(boost::asio::io_context& io, Setup setup, Print p
     print_ = [this](const std::string& line) { watch_->print(line); };
   }
   for (const LineSetup& line : setup_.lines) {
-    // With several lines, each message begins with the line's name. JSON contains it already.
+    // With several lines, each message begins with the line's name. JSON already contains the name.
     const bool as_it_is = line.name.empty() || for_machines();
     const std::string lead = as_it_is ? "" : line.name + ": ";
     lines_.push_back(std::make_unique<RunningLine>(
@@ -125,7 +125,7 @@ void RunningProgram::watch_lines() {
 }
 
 /// Updates the view of the modules every 50 ms. If the lines do not follow the wall clock, the code that
-/// moves their time calls look() instead.
+/// advances their time calls look() instead.
 void RunningProgram::keep_watching() {
   constexpr auto kBetweenLooks = std::chrono::milliseconds(50);
   threads_.pause_for([this] { watch_->look(); });
@@ -152,7 +152,7 @@ void RunningProgram::open_capture() {
   capture_ = std::make_unique<Capture>(*setup_.capture, place);
 }
 
-/// Moves all lines to the same time before the command, so that its replies are consistent.
+/// Advances all paced lines to the present time before the command, so that its replies are consistent.
 Control::Reply RunningProgram::carry_out(const std::string& command) {
   if (stepper_) {
     return control_->carry_out(command);
@@ -166,7 +166,8 @@ Control::Reply RunningProgram::carry_out(const std::string& command) {
   return reply;
 }
 
-/// Adds a request to the queue of a line. The line's thread finds the reply, and the main thread reports it.
+/// Adds a request to the queue of a line. The line's thread receives the reply, and the main thread reports
+/// it.
 void RunningProgram::ask(std::size_t line, RequestQueue::Request request) {
   request.done = [this, done = std::move(request.done)](const RequestQueue::Reply& reply) {
     boost::asio::post(io_, [done, reply] { done(reply); });
@@ -241,8 +242,8 @@ void RunningProgram::start() {
   }
 }
 
-/// Creates the files, and starts the lines. This is the last step of the start, so that no file is created if
-/// another step fails.
+/// Creates the files, and starts the lines. All other steps of the start that can fail come first, so that no
+/// file is created if one of them fails.
 void RunningProgram::begin() {
   make_files_and_greet();
   for (std::size_t i = 0; i < lines_.size(); ++i) {

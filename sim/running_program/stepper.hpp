@@ -1,4 +1,4 @@
-// The command `advance`: moves the time of lines in stepped time.
+// Carries out the command `advance`, which advances the time of lines in stepped time.
 #pragma once
 
 #include <cstddef>
@@ -27,8 +27,8 @@ class Stepper {
 
   /// Returns whether `command` is an `advance` command.
   static bool is_advance(const std::string& command);
-  /// Carries out `advance TIME [after N] [quiet]`. Does not block: calls `answer`, perhaps later, as soon as
-  /// all of these are true:
+  /// Carries out `advance TIME [after N] [quiet]`. Does not wait for bytes: calls `answer`, during this call
+  /// or later, as soon as all of these are true:
   /// - N bytes have arrived at the ports that no earlier `advance` has put on a line. Everything that is
   ///   available has been read and put on its line.
   /// - TIME has passed. With `quiet`, it is also sufficient that nothing is pending on any line.

@@ -17,7 +17,7 @@ SerialMode first_mode(const LineSetup& setup, const Line& line);
 
 /// Starts the input programs and the faults. Call this after the line has started up. Throws
 /// std::invalid_argument with a one-line message if a fault names a module that the line does not have. A
-/// fault whose time has already passed strikes at once.
+/// fault whose time has already passed takes effect immediately.
 void begin_programs(Line& line, const LineSetup& setup);
 
 }  // namespace ex9000::sim

@@ -38,11 +38,14 @@ void check(const LineSetup& line, std::size_t position) {
     wrong("echo", "requires {serial}; add it, or leave this out");
   }
   if (line.instant && line.serial) {
-    wrong("line", "instant cannot be combined with {serial}, where bytes take time; leave out one of them");
+    wrong("line",
+          "instant cannot be combined with {serial}, because bytes on a serial line take time; leave out one "
+          "of them");
   }
   if (line.instant && line.strict_gaps) {
     wrong("strict-gaps",
-          "cannot be combined with {line instant}, where gaps have no length; leave out one of them");
+          "cannot be combined with {line instant}, because that line has no gaps to check; leave out one of "
+          "them");
   }
 }
 
@@ -79,15 +82,16 @@ void check_speed(const Setup& setup) {
     }
     if (setup.speed.max() && !line.first_port().empty()) {
       wrong("max cannot be combined with {" + line.first_port() +
-            "}, whose masters keep the wall clock's time; leave out one of them");
+            "}, because its masters follow the wall clock; leave out one of them");
     }
   }
   if (setup.speed.stepped() && !setup.control) {
-    wrong("step requires {control}, because only the control socket moves the time");
+    wrong("step requires {control}, because only the control socket advances the time");
   }
   if (setup.speed.stepped() && setup.panel) {
     wrong(
-        "step cannot be combined with {panel}, which shows time that passes by itself; leave out one of "
+        "step cannot be combined with {panel}, because the panel shows time that follows the wall clock; "
+        "leave out one of "
         "them");
   }
   if (setup.speed.max() && setup.control) {
@@ -103,7 +107,7 @@ void check_speed(const Setup& setup) {
 
 /// Rejects a path that has two uses.
 void check_paths(const Setup& setup) {
-  Once paths("has another use too; name another path", one_spelling);
+  Once paths("is already used for something else; name another path", one_spelling);
   paths.add(std::nullopt, "control", setup.control);
   for (std::size_t i = 0; i < setup.lines.size(); ++i) {
     const LineSetup& line = setup.lines[i];
@@ -152,7 +156,7 @@ void check(const Setup& setup) {
   Once files("two modules cannot share a file; name one for each", one_spelling);
   Once ports("two lines cannot share a port; name one for each", one_spelling);
   Once addresses("two ports cannot share an address; name one for each");
-  Once names("two lines have this name; give each its own");
+  Once names("two lines have this name; give each line a different name");
   for (std::size_t i = 0; i < setup.lines.size(); ++i) {
     const LineSetup& line = setup.lines[i];
     check(line, i);

@@ -30,11 +30,10 @@ struct LineSetup {
   std::string name;                      ///< name in the logs; empty for the line of a command line
   std::vector<ModuleSpec> modules;       ///< at least one
   std::optional<std::string> pty;        ///< path of the link to a pseudo-terminal
-  std::optional<TcpAddress> tcp;         ///< address to listen on, for the line's bytes
-  std::optional<TcpAddress> modbus_tcp;  ///< address of the gateway from Modbus TCP
+  std::optional<TcpAddress> tcp;         ///< address on which the TCP port listens
+  std::optional<TcpAddress> modbus_tcp;  ///< address on which the Modbus TCP gateway listens
   std::optional<std::string> serial;     ///< the serial port; excludes all other ports
-  /// Returns the key of a port whose masters follow the wall clock: the first of pty, tcp and modbus-tcp that
-  /// is set; empty if none is.
+  /// Returns the key of the first of pty, tcp and modbus-tcp that is set; empty if none is.
   [[nodiscard]] std::string first_port() const {
     return pty ? "pty" : tcp ? "tcp" : modbus_tcp ? "modbus-tcp" : "";
   }

@@ -19,7 +19,7 @@ std::string seconds_text(hal::doubles::VirtualTime time);
 
 /// Returns the prefix of log lines: seconds with six decimals, right-aligned in 12 columns.
 std::string stamp_text(hal::doubles::VirtualTime time);
-/// Returns a log line that is a remark, not a frame.
+/// Returns the log line of a note.
 std::string note_text(hal::doubles::VirtualTime time, const std::string& text);
 
 }  // namespace ex9000::sim

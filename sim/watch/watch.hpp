@@ -25,7 +25,8 @@ class Watch {
   /// Adds a line; call this before `look`. `line` must outlive this object, and `present` returns its time.
   /// An empty name is not shown.
   void add_line(std::string name, const Line& line, std::function<VirtualTime()> present);
-  /// Shows the changes since the last look, unless the terminal does not keep up.
+  /// Shows the changes since the last look. Does nothing while the terminal has not accepted all earlier
+  /// output.
   void look();
   /// Prints lines of other output above the faces.
   void print(const std::string& lines);

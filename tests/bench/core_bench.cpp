@@ -12,7 +12,7 @@
 namespace ex9000::bench {
 namespace {
 
-/// A module with a memory that replies immediately and a clock that the benchmark advances.
+/// A module whose memory completes each job immediately and whose clock the benchmark advances.
 class BareModule {
  public:
   explicit BareModule(const Model& model, bool ascii) : module_(model), memory_(8192, 0xFF) {

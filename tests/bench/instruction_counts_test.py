@@ -94,7 +94,7 @@ class Passes(unittest.TestCase):
         self.assertTrue(count(ASLEEP + turn(self.BYTE) + turn(TICK))[0].at_rest)
         self.assertFalse(count(ASLEEP + executed(0x102) + self.BYTE)[0].at_rest)
 
-    def test_a_request_is_answered_when_the_driver_goes_off(self):
+    def test_a_request_is_answered_when_the_driver_enable_is_switched_off(self):
         self.assertFalse(count(ASLEEP + turn(interrupt(NUMBERS.line, 0x2000, SENT)))[0].answered)
 
     def test_an_interrupt_with_two_bytes_does_not_count_as_one_byte(self):
@@ -120,7 +120,7 @@ class Capacity(unittest.TestCase):
 
 
 class Requests(unittest.TestCase):
-    def test_frames_have_the_check_that_the_wire_requires(self):
+    def test_frames_have_the_checksum_that_the_protocol_requires(self):
         self.assertEqual(requests.rtu("01 01 0000 000D").hex(), "01010000000dfdcf")
         self.assertEqual(requests.dcon("$012", True), b"$012B7\r")
 

@@ -70,7 +70,7 @@ class OnBoard : public testing::TestWithParam<ImageName> {
       expect_comes_up();
       EXPECT_EQ(bench.ask("~01OPUMP"), "?01");
       line->drive(End::Fault, Drive::Nothing);
-      bench.run_for(seconds(3));  // meanwhile the module retries what it could not store
+      bench.run_for(seconds(3));  // meanwhile the module repeats the failed store
       EXPECT_EQ(bench.ask("~01O9055"), "!01");
       line->drive(End::Fault, Drive::Low);
       EXPECT_EQ(bench.ask("~01OPUMP"), "?01");
@@ -112,11 +112,11 @@ TEST_P(OnBoard, ComesUpWithin100msWhileTheEepromStillPrograms) {
   EXPECT_EQ(bench.ask("$01M"), "!01PUMP");
 }
 
-TEST_P(OnBoard, ComesUpWithin100msWithAStuckEepromBusAndStoresOnceItIsFree) {
+TEST_P(OnBoard, ComesUpWithin100msWithAStuckEepromBusAndStoresWhenItIsFree) {
   expect_lives_with_stuck_lines();
 }
 
-TEST_P(OnBoardWhoseI2cWaits, ComesUpWithin100msWithAStuckEepromBusAndStoresOnceItIsFree) {
+TEST_P(OnBoardWhoseI2cWaits, ComesUpWithin100msWithAStuckEepromBusAndStoresWhenItIsFree) {
   expect_lives_with_stuck_lines();
 }
 
@@ -326,7 +326,7 @@ TEST_P(OnBoard, IsResetByTheWatchdogWithin1600msIfTheTickStops) {
 }
 
 /// firmware/extensions.md, register 0x0301.
-TEST_P(OnBoard, TellsTheReasonOfEachResetAndForgetsTheOneBefore) {
+TEST_P(OnBoard, ReportsTheReasonOfTheLastReset) {
   constexpr milliseconds kLongestWatchdogPeriod{1600};
   constexpr unsigned kUnserved = 7;  // SSI0
   const std::string ask_reason = "~01X0301";
@@ -388,7 +388,7 @@ TEST_P(OnBoard, ListensWithin30msOfResetIfTheInitSwitchDoesNotBounce) {
 }
 
 /// wire.md 6: the LED flashes at 2 Hz.
-TEST_P(OnBoard, FlashesItsLedEvery250msWithin1ms) {
+TEST_P(OnBoard, TogglesItsFlashingLedEvery250msWithAnErrorOfAtMost1ms) {
   power_up();
   // The net calls this function as long as the net exists, so the function shares ownership of the list.
   const auto changes = std::make_shared<std::vector<Instant>>();
@@ -447,7 +447,7 @@ TEST_P(OnBoardForMonths, WorksAcrossTheWrapOfEvery32BitCount) {
     ASSERT_EQ(bench.ask("~010"), "!0100") << round;
   }
   EXPECT_EQ(bench.ask("$01M"), "!01PUMP0");
-  // Giving up and repeating a byte on the EEPROM's bus would take 3 ms.
+  // If the driver gave up a byte on the EEPROM's bus and repeated it, the reply would begin 3 ms later.
   EXPECT_LT(std::chrono::duration<double>(longest - shortest).count(), 0.002);
   bench.run_for(seconds(2));
   EXPECT_EQ(bench.ask("~010"), "!0104");

@@ -22,9 +22,9 @@ using std::chrono::microseconds;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-/// The module may restart its host watchdog this much too late. Its clock counts microseconds, and it rounds
-/// up the end of a byte and of the silence after the byte, so that the host watchdog does not expire too
-/// early.
+/// The longest delay with which the module may restart its host watchdog. The module's clock counts
+/// microseconds. The module rounds up the end of a byte and the end of the silence after the byte, so that
+/// the host watchdog does not expire too early.
 constexpr microseconds kRounding{3};
 /// The time from the interrupt at the expiry until the main loop has set the last of sixteen pins, which
 /// change one after the other. The measured time is 2.5 us.
@@ -98,7 +98,7 @@ TEST_P(ExpiryOnBoard, IsAtMostOneTickLateIfTheWakeTimerFails) {
 /// Sends commands that end at any time around the expiry: a command that only drives outputs, a command that
 /// drives the value that it stores, and a command that drives outputs while the command before it is being
 /// stored.
-TEST_P(HostWatchdogOnBoard, NoCommandDrivesOutputsAfterItHasExpired) {
+TEST_P(HostWatchdogOnBoard, NoCommandDrivesOutputsAfterTheExpiry) {
   constexpr unsigned kVv = 5;
   constexpr std::uint16_t kCommanded = 0x3C96;
   const Instant step = all_cases_requested() ? microseconds(100) : microseconds(2300);
@@ -142,7 +142,7 @@ TEST_P(HostWatchdogOnBoard, NoCommandDrivesOutputsAfterItHasExpired) {
 }
 
 // firmware/extensions.md: register 0x0251.
-TEST_P(HostWatchdogOnBoard, WithAnyRequestFeedingItExpiresAfterTheLastRequestAndNotBefore) {
+TEST_P(HostWatchdogOnBoard, ExpiresOnlyAfterTheLastRequestIfEveryRequestFeedsIt) {
   constexpr unsigned kVv = 5;
   Settings settings = set_up(*find_model(image().model), protocol());
   settings.fed_by_requests = true;
@@ -169,7 +169,7 @@ TEST_P(HostWatchdogOnBoard, WithAnyRequestFeedingItExpiresAfterTheLastRequestAnd
 }
 
 // firmware/extensions.md: an expiry ends all timed outputs.
-TEST_P(HostWatchdogOnBoard, ATimedOutputThatRunsWhenItExpiresDoesNotChangeTheSafeValueLater) {
+TEST_P(HostWatchdogOnBoard, ATimedOutputDoesNotChangeTheOutputsAfterTheExpiry) {
   constexpr unsigned kVv = 5;
   WatchedModule module(image(), set_up(*find_model(image().model), protocol()));
   BoardBench& bench = module.bench;
@@ -191,7 +191,7 @@ TEST_P(HostWatchdogOnBoard, ATimedOutputThatRunsWhenItExpiresDoesNotChangeTheSaf
 
 /// wire.md D6. From the expiry on, the outputs have the old safe value. When the command is stored, they take
 /// the new safe value. They never take the value of a later command.
-TEST_P(HostWatchdogOnBoard, ASafeValueStoredDuringExpiryIsDrivenOnceItIsStored) {
+TEST_P(HostWatchdogOnBoard, ASafeValueThatIsBeingStoredAtTheExpiryIsDrivenWhenItIsStored) {
   constexpr unsigned kVv = 5;
   constexpr std::uint16_t kCommanded = 0x3C96;
   // `~AA5S` stores the driven value.
@@ -276,7 +276,7 @@ TEST_P(HostWatchdogOnBoard, ASafeValueStoredDuringExpiryIsDrivenOnceItIsStored) 
 /// The progress of a command that is being stored when the host watchdog expires.
 enum class Storing : std::uint8_t { Nothing, OnTheBus, Programming };
 
-TEST_P(HostWatchdogOnBoard, NoCommandedValueReturnsAfterAPowerCutFollowingExpiry) {
+TEST_P(HostWatchdogOnBoard, NoCommandedValueReturnsAfterTheExpiryAndAPowerCut) {
   constexpr unsigned kVv = 9;
   constexpr std::uint16_t kOtherPowerOnValue = 0x3CC3;
   const Instant step = all_cases_requested() ? microseconds(50) : microseconds(700);
@@ -286,7 +286,8 @@ TEST_P(HostWatchdogOnBoard, NoCommandedValueReturnsAfterAPowerCutFollowingExpiry
   unsigned unstored = 0;
   unsigned cuts = 0;
   unsigned done = 0;
-  // The test stores a name in ASCII and a power-on value in Modbus. These are the last values read.
+  // The test stores a name in ASCII and a power-on value in Modbus. These variables contain the last values
+  // that the test has read.
   Bytes name = module.ask("$01M", {1, 0x11});
   std::uint16_t power_on_value = kPowerOnValue;
   for (const Storing storing : {Storing::Nothing, Storing::OnTheBus, Storing::Programming}) {

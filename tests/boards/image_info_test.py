@@ -1,4 +1,4 @@
-"""Tests that each image says what it is, in every format that the build writes."""
+"""Tests that toolchain/image-info reads the description of an image from every file format of the build."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def firmware_version() -> str:
 
 
 class ImageInfo(unittest.TestCase):
-    def test_each_file_of_each_board_says_what_it_is(self) -> None:
+    def test_image_info_prints_version_board_model_and_commit_of_each_file(self) -> None:
         version = firmware_version()
         for preset in PRESETS:
             files = [ROOT / "build" / preset / f"{MODEL}.{kind}" for kind in FORMATS]

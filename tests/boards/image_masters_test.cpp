@@ -58,7 +58,7 @@ TEST_F(ImageAndMaster, MbpollReadsAndWritesRegisters) {
   EXPECT_NE(mbpoll({"-t", "4", "-r", "0x1E8"}).find("\t100\n"), std::string::npos);
 }
 
-TEST_F(ImageAndMaster, LibmodbusPollsItAThousandTimes) {
+TEST_F(ImageAndMaster, LibmodbusWritesAndReadsCoilsAThousandTimes) {
   constexpr int kPolls = 1000;
   constexpr int kCoils = 13;
   system::LibmodbusMaster master(bridge_.tty(), 9600);

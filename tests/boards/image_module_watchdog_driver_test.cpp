@@ -48,7 +48,8 @@ class FaultOnBoard : public WatchedImage {
                                                              : kPowerOnValue;
         EXPECT_EQ(bench.outputs(), after);
         for (const WatchedModule::Change& change : module.changes) {
-          // All outputs are off from the reset on; then they take their reset value, pin by pin.
+          // A reset switches all outputs off. Then the module sets them to their value after a reset, one pin
+          // after the other.
           EXPECT_EQ(change.at <= bench.began ? change.outputs & ~before : change.outputs & ~after, 0);
         }
         EXPECT_TRUE(module.was_reset());
@@ -88,7 +89,7 @@ TEST_P(FaultOnBoard, AHungInterruptHandlerCausesAReset) {
 TEST_P(FaultOnBoard, AStoppedTickCausesAReset) {
   expect_reset("the tick stops", [](BoardBench& bench) {
     bench.mcu->core.write(Core::kTickControl, 4);
-    bench.mcu->set_clocks_an_access(1000);  // the clock stands still, so the wake timer fires repeatedly
+    bench.mcu->set_clocks_an_access(1000);  // the module's clock stops, so the wake timer expires repeatedly
   });
 }
 

@@ -1,8 +1,8 @@
 // Tests power cuts. Each power-on starts a new emulator, which uses the EEPROM file of the previous one.
 //
-// The emulated EEPROM stores a page at once when STOP arrives. Therefore this test shows in which order the
-// image writes, reads back and replies, and that it starts afterwards. power_cuts_test checks the contents of
-// a page after a cut.
+// The emulated EEPROM stores a page immediately when STOP arrives. Therefore this test checks only in which
+// order the image writes, reads back and replies, and that it starts after a cut. power_cuts_test checks the
+// contents of a page after a cut.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -58,14 +58,14 @@ Settings settings_before(const Model& model, const StoringCommand& command) {
   return settings;
 }
 
-/// A module that is killed after a number of stores to the registers of its I2C master.
+/// A module whose emulator is killed after a number of stores to the registers of the I2C master.
 class CutModule {
  public:
   CutModule(const Model& model, const StoringCommand& command)
       : command_(command), before_(settings_before(model, command)), module_(model) {}
 
   /// Starts the module, sends the command, and makes the power fail after `stores` stores to the registers of
-  /// its I2C master. Returns false if the command was complete before.
+  /// its I2C master. Returns false if the command caused fewer stores.
   bool cut_behind(unsigned stores) {
     constexpr std::uint32_t kI2c = 0x4002'0000;
     constexpr std::uint32_t kRegisters = 0x24;

@@ -107,8 +107,9 @@ class FaultyImage : public testing::TestWithParam<Protocol>, protected EitherPro
  public:
   // --- faults ---
 
-  /// `make_interrupt_run` makes code the handler of an interrupt. In the code, kEntry stands for the address
-  /// of the interrupt's entry in the vector table, and kOwn for the image's own handler.
+  /// `make_interrupt_run` makes code the handler of an interrupt. In the code, it replaces kEntry with the
+  /// address of the interrupt's entry in the vector table, and kOwn with the address of the image's own
+  /// handler.
   static constexpr std::uint32_t kEntry = 0xE1E1'E1E1;
   static constexpr std::uint32_t kOwn = 0xE2E2'E2E2;
   void make_interrupt_run(std::uint32_t vector, const std::vector<std::uint32_t>& code) {
@@ -226,7 +227,7 @@ TEST_P(FaultyImage, IsResetDuringAnInterruptStorm) {
   expect_resets("an interrupt storms", &FaultyImage::storm);
 }
 
-TEST_P(FaultyImage, RunsWithABlockedEepromBusAndStoresOnceItIsFree) {
+TEST_P(FaultyImage, RunsWithABlockedEepromBusAndStoresWhenItIsFree) {
   for (const Doing doing : kEverything) {
     SCOPED_TRACE(static_cast<int>(doing));
     begin(false);
@@ -301,7 +302,7 @@ TEST_F(HungImage, ResetsItselfOnAnUnexpectedInterrupt) {
 
 /// At the highest baud rate, the bytes follow each other without a gap for more than three periods of the
 /// watchdog.
-TEST_F(HungImage, AnswersAfterAFloodOfBytes) {
+TEST_F(HungImage, RepliesAfter65536BytesWithoutAGap) {
   constexpr std::uint8_t kFastest = 0x0A;  // 115200 baud
   settings_.baud_code = kFastest;
   module_.begin_anew(&settings_);

@@ -11,7 +11,7 @@
 
 namespace ex9000::registers {
 
-/// Loads the image. `board`: the name of its folder.
+/// Loads an image. `board` is the name of the board's folder.
 inline const Image& image_of(const std::string& board, const std::string& model) {
   return load_image(std::string(EX9000_IMAGES) + "/image_" + board + "_" + model + ".so");
 }
@@ -21,7 +21,7 @@ struct ImageName {
   const char* model;
 };
 
-/// For INSTANTIATE_TEST_SUITE_P.
+/// Returns the name of a parameter, for INSTANTIATE_TEST_SUITE_P.
 inline std::string name_of(const testing::TestParamInfo<ImageName>& info) {
   std::string name = std::string(info.param.board) + "_" + info.param.model;
   std::replace_if(

@@ -113,7 +113,7 @@ TEST_P(ImageInFormat, IgnoresFramesWithAnotherParityAndCountsTheirBytes) {
   }
 }
 
-TEST_P(ImageInFormat, UsesNineThousandSixHundredBaud8N1InInitMode) {
+TEST_P(ImageInFormat, Uses9600Baud8N1InInitMode) {
   bench.power_off();
   bench.set_init(true);
   bench.power_on();

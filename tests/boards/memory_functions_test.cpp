@@ -1,5 +1,6 @@
-// Tests the shipped functions of an image that the compiler calls. They must change every byte of the
-// requested range and no other byte (C17, 7.24.2.1, 7.24.4.1, 7.24.6.1).
+// Tests memcpy, memset and memcmp of an image. The compiler generates calls of these functions. memcpy and
+// memset must change every byte of the requested range and no other byte. memcmp must compare only the
+// requested bytes (C17, 7.24.2.1, 7.24.4.1, 7.24.6.1).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -22,7 +23,7 @@ constexpr std::size_t kSpace = 48;
 constexpr std::size_t kMost = 40;
 using Memory = std::array<std::uint8_t, kSpace>;
 
-/// Returns bytes that all differ, so that a misplaced byte is noticed.
+/// Returns bytes that all differ, so that a test detects a misplaced byte.
 Memory some_bytes(unsigned seed) {
   Memory bytes{};
   for (std::size_t i = 0; i < bytes.size(); ++i) {

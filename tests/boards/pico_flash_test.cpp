@@ -72,7 +72,7 @@ TEST_F(PicoFlash, BytesWithoutAPauseAndFlashOperationsWithoutAPauseDoNotDisturbE
   EXPECT_EQ(bench_.counts().at("timeouts"), 0);
 }
 
-TEST_F(PicoFlash, TheLongestEraseAndTheLongestProgramDoNotDisturbIt) {
+TEST_F(PicoFlash, TheDriverWorksWithTheLongestEraseAndProgramTimes) {
   bench_.execute("flash-times 400000000 3000000");
   bench_.power(true);
   bench_.run_for(milliseconds(2000));
@@ -81,7 +81,7 @@ TEST_F(PicoFlash, TheLongestEraseAndTheLongestProgramDoNotDisturbIt) {
   EXPECT_EQ(bench_.counts().at("timeouts"), 0);
 }
 
-TEST_F(PicoFlash, TheReasonOfAResetIsKnown) {
+TEST_F(PicoFlash, TheProgramFindsTheReasonOfEachReset) {
   constexpr std::string_view kBranchToItself = " 59390";
   constexpr std::string_view kUndefined = " 56832";
   bench_.power(true);

@@ -1,6 +1,6 @@
-// Tests the images for the Pico in the emulator: the driver of the line, resets by the watchdog, faults, and
-// a blocked EEPROM. To make an image hang, a test changes its code in RAM. After the reset, the second stage
-// copies the image from the flash again.
+// Tests the images for the Pico in the emulator: the driver enable, resets by the watchdog, faults, and a
+// blocked EEPROM bus. To make an image hang, a test changes its code in RAM. After the reset, the second
+// stage copies the image from the flash again.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -75,8 +75,8 @@ class PicoImage : public testing::Test {
   void replace_handler(unsigned exception, unsigned instruction) {
     put(number("read " + std::to_string(kVectors + 4U * exception)) & ~1U, instruction);
   }
-  /// Replaces the instruction at which the main loop continues. Call this while the processor sleeps, which
-  /// it does most of the time.
+  /// Replaces the instruction at which the main loop continues. The processor must be asleep when a test
+  /// calls this function. It sleeps most of the time.
   void replace_main_loop(unsigned instruction) { put(number("pc"), instruction); }
 
   PicoBench bench_;
@@ -94,7 +94,7 @@ TEST_F(PicoImage, NoOutputIsEnergisedBeforeTheSettingsAreRead) {
   EXPECT_EQ(driven, (std::set<std::uint16_t>{0, kPowerOnValue}));
 }
 
-TEST_F(PicoImage, OnlyTheFirstCoreRunsAndNoInterruptInterruptsAnother) {
+TEST_F(PicoImage, OnlyTheFirstCoreRunsAndInterruptsDoNotNest) {
   begin();
   EXPECT_EQ(ask("$01M"), "!019043M\r");
   const auto counts = bench_.counts();
@@ -123,7 +123,7 @@ TEST_F(PicoImage, TheDriverIsOnForAllBitsOfAReplyAndGoesOffWithinACharacter) {
   }
 }
 
-TEST_F(PicoImage, AModuleWithAStoredFormatRepliesInItAndIgnoresAMasterWithAnotherParity) {
+TEST_F(PicoImage, AModuleRepliesInItsStoredFormatAndIgnoresAMasterWithAnotherParity) {
   const Model& model = *find_model("EX9043D-M");
   const std::map<LineFormat, long> line_control{
       {LineFormat::k8N2, 0x68}, {LineFormat::k8E1, 0x66}, {LineFormat::k8O1, 0x62}};
@@ -152,7 +152,7 @@ TEST_F(PicoImage, AModuleWithAStoredFormatRepliesInItAndIgnoresAMasterWithAnothe
   }
 }
 
-TEST_F(PicoImage, RequestsBackToBackAt115200AreAllAnswered) {
+TEST_F(PicoImage, TheModuleRepliesToEveryRequestWithoutPausesAt115200Baud) {
   begin("EX9043D-M", 115200);
   for (int i = 0; i < 500; ++i) {
     bench_.send(text("$01M\r"));
@@ -182,7 +182,7 @@ TEST_F(PicoImage, AReplyBeginsOneCharacterAfterTheRequest) {
   }
 }
 
-/// The wake timer wakes the main loop, which polls the memory. The tick comes only every 10 ms.
+/// The wake timer wakes the main loop, which polls the memory. The tick occurs only every 10 ms.
 TEST_F(PicoImage, AReplyToAStoreBeginsWithoutWaitingForTheTick) {
   begin("EX9043D-M", 115200);
   const nanoseconds bit(1'000'000'000 / 115200);
@@ -207,7 +207,7 @@ TEST_F(PicoImage, AModbusReplyBeginsAfterTheSilenceOfThreeAndAHalfCharacters) {
   EXPECT_LE(waited, bit * 77 / 2 + kTolerance);
 }
 
-TEST_F(PicoImage, NoPulseOfEightInputsIsLostBetweenRequestsBackToBack) {
+TEST_F(PicoImage, TheModuleCountsEveryPulseOfEightInputsDuringContinuousRequests) {
   begin("EX9052D", 115200);
   constexpr unsigned kPulses = 1500;
   for (unsigned channel = 0; channel < 8; ++channel) {
@@ -261,8 +261,8 @@ class HangingPicoImage : public PicoImage, public testing::WithParamInterface<Do
     }
   }
 
-  /// Checks that the chip is reset once within this time, for this reason, and that the module then works.
-  /// `count`: the counter of the emulator for such resets.
+  /// Checks that the chip is reset once within the time `within` and for the reason `reason`, and that the
+  /// module then works. `count` is the name of the emulator's counter for such resets.
   void expect_reset(const char* count, long reason, nanoseconds within) {
     bench_.run_for(within);
     EXPECT_EQ(bench_.counts().at(count), 1);
@@ -300,14 +300,14 @@ TEST_P(HangingPicoImage, IsResetByTheWatchdogIfAnInterruptHangs) {
   }
 }
 
-TEST_P(HangingPicoImage, IsResetByTheWatchdogIfTheTickDoesNothing) {
+TEST_P(HangingPicoImage, IsResetByTheWatchdogIfTheTickHandlerReturnsImmediately) {
   begin();
   make_it_busy();
   replace_handler(kSystemTick, kReturn);
   expect_reset("timeouts", kTimeout, kWatchdogPeriod);
 }
 
-TEST_P(HangingPicoImage, IsResetAtOnceIfItFaults) {
+TEST_P(HangingPicoImage, IsResetImmediatelyIfItFaults) {
   begin();
   make_it_busy();
   replace_handler(kSystemTick, kUndefined);
@@ -329,7 +329,7 @@ INSTANTIATE_TEST_SUITE_P(While, HangingPicoImage,
                          [](const auto& each) { return name_of(each.param); });
 
 /// firmware/extensions.md, register 0x0301.
-TEST_F(PicoImage, TheReasonOfEachResetIsKnown) {
+TEST_F(PicoImage, TheModuleReportsTheReasonOfEachReset) {
   const std::string ask_reason = "~01X0301";
   begin();
   EXPECT_EQ(ask(ask_reason), "!010001\r");
@@ -350,8 +350,9 @@ TEST_F(PicoImage, TheReasonOfEachResetIsKnown) {
   }
 }
 
-/// The boot ROM resets the chip with the watchdog, although no watchdog has expired.
-TEST_F(PicoImage, TheResetAfterACopyToTheDriveIsOneBySoftware) {
+/// After a copy to the drive, the boot ROM uses the watchdog to reset the chip, although the watchdog has not
+/// expired.
+TEST_F(PicoImage, TheModuleReportsASoftwareResetAfterACopyToTheDrive) {
   begin();
   bench_.power(false);
   bench_.execute("power-after-copy");
@@ -362,7 +363,7 @@ TEST_F(PicoImage, TheResetAfterACopyToTheDriveIsOneBySoftware) {
   EXPECT_EQ(ask("~01X0301"), "!010002\r");
 }
 
-TEST_F(PicoImage, ALineThatIsNeverSilentDoesNotResetTheModule) {
+TEST_F(PicoImage, BytesWithoutPausesDoNotResetTheModule) {
   begin("EX9043D-M", 115200);
   const nanoseconds end = bench_.now() + 2 * kWatchdogPeriod;
   while (bench_.now() < end) {
@@ -411,7 +412,7 @@ TEST_F(PicoWithEeprom, AnEepromThatBlocksTheBusDoesNotStopTheModule) {
   EXPECT_EQ(bench_.counts().at("timeouts"), 0);
 }
 
-TEST_F(PicoWithEeprom, ABusThatTheEepromHoldsIsFreedAtTheStart) {
+TEST_F(PicoWithEeprom, AModuleThatStartsFreesABusThatTheEepromHolds) {
   const unsigned data = board::kI2cPins.first_pin;
   begin();
   bench_.power(false);
@@ -439,8 +440,9 @@ TEST_F(PicoWithEeprom, AModuleWithoutAnEepromWorksWithFactorySettings) {
   EXPECT_EQ(bench_.counts().at("timeouts"), 0);
 }
 
-// The LED of a Pico W is behind the radio chip, so the image for a Pico W drives an LED of the module.
-TEST_F(PicoImage, TheStatusLedOfAPicoWIsAPinThatItsRadioDoesNotUse) {
+// The LED on a Pico W is connected to the radio chip, so the image for a Pico W drives an LED of the module
+// instead.
+TEST_F(PicoImage, TheStatusLedOfAPicoWUsesAPinThatTheRadioDoesNotUse) {
   constexpr std::uint32_t kLedOfPicoW = 1U << 22;
   constexpr std::uint32_t kRadio = 1U << 23 | 1U << 24 | 1U << 25 | 1U << 29;
   bench_.begin_with(EX9000_BUILD_FOLDER "/pico-w/EX9055D.bin");

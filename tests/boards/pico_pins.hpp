@@ -1,4 +1,4 @@
-// The names of the pins of a Pico, as the wiring tables have them.
+// The names of the pins of a Pico, as in the wiring tables.
 #pragma once
 
 #include <array>
@@ -26,8 +26,9 @@ std::vector<std::string> names_of(const Groups& groups) {
 
 /// Returns the pins of the UART and of the EEPROM (RP2040 data sheet, 1.4.3: UART0 and I2C0).
 inline std::map<std::string, std::string> names_of_peripherals() {
-  static_assert(kUartPins.first_pin % 16 == 0 || kUartPins.first_pin % 16 == 12, "pins of UART0 TX and RX");
-  static_assert(kI2cPins.first_pin % 4 == 0, "pins of I2C0 SDA and SCL");
+  static_assert(kUartPins.first_pin % 16 == 0 || kUartPins.first_pin % 16 == 12,
+                "the UART pins must be TX and RX of UART0");
+  static_assert(kI2cPins.first_pin % 4 == 0, "the I2C pins must be SDA and SCL of I2C0");
   return {{"transmit", name_of(kUartPins.first_pin)},
           {"receive", name_of(kUartPins.first_pin + 1U)},
           {"EEPROM data", name_of(kI2cPins.first_pin)},
@@ -37,7 +38,8 @@ inline std::map<std::string, std::string> names_of_peripherals() {
 /// The power supply of the Pico uses these pins (Raspberry Pi Pico data sheet, 2.1).
 inline const std::array<std::string, 3> kReservedPins{"GP23", "GP24", "GP29"};
 
-/// The positions of a Pico, from 1 on (Raspberry Pi Pico data sheet, 2.1). Empty: not a GPIO.
+/// The GPIO at each position of a Pico, from position 1 on (Raspberry Pi Pico data sheet, 2.1). An empty text
+/// marks a position without a GPIO.
 inline const std::array<std::string, 40> kPositions{
     "GP0",  "GP1",  "", "GP2",  "GP3",  "GP4",  "GP5",  "", "GP6",  "GP7",
     "GP8",  "GP9",  "", "GP10", "GP11", "GP12", "GP13", "", "GP14", "GP15",

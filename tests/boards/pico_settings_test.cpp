@@ -38,7 +38,7 @@ constexpr microseconds kSilence{1750};
 constexpr std::uint8_t kAddress = 1;
 constexpr unsigned kInputs = 8;
 
-/// A request to write the timeout of the host watchdog, which is stored, and its reply.
+/// Returns the request that stores a timeout of the host watchdog. The reply has the same bytes.
 Bytes store_of(std::uint8_t timeout) { return with_crc({kAddress, 6, 0x01, 0xE8, 0, timeout}); }
 
 class PicoSettings : public testing::Test {
@@ -109,7 +109,7 @@ std::vector<unsigned> counters_in(const Bytes& reply) {
   return counters;
 }
 
-TEST_F(PicoSettings, NothingIsLostWhileSettingsAreStoredContinuously) {
+TEST_F(PicoSettings, ContinuousStoresLoseNoRequestAndNoPulse) {
   begin();
   constexpr unsigned kRequests = 10'000;
   constexpr unsigned kPulses = 32'000;
@@ -151,7 +151,7 @@ TEST_F(PicoSettings, NothingIsLostWhileSettingsAreStoredContinuously) {
   }
 }
 
-TEST_F(PicoSettings, StoresHalfASecondApartReplyInTimeWithTheSlowestFlash) {
+TEST_F(PicoSettings, TheModuleRepliesInTimeToStoresHalfASecondApartWithTheSlowestFlash) {
   prepare();
   bench_.forget_erased_sectors();
   bench_.execute("flash-times 400000000 3000000");
@@ -159,7 +159,7 @@ TEST_F(PicoSettings, StoresHalfASecondApartReplyInTimeWithTheSlowestFlash) {
   constexpr int kStores = 170;  // more than two sectors hold
   nanoseconds longest{};
   for (int i = 0; i < kStores; ++i) {
-    // The offset lets the stores meet every part of an erase.
+    // Because of the offset, the stores begin at different times during an erase.
     bench_.run_for(milliseconds(500 + i % 7 * 9) - kSilence);
     ASSERT_NO_FATAL_FAILURE(expect_store(static_cast<std::uint8_t>(1 + i))) << i;
     longest = std::max(longest, waited_);
@@ -169,7 +169,7 @@ TEST_F(PicoSettings, StoresHalfASecondApartReplyInTimeWithTheSlowestFlash) {
   EXPECT_GE(erases(), 13 + kStores / 79);  // those of the first start, and one for each full sector
 }
 
-TEST_F(PicoSettings, AnErasedFlashIsReadyForTheFirstCommand) {
+TEST_F(PicoSettings, AModuleWithAnErasedFlashStoresTheFirstCommandInTime) {
   bench_.begin_with(image_of(model_, Memory::Flash));
   start();
   const Bytes request = store_of(7);
@@ -232,7 +232,7 @@ TEST_F(PicoSettings, PowerFailuresAtAnyTimeLoseNoValueThatWasStored) {
   EXPECT_GT(erases(), 14);
 }
 
-TEST_F(PicoSettings, AResetDuringAnEraseWaitsForItsEnd) {
+TEST_F(PicoSettings, AModuleThatIsResetDuringAnEraseStartsAfterTheErase) {
   constexpr const char* kUndefined = " 56832";
   constexpr milliseconds kErase{400};
   prepare();
@@ -255,7 +255,8 @@ INSTANTIATE_TEST_SUITE_P(, PicoAfterAnUpdate, testing::Values(Memory::Flash, Mem
                            return memory.param == Memory::Flash ? "Flash" : "Eeprom";
                          });
 
-// The emulator is slow, so one model plays for all. The other tests of updates do not depend on the board.
+// The emulator is slow, so this test uses only one model. The other tests of updates do not depend on the
+// board.
 TEST_P(PicoAfterAnUpdate, HasAllSettingsThatEarlierFirmwareHasStored) {
   unsigned updates = 0;
   for (const StoredBytes& stored : all_stored_bytes()) {

@@ -88,7 +88,8 @@ TEST_P(StartUp, IsResetByTheWatchdogIfThePllNeverLocks) {
   bench.power_on();
   bench.mcu->system_control.set_lock_time(kNever);
   bench.mcu->set_clocks_an_access(1000);
-  // The countdown is set for 50 MHz; with the crystal divided by four it takes longer in proportion.
+  // The countdown has a value for 50 MHz. The clock is still the crystal's frequency divided by four, so the
+  // countdown takes proportionally longer.
   bench.run_for(std::chrono::seconds(40));
   EXPECT_EQ(bench.watchdog_resets, 1U);
   bench.run_for(kComesUpWithin);
@@ -100,7 +101,7 @@ TEST_P(StartUp, EnablesTheClocksOfTheUsedPeripheralsOnly) {
   const auto gates = [this](unsigned index) { return bench.mcu->system_control.read(0x100 + 4 * index); };
   EXPECT_EQ(gates(0), 1U << 3U);
   EXPECT_EQ(gates(1), (image.tm4c ? 1U << 1U : 1U << 0U) | 1U << 12U | 1U << 16U | 1U << 17U | 1U << 18U);
-  // Ports A, B, C, D, E and F on the TM4C123; all except E on the LM3S6965.
+  // Ports A to F on the TM4C123; ports A to D, F and G on the LM3S6965.
   EXPECT_EQ(gates(2), image.tm4c ? 0x3FU : 0x6FU);
 }
 
@@ -258,7 +259,7 @@ TEST_P(StartUp, EnablesOnlyTheServedInterruptsAndDoesNotNestThem) {
                                 (inputs ? 1U << 1U | 1U << other_port : 0));
   for (unsigned interrupt = 0; interrupt < 24; ++interrupt) {
     // The UART is served after all other pending interrupts, so that a silence is reported before the byte
-    // after it.
+    // that follows the silence.
     EXPECT_EQ(core.priority(interrupt), interrupt == uart_interrupt ? 0xE0U : 0U) << interrupt;
     EXPECT_EQ(core.group(core.priority(interrupt)), 0U) << interrupt;
   }

@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t kCopied = 3;
 constexpr std::size_t kCleared = 16;
-/// A word before, between and after the marked sections.
+/// The words of both marked sections, and one word before, between and after them.
 constexpr std::size_t kWords = 1 + kCopied + 1 + kCleared + 1;
 
 }  // namespace

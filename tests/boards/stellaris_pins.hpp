@@ -1,4 +1,4 @@
-// The names of the pins of the Stellaris family, as the wiring tables have them.
+// The names of the pins of the Stellaris family, as in the wiring tables.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@
 
 namespace ex9000::board {
 
-/// Returns for example "PA2".
+/// Returns the name of a pin, for example "PA2".
 inline std::string name_of(Pin pin) {
   return {'P', static_cast<char>('A' + static_cast<int>(pin.port)), static_cast<char>('0' + pin.number)};
 }

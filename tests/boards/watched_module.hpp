@@ -29,7 +29,7 @@ inline constexpr std::uint8_t kTimeout = 0x64;
 /// Returns two hex digits.
 inline std::string hex(unsigned value) { return reference::hex(value, 2); }
 
-/// Returns settings in which all output values differ from each other and from kDriven.
+/// Returns settings with an enabled host watchdog. All output values differ from each other and from kDriven.
 inline Settings set_up(const Model& model, Protocol protocol) {
   Settings settings = Settings::factory(model);
   settings.protocol = protocol;
@@ -104,7 +104,7 @@ class WatchedModule : public EitherProtocol {
     }
     return bench.line.sent() + over_behind_its_last_bit();
   }
-  /// Waits, so that a host OK that the test sends directly after this call ends `phase` after a tick.
+  /// Waits until a host OK that the test sends immediately would end `phase` after a tick.
   void wait_until_a_host_ok_is_over_behind_a_tick(Instant phase) {
     constexpr unsigned kAscii = 4;
     constexpr unsigned kModbus = 8;
@@ -127,7 +127,8 @@ class WatchedModule : public EitherProtocol {
   }
 };
 
-/// Runs until `condition` is true, checked every `step`. Returns false if it is not true within a second.
+/// Runs until `condition` is true, and checks it after every `step`. Returns false if the condition is not
+/// true within a second.
 template <class Condition>
 bool runs_until(BoardBench& bench, Condition condition, Instant step) {
   const Instant gives_up = bench.timeline.now() + std::chrono::seconds(1);
@@ -156,8 +157,8 @@ inline const char* name_of(Doing doing) {
   return "";
 }
 
-/// Brings the module into this activity. To store something, it sets the name, or in Modbus the timeout of
-/// the host watchdog.
+/// Starts this activity of the module. For a store, sends a command that sets the name, or in Modbus the
+/// timeout of the host watchdog.
 inline void make_it(WatchedModule& module, Doing doing) {
   BoardBench& bench = module.bench;
   const WatchedModule::Bytes harmless = module.framed("$01M", {1, 0x11});
@@ -202,7 +203,7 @@ class WatchedImage : public testing::TestWithParam<std::tuple<ImageName, Protoco
 
 inline const auto kBothProtocols = testing::Values(Protocol::Ascii, Protocol::ModbusRtu);
 
-/// For INSTANTIATE_TEST_SUITE_P.
+/// Returns the name of a parameter, for INSTANTIATE_TEST_SUITE_P.
 inline std::string name_of_watched_image(const testing::TestParamInfo<WatchedImage::ParamType>& info) {
   return name_of(testing::TestParamInfo<ImageName>(std::get<0>(info.param), info.index)) +
          (std::get<1>(info.param) == Protocol::Ascii ? "_ASCII" : "_Modbus");

@@ -168,7 +168,7 @@ TEST(Wiring, NoPinHasTwoFunctions) {
   }
 }
 
-TEST(Wiring, NoPinIsUsedThatTheBoardRequiresItself) {
+TEST(Wiring, NoTableListsAPinThatTheBoardUsesItself) {
   for (const Table& table : {table_of("pin"), table_of("signal")}) {
     for (const Row& row : table) {
       for (const std::string& pin : kReservedPins) {

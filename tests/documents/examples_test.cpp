@@ -1,8 +1,8 @@
 // Runs the examples of the documents. In each section, a `sh` block that starts the simulator runs in one
 // terminal. All other `sh` and `python` blocks run in a second terminal, and the `text` block is their
 // expected output. A `json` block is the content of the file `bus.json`. The working directory contains only
-// links to `boards` and `build`, because the images are there. For the block `sim/run`, the test runs the
-// command with which sim/run ends; tests/first-command runs sim/run itself, which builds the simulator.
+// links to `boards` and `build`, because the images are there. For the block `sim/run`, the test runs only
+// the last command of sim/run, because tests/first-command runs sim/run itself, which builds the simulator.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -89,8 +89,8 @@ void replace_port(std::string& text, const std::string& port) {
   }
 }
 
-/// Increases the timeouts of the documents, because a busy machine can take longer: 0.3 s and 3 s for which
-/// socat waits after each request, and 1 s for which mbpoll waits for a reply.
+/// Increases the timeouts of the documents, because a busy machine can take longer: the time for which socat
+/// waits after each request, and the time for which mbpoll waits for a reply.
 void extend_timeouts(std::string& text) {
   text = std::regex_replace(text, std::regex("socat -t [0-9.]+ "), "socat -t 10 ");
   text = std::regex_replace(text, std::regex("mbpoll -"), "mbpoll -o 10 -");

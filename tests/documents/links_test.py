@@ -68,7 +68,7 @@ class Documents(unittest.TestCase):
     def test_the_readme_is_one_page(self) -> None:
         self.assertLessEqual(len((ROOT / "README.md").read_text(encoding="utf-8").splitlines()), 250)
 
-    def test_each_is_reached_from_the_readme(self) -> None:
+    def test_links_lead_from_the_readme_to_each_document(self) -> None:
         reached = {ROOT / "README.md"}
         waiting = [ROOT / "README.md"]
         while waiting:

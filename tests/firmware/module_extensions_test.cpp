@@ -70,7 +70,7 @@ TEST(TimedOutput, EndsWithTheExpiryOfTheHostWatchdogAndIsNotSwitchedOffLater) {
   EXPECT_EQ(outputs_of(bench), 0x0001);
 }
 
-TEST(TimedOutput, IsOffAfterAResetAndItsTimeIsGone) {
+TEST(TimedOutput, IsOffAfterAResetAndHasNoTimeLeft) {
   ModuleBench bench("EX9043D,baud=115200");
   ASSERT_EQ(bench.ask("~01X0280FFFF"), "!01");
   ASSERT_EQ(outputs_of(bench), 0x0001);
@@ -102,7 +102,7 @@ TEST(InputFilter, ALevelCountsAfterItsTimeNeverEarlyAndAtMostATickLate) {
   }
 }
 
-TEST(InputFilter, TheLevelAtResetIsTheBaselineAtOnce) {
+TEST(InputFilter, TheLevelAtResetIsTheBaselineWithoutFilterTime) {
   ModuleBench bench("EX9052D,baud=115200");
   ASSERT_EQ(bench.ask("~01X024307D0"), "!01");
   ASSERT_EQ(bench.ask("~01X025000F0"), "!01");
@@ -132,7 +132,7 @@ TEST(FedByRequests, ARequestRestartsTheHostWatchdogAtItsEnd) {
 }
 
 // The request ends in the same millisecond in which the watchdog would expire.
-TEST(FedByRequests, ARequestJustBeforeTheExpiryFeedsAndJustAfterItDoesNot) {
+TEST(FedByRequests, OnlyARequestBeforeTheExpiryRestartsTheHostWatchdog) {
   const std::string request = "$01M\r";
   const VirtualTime takes = VirtualTime(10'000'000'000 / 115200) * static_cast<int>(request.size());
   for (const int offset : {-900, -100, -10, 10, 100, 900}) {  // in us
@@ -149,7 +149,7 @@ TEST(FedByRequests, ARequestJustBeforeTheExpiryFeedsAndJustAfterItDoesNot) {
 }
 
 // The frame ends T3.5 after its last byte, 1.75 ms at 115200 baud.
-TEST(FedByRequests, AModbusRequestFeedsAtTheEndOfItsSilence) {
+TEST(FedByRequests, AModbusRequestRestartsTheHostWatchdogAtTheEndOfItsSilence) {
   const std::vector<std::uint8_t> request = with_crc({0x01, 0x01, 0, 0, 0, 1});
   const VirtualTime takes = VirtualTime(10'000'000'000 / 115200) * static_cast<int>(request.size());
   for (const int offset : {-900, -100, -10, 10, 100, 900}) {  // in us
@@ -168,7 +168,7 @@ TEST(FedByRequests, AModbusRequestFeedsAtTheEndOfItsSilence) {
 
 // --- reset reason and statistics ---
 
-TEST(ResetReasons, TellPowerOnResetPinAndModuleWatchdog) {
+TEST(ResetReasons, DistinguishPowerOnResetPinAndModuleWatchdog) {
   ModuleBench bench("EX9043D,baud=115200");
   EXPECT_EQ(bench.ask("~01X0301"), "!010001");
   bench.module().reset();
@@ -221,7 +221,7 @@ std::string settings_source(const std::string& model, const std::vector<std::uin
   return bench.ask("~" + hex_byte_text(bench.module().module().state().in_force.address) + "X0306").substr(3);
 }
 
-TEST(SettingsSourceRegister, ReadsWhatTheSettingsWereReadFrom) {
+TEST(SettingsSourceRegister, ReturnsTheSourceOfTheSettings) {
   const Model& model = *find_model("EX9043D");
   EXPECT_EQ(settings_source("EX9043D", std::vector<std::uint8_t>(0x180, 0xFF)), "0004");
   Settings settings = Settings::factory(model);
@@ -293,7 +293,7 @@ std::vector<std::uint8_t> read_word(std::uint8_t high, std::uint8_t low) {
   return {0x01, 0x03, high, low, 0, 1};
 }
 
-TEST(LineTallyRegisters, CountRequestsThatAreLostWhileAStoreIsUnderWayUntilTheyAreCleared) {
+TEST(LineTallyRegisters, CountRequestsLostDuringAStoreUntilTheRegistersAreCleared) {
   ModuleBench bench("EX9043D-M,baud=115200");
   bench.recorder().clear();
   bench.send(with_crc({0x01, 0x06, 0x01, 0xE8, 0, 50}));
@@ -310,7 +310,7 @@ TEST(LineTallyRegisters, CountRequestsThatAreLostWhileAStoreIsUnderWayUntilTheyA
   EXPECT_EQ(bench.ask(read_word(0x03, 0x0F)), (std::vector<std::uint8_t>{0x01, 0x03, 2, 0, 0}));
 }
 
-TEST(LineTallyRegisters, CountDamagedBytesWith16BitsThatWrap) {
+TEST(LineTallyRegisters, CountDamagedBytesModulo65536) {
   ModuleBench bench("EX9043D-M,baud=115200");
   for (unsigned i = 0; i < 0x10004; ++i) {
     bench.module().receive(0x55, i % 2 == 0 ? ByteStatus::FramingError : ByteStatus::ParityError);

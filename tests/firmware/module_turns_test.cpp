@@ -1,5 +1,5 @@
-// Tests a module whose main loop turns without polling the panel, as on a board between two ticks, and the
-// time for which the module allows the main loop to sleep.
+// Tests a module whose main loop runs without polling the panel, as on a board between two ticks. Also tests
+// how long the module allows the main loop to sleep.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -176,8 +176,8 @@ TEST_F(ModuleTurns, ACommandBehindATimeoutThatCannotBeStoredWaitsForOneAttemptOn
     module_.step(now_);
   }
   EXPECT_EQ(take_reply(), "?01\r");
-  // One attempt to store the timeout, three to store the command, and after each a write that invalidates the
-  // copy.
+  // The memory gets one attempt to store the timeout and three attempts to store the command. After each of
+  // these two failed stores, one more write tries to invalidate the copy.
   EXPECT_EQ(writes_, 1U + 1U + 3U + 1U);
 }
 
@@ -227,8 +227,8 @@ TEST_F(ModuleTurns, AHostOkBeforeTheExpiryCountsEvenIfAnotherOneFollowsBeforeThe
   EXPECT_TRUE(module_.state().settings.timeout_status);
 }
 
-// The receiver processes `~**` itself instead of queueing it, so that it is never lost. A direct call of
-// `answer` must have the same effect.
+// The receiver processes `~**` itself and does not queue it, so that a full queue cannot lose it. A direct
+// call of `answer` must have the same effect.
 TEST(HostOkCommand, RestartsTheHostWatchdogAndIsNotAnswered) {
   const std::string command = "~**";
   const State state(*find_model("EX9043D"));

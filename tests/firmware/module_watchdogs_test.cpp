@@ -113,7 +113,7 @@ TEST(HostWatchdog, EnablingStartsItWhenItIsStored) {
   EXPECT_LE(changes[0].at, reply_start + milliseconds(100));
 }
 
-TEST(HostWatchdog, ExpiryDrivesTheSafeValueAtOnceEvenWhileACommandIsBeingStored) {
+TEST(HostWatchdog, ExpiryDrivesTheSafeValueImmediatelyEvenWhileACommandIsBeingStored) {
   ModuleBench bench("EX9043D-M,baud=115200");
   bench.ask(Bytes{1, 0x06, 0x01, 0xE8, 0x00, 0x05});
   bench.ask(Bytes{1, 0x0F, 0x00, 0x00, 0x00, 0x10, 0x02, 0x0F, 0x00});
@@ -122,8 +122,8 @@ TEST(HostWatchdog, ExpiryDrivesTheSafeValueAtOnceEvenWhileACommandIsBeingStored)
   const VirtualTime restarted = bench.now() + microseconds(1750);  // the silence that ends the frame
   std::vector<OutputChange> changes;
   bench.watch_outputs(changes);
-  // Storing the power-on value takes about 10 ms and would then drive all outputs; the timeout occurs
-  // meanwhile.
+  // The command stores a power-on value, which takes about 10 ms, and would then drive all outputs. The
+  // timeout occurs during the store.
   bench.run(milliseconds(493));
   bench.forget_heard();
   bench.send(with_crc({1, 0x0F, 0x00, 0xA0, 0x00, 0x10, 0x02, 0xFF, 0xFF}));

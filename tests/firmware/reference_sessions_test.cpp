@@ -1,5 +1,5 @@
 // Plays random sessions on the firmware and on the reference.
-//   EX9000_TRANSACTIONS  number of requests; default 200000, or 50000 without extensions; the long form is
+//   EX9000_TRANSACTIONS  number of requests; default 200000, or 50000 without extensions; a long run has
 //                        10000000
 //   EX9000_SEED          seed of the first session, default 9042; each further session has the next number
 #include <gtest/gtest.h>

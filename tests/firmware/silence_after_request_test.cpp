@@ -1,6 +1,6 @@
 // Tests that the module processes a request when the silence after it is over, and that events during that
-// silence still count: wire.md sections 3, 7 and 8. In this file, silence means T3.5 in Modbus and the
-// turn-around in ASCII.
+// silence still affect the request: wire.md sections 3, 7 and 8. In this file, silence means T3.5 in Modbus
+// and the turn-around in ASCII.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -124,7 +124,7 @@ TEST(SilenceAfterRequest, AFrameWithAnExtraByteAfterItsCrcIsNotExecuted) {
   EXPECT_EQ(bench.heard_text(), "");
   EXPECT_EQ(bench.module().outputs(), 0U);
   EXPECT_EQ(bench.ask(kReadOutputs), (Bytes{0x01, 0x01, 0x01, 0x00}));
-  EXPECT_EQ(bench.module().outputs(), 0U) << "the next frame must not execute it either";
+  EXPECT_EQ(bench.module().outputs(), 0U) << "the next frame must not execute the spoiled frame";
 }
 
 TEST(SilenceAfterRequest, TheInitSwitchIsEvaluatedAtTheEndOfTheSilence) {

@@ -1,4 +1,5 @@
-// Tests how often an EEPROM is written in use, and compares the result with the manufacturer's guarantee.
+// Tests how often a module in use writes its EEPROM, and compares the result with the manufacturer's
+// guarantee.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -14,14 +15,14 @@ namespace {
 using PageWrites = std::array<unsigned, hal::doubles::Memory::kSize / hal::doubles::Memory::kPage>;
 using Bytes = ModuleBench::Bytes;
 
-/// Write cycles of a page of an AT24C64: Atmel doc. 0336.
+/// The guaranteed number of write cycles of a page of an AT24C64: Atmel doc. 0336.
 constexpr double kCycles = 1'000'000;
 constexpr double kMinutesAYear = 525'600;
 constexpr double kDaysAYear = 365;
 
 /// Returns the number of writes per repetition of `use`, averaged over a hundred repetitions. Checks that no
-/// page has more than one write above the average of the pages in use. `pages`: returns the number of pages
-/// in use.
+/// page has more writes than the average of the pages in use plus one. Sets `pages` to the number of pages in
+/// use.
 double writes_of(ModuleBench& bench, const std::function<void(unsigned round)>& use, unsigned& pages) {
   constexpr unsigned kRounds = 100;
   PageWrites writes{};
@@ -46,7 +47,7 @@ double writes_of(ModuleBench& bench, const std::function<void(unsigned round)>& 
 
 double years(double writes_a_year, unsigned pages) { return kCycles * pages / writes_a_year; }
 
-TEST(Wear, OfAHostWatchdogExpiringEveryMinuteIsThreeWritesEach) {
+TEST(Wear, AHostWatchdogThatExpiresAndIsEnabledAgainCausesThreeWrites) {
   ModuleBench bench("EX9042D-M@01,protocol=ascii");
   unsigned pages = 0;
   const double writes = writes_of(
@@ -66,7 +67,7 @@ TEST(Wear, OfAHostWatchdogExpiringEveryMinuteIsThreeWritesEach) {
   EXPECT_GT(years(a_year, pages), 1);
 }
 
-TEST(Wear, OfADailyStoredPowerOnValueAllows1000Years) {
+TEST(Wear, APowerOnValueCanBeStoredDailyFor1000Years) {
   ModuleBench bench("EX9042D-M");
   unsigned pages = 0;
   const double writes = writes_of(
@@ -82,7 +83,7 @@ TEST(Wear, OfADailyStoredPowerOnValueAllows1000Years) {
   EXPECT_GT(years(a_year, pages), 1000);
 }
 
-TEST(Wear, OfPollingAndSwitchingIsNone) {
+TEST(Wear, PollingAndSwitchingWriteNothing) {
   ModuleBench bench("EX9042D-M");
   for (unsigned round = 0; round < 100; ++round) {
     const auto on = static_cast<std::uint8_t>(round % 2 == 0 ? 0xFF : 0x00);
@@ -92,7 +93,7 @@ TEST(Wear, OfPollingAndSwitchingIsNone) {
   EXPECT_EQ(bench.module().memory().writes(), 0U);
 }
 
-TEST(Wear, OfCountingIsNone) {
+TEST(Wear, CountingWritesNothing) {
   ModuleBench ascii("EX9052D,edge=rising");
   ModuleBench modbus("EX9052D-M");
   for (ModuleBench* bench : {&ascii, &modbus}) {
@@ -116,7 +117,7 @@ TEST(Wear, OfCountingIsNone) {
   EXPECT_EQ(modbus.module().memory().writes(), 0U);
 }
 
-TEST(Wear, OfHostOksIsZero) {
+TEST(Wear, HostOksWriteNothing) {
   ModuleBench ascii("EX9042D");
   ASSERT_EQ(ascii.ask("~013105"), "!01");
   ModuleBench modbus("EX9042D-M");

@@ -68,13 +68,13 @@ class Life {
     if (session_.speaks_modbus()) {
       const std::array<std::uint8_t, 6> echo{address, 0x08, 0, 0, 1, 2};
       require(session_.ask({echo.data(), echo.size()}).size == echo.size(),
-              "a module whose line is quiet answers");
+              "a module replies if its line is quiet");
       return;
     }
     session_.byte('\r', ByteStatus::Good);  // ends any open command; this can also change the address
     session_.wait_for_quiet();
     const std::array<std::uint8_t, 4> name{'$', upper_hex(address / 16U), upper_hex(address), 'M'};
-    require(session_.ask({name.data(), name.size()}).size > 3, "a module whose line is quiet answers");
+    require(session_.ask({name.data(), name.size()}).size > 3, "a module replies if its line is quiet");
   }
 
  private:
@@ -179,8 +179,9 @@ bool is_code(const std::uint8_t* data, std::size_t size, std::size_t at, char co
   return at + 1 < size && data[at] == kEscape && data[at + 1] == static_cast<std::uint8_t>(code);
 }
 
-/// In Modbus, replaces the two bytes before each gap with `\c`. In ASCII, inserts `\c` before each CR.
-/// Returns the new size in bytes.
+/// In Modbus, replaces the two bytes before each gap with `\c` if at least four plain bytes precede the gap.
+/// In ASCII, inserts `\c` before each CR that follows at least three plain bytes, as long as the input may
+/// grow. Returns the new size in bytes.
 std::size_t mend(std::uint8_t* data, std::size_t size, std::size_t most, bool modbus) {
   std::size_t plain = 0;  // consecutive bytes on the line before `at`
   for (std::size_t at = kHeader; at < size;) {

@@ -113,7 +113,7 @@ bool is_of_the_line(const Watched& watched, Words words, sim::VirtualTime now) {
   return is_fault(words, Whose::AnyModules, now);
 }
 
-/// Removes the leading `line NAME`. Returns nothing if NAME is another line.
+/// Removes the leading `line NAME`. Returns no words if NAME is not `hall`, or if no command follows.
 Words of_the_line(const Words& words) {
   if (words[0] != "line") {
     return words;
@@ -233,7 +233,7 @@ void carry_out(Watched& watched, sim::Control& control, const std::string& comma
   const bool valid = is_command(watched, words);
   const std::vector<Seen> before = seen(line);
   const sim::Control::Reply reply = control.carry_out(command);
-  require(reply.text.find('\n') == std::string::npos, "an answer is one line");
+  require(reply.text.find('\n') == std::string::npos, "a reply is one line");
   require(reply.quit == (valid && words[0] == "quit"), "nothing else ends the program");
   if (valid) {
     require(reply.text == "ok" || reply.text.rfind("ok ", 0) == 0, "a command is carried out");

@@ -69,7 +69,7 @@ inline bool is_ordinal(const std::string& text) {
   return (ending == "st" || ending == "nd" || ending == "rd" || ending == "th") && value && *value != 0;
 }
 
-/// When a fault occurs, and for how long.
+/// The time at which a fault occurs, and its duration.
 struct When {
   bool right = true;
   bool given = false;

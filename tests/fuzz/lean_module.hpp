@@ -30,7 +30,7 @@ class ModuleObserver {
   /// Called when the driver has been switched off.
   virtual void reply_ends() = 0;
   virtual void outputs_change(std::uint16_t channels) = 0;
-  /// Called when the main loop has completed one turn. The state changes only then.
+  /// Called when the main loop has completed one turn. The state of the module changes only in a turn.
   virtual void turned() = 0;
 
  protected:
@@ -160,8 +160,8 @@ struct LeanBoard {
         std::copy_n(around.memory.begin() + at, destination.size, destination.data);
       }
     }
-    /// Simulates a supply failure. A write has stored the bytes that its elapsed time allows and has
-    /// corrupted the next byte.
+    /// Simulates a supply failure. A write in progress has stored the bytes that its elapsed time allows, and
+    /// may have corrupted the next byte.
     void cut() {
       if (!busy() || source.size == 0 || !around.memory_answers) {
         return;
@@ -203,8 +203,8 @@ class LeanModule {
   LeanModule(const Model& model, ModuleObserver& observer, TimingAt timing_at)
       : model_(model), timing_at_(timing_at), around_(observer) {}
 
-  /// Resets the module or switches it on, which interrupts a write in progress. Returns when the module has
-  /// started.
+  /// Switches the module on, or resets it. A reset interrupts a write in progress. Returns when the module
+  /// has started.
   void reset() {
     if (device_) {
       board().memory.cut();
@@ -218,7 +218,7 @@ class LeanModule {
     constexpr Microseconds kLongest = 100 * kMillisecond;  // wire.md D13
     while (!module().listening()) {
       const Microseconds next = next_event();
-      require(next <= began + kLongest, "a module answers within 100 ms of reset");
+      require(next <= began + kLongest, "a module listens within 100 ms of a reset");
       advance_to(next);
     }
   }

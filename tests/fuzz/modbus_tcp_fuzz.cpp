@@ -5,7 +5,7 @@
 // The input is a sequence of events:
 //
 //     0-3  N, N bytes   the bytes arrive from this client, in one piece
-//     4-7               the client, number 0 to 3, leaves, and another one takes its place
+//     4-7               client 0 to 3 leaves, and another one takes its place
 //     8    N            N times 4 ms pass
 //
 // Other values have no effect.

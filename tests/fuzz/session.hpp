@@ -24,9 +24,9 @@ using judges::crc16;
 using judges::dcon_sum;
 using judges::upper_hex;
 
-/// Aborts if the witness reports an error, or if the outputs do not start with the stored values. The only
-/// states that it takes from the module itself are the settings in force after a reset and the settings that
-/// it started with.
+/// Aborts if the witness reports an error, or if the outputs do not start with the stored values. It takes
+/// only two states from the module without a check: the settings in force after a reset, and the values with
+/// which the module starts.
 class Session final : public ModuleObserver {
  public:
   Session(const Model& model, bool strict_gaps)
@@ -80,7 +80,7 @@ class Session final : public ModuleObserver {
     module_.receive(byte, status);
   }
 
-  /// Waits 250 ms, and again as long as the module is still sending at the end of the wait.
+  /// Waits 250 ms. Repeats the wait while the module is still sending at its end.
   void wait_for_quiet() {
     do {
       wait(250 * kMillisecond);

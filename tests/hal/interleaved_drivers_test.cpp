@@ -33,7 +33,7 @@ class SysTick final : public bus::Peripherals {
   hal::cortex_m::SystemTimer<kMegahertz> timer;
 
   [[nodiscard]] unsigned microseconds() const { return cycles_ / kMegahertz; }
-  /// While this is true, interrupts wait. Otherwise they are served as soon as possible.
+  /// While this is true, the interrupt waits.
   bool held = false;
   void pass() {
     if (pending() && !held && late_++ >= accesses_late_) {

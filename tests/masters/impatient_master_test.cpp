@@ -63,7 +63,7 @@ TEST(ImpatientMaster, OnAnInstantLineEachOfTwoFramesSentTogetherGetsAReply) {
   }
 }
 
-TEST(ImpatientMaster, OnAnInstantLineARequestMayFollowAnUnansweredRequestAtOnce) {
+TEST(ImpatientMaster, OnAnInstantLineARequestMayImmediatelyFollowAnUnansweredRequest) {
   Line line({"--line", "instant"});
   for (const Bytes& unanswered : {kHostOk1, kHostOkAll, kAbsent}) {
     for (int round = 0; round < 10; ++round) {
@@ -98,7 +98,7 @@ TEST(ImpatientMaster, ARequestToAnotherModuleMayImmediatelyFollowAReply) {
 // At 1200 baud, the request takes 67 ms, T3.5 takes 32 ms and the reply takes 58 ms, so the reply ends
 // between 157 ms and 167 ms. Module 02 has also received the reply. A request that begins less than T3.5
 // later is part of the same frame.
-TEST(ImpatientMaster, LosesARequestWithoutAGapIfGapsAreStrict) {
+TEST(ImpatientMaster, ARequestWithoutAGapIsLostIfGapsAreStrict) {
   SimulatorProcess simulator({"EX9042D-M@01,baud=1200", "EX9052D-M@02,baud=1200", "--tcp", "0",
                               "--strict-gaps", "--speed", "step", "--control", "ctl"});
   ControlClient control(simulator.directory() + "/ctl");

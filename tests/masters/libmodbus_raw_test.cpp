@@ -117,8 +117,8 @@ TEST_P(LibmodbusRaw, GetsEveryExpectedReplyOfTheConversation) {
       ++answers;
     } else if (what == "silence") {
       // The line runs in real time. If the next request came before the program has read this one, both would
-      // form one frame. On a busy machine this check can end too early. A late reply then precedes the next
-      // reply and fails the test there.
+      // form one frame. On a busy machine this check can end too early. The test then receives the late reply
+      // instead of the next reply, and fails there.
       ASSERT_TRUE(modules.simulator().wait_for(logged(sent))) << line;
       EXPECT_EQ(heard(master, 1, milliseconds(300)), Frame{}) << line;
     } else if (what == "wait") {

@@ -91,7 +91,7 @@ TEST_P(Libmodbus, ReadsBackTheValuesThatItHasWritten) {
   EXPECT_EQ(modbus_write_bit(master_.at(kOutputs), kSafe + 1, 1), 1);
   EXPECT_EQ(modbus_write_bit(master_.at(kInputs), 0x0107, 1), 1);
   EXPECT_EQ(write_coils(kOutputs, kPowerOn + 4, {1, 1}), 2);
-  EXPECT_EQ(coils(kOutputs, 0, 8), (Bits{1, 1, 1, 1, 1, 1, 1, 0})) << "the outputs follow";
+  EXPECT_EQ(coils(kOutputs, 0, 8), (Bits{1, 1, 1, 1, 1, 1, 1, 0})) << "each write also drives the outputs";
 
   EXPECT_EQ(modbus_write_register(master_.at(kInputs), kTimeout, 100), 1);
   EXPECT_EQ(write_registers(kOutputs, kAddress, {9, 7}), 2);

@@ -192,7 +192,7 @@ def ask(client, request):
     """Returns the reply that the library delivers, as the text of a frame."""
     response = client.execute(request)
     if request.unit_id == 0:
-        return "silence"  # the library does not wait for a reply; converse() checks that none comes
+        return "silence"  # the library does not wait for a reply; converse() checks that no reply arrives
     if not isinstance(response, ModbusResponse):
         return f"nothing ({response})"
     head = bytes([response.unit_id, response.function_code])

@@ -27,7 +27,8 @@ class BoardBench {
   [[nodiscard]] bool powered() const { return run_.has_value(); }
   /// Resets the board like its reset pin.
   void reset();
-  /// Runs until `when`. Throws Fault. Counts resets by the image or its watchdog and continues after them.
+  /// Runs until `when`. Throws Fault if the image causes one. Counts resets by the image or its watchdog and
+  /// continues after them.
   void run_until(Instant when);
   void run_for(Instant time) { run_until(timeline.now() + time); }
 

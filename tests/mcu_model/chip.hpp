@@ -11,9 +11,9 @@ struct Chip {
   const char* name;
   unsigned ports;             ///< A to F, or A to G
   bool port_control;          ///< GPIOPCTL and GPIOAMSEL exist
-  bool i2c_clock_open_drain;  ///< true: the pin of SCL must be open drain; false: it must not
+  bool i2c_clock_open_drain;  ///< the pin of SCL must be open drain; if false, it must not be
   bool pin_clears_causes;     ///< a reset by the pin clears the other bits of RESC
-  /// The clocks required between setting a clock gate and the first access to its peripheral.
+  /// The number of clock cycles required between setting a clock gate and the first access to its peripheral.
   unsigned clocks_after_gate;
   Instant cycle_at_reset;  ///< period of the internal oscillator: 12 MHz or 16 MHz
   std::uint32_t rcc_at_reset;

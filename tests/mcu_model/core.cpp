@@ -45,7 +45,7 @@ std::uint32_t Core::read(std::uint32_t offset) {
     case kSetEnable:
       return enabled_;
     default:
-      fault(offset, "no such register of the processor is known here");
+      fault(offset, "the model has no such register of the processor");
   }
 }
 
@@ -94,7 +94,7 @@ void Core::write(std::uint32_t offset, std::uint32_t value) {
       }
       break;
     default:
-      fault(offset, "no such register of the processor may be written");
+      fault(offset, "the model has no writable register of the processor here");
   }
 }
 

@@ -194,7 +194,7 @@ void EepromChip::byte_taken() {
       step_ = Step::Writing;
       break;
     case Step::Writing:
-      // After the end of the page the address continues at its beginning.
+      // At the end of a page, the address wraps to the beginning of the page.
       if (take) {
         page_.at(address_ % kPage) = byte_;
         order_.push_back(address_);

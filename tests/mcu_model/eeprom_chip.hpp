@@ -19,8 +19,8 @@ class EepromChip {
   static constexpr std::size_t kSize = 8192;
   static constexpr std::size_t kPage = 32;
 
-  /// Connects to these wires, with a pull-up on each. `contents` must outlive this object: it holds the
-  /// stored bytes.
+  /// Connects to these wires, with a pull-up on each. `contents` holds the stored bytes and must outlive this
+  /// object.
   EepromChip(Timeline& timeline, Net& clock, Net& data, std::vector<std::uint8_t>& contents);
 
   /// Sets how long a page write takes: at most 10 ms, typically 5 ms.

@@ -73,8 +73,8 @@ void Fiber::begin() {
   go(self.inside_, self.outside_, true);
 }
 
-/// Replaces swapcontext(3): AddressSanitizer warns about that function, and loses track of the stack that it
-/// switches to.
+/// Replaces swapcontext(3). AddressSanitizer warns about that function, and does not know the stack to which
+/// that function switches.
 void Fiber::go(Side& from, Side& to, bool for_good) {
   leave_stack(for_good ? nullptr : &from.fake_stack, to.stack, to.stack_size);
   volatile bool left = false;  // volatile: getcontext returns a second time when the other side switches back

@@ -79,7 +79,7 @@ std::uint32_t& GpioPort::stored(std::uint32_t offset) {
       }
       return offset == kAnalog ? analog_ : control_;
     default:
-      fault(offset, "no such register of a port is known here");
+      fault(offset, "the model has no such register of a port");
   }
 }
 

@@ -34,8 +34,8 @@ class GpioPort final : public Peripheral {
   static constexpr std::uint32_t kAnalog = 0x528;
   static constexpr std::uint32_t kControl = 0x52C;
 
-  /// `letter`: 'A' to 'G'. The nets must outlive the port. The constructor and the destructor release all of
-  /// them, except that the constructor connects the pull-ups of the debug pins.
+  /// `letter` is 'A' to 'G'. The nets must outlive the port. The constructor and the destructor release all
+  /// of them, except that the constructor connects the pull-ups of the debug pins.
   GpioPort(const Chip& chip, char letter, PortNets& nets);
   ~GpioPort() override;
 

@@ -70,7 +70,7 @@ std::uint32_t I2cBlock::read(std::uint32_t offset) {
     case kConfiguration:
       return configuration_;
     default:
-      fault(offset, "no such register of an I2C master is known here");
+      fault(offset, "the model has no such register of an I2C master");
   }
 }
 
@@ -103,7 +103,7 @@ void I2cBlock::write(std::uint32_t offset, std::uint32_t value) {
       configuration_ = value;
       break;
     default:
-      fault(offset, "no such register of an I2C master may be written");
+      fault(offset, "the model has no writable register of an I2C master here");
   }
 }
 

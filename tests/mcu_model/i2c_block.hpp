@@ -17,7 +17,7 @@ namespace ex9000::registers {
 struct I2cBehaviour {
   bool stop_interrupts = false;     ///< a STOP without a byte raises an interrupt, like a byte
   bool stops_after_error = false;   ///< a STOP requested together with a byte is sent even if the byte failed
-  bool waits_for_free_bus = false;  ///< a START on a busy bus waits for a reset; false: it loses arbitration
+  bool waits_for_free_bus = false;  ///< a START on a busy bus waits for a reset; else it loses arbitration
 };
 
 class I2cBlock final : public Peripheral {

@@ -31,18 +31,19 @@ struct Image {
   PinPlace receive;
   PinPlace transmit;
 
-  /// Sets its RAM to the state after a reset.
+  /// Sets the image's RAM to the state after a reset.
   void (*clear)();
-  /// Calls its `main`, which does not return.
+  /// Calls the image's `main`, which does not return.
   int (*run)();
-  /// Calls the handler that its vector table has for an exception.
+  /// Calls the handler of `exception` in the image's vector table.
   void (*serve)(unsigned exception);
 
   [[nodiscard]] const Chip& chip() const { return tm4c ? kTm4c123 : kLm3s6965; }
   [[nodiscard]] std::string name() const { return std::string(chip().name) + "/" + model; }
 };
 
-/// Loads the shared object at `path`, which stays loaded. Throws std::runtime_error.
+/// Loads the shared object at `path`, which stays loaded. Throws std::runtime_error if the object cannot be
+/// loaded or describes no image.
 const Image& load_image(const std::string& path);
 
 }  // namespace ex9000::registers

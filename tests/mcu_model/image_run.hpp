@@ -18,7 +18,7 @@ class ImageRun {
   ImageRun(const ImageRun&) = delete;
   ImageRun& operator=(const ImageRun&) = delete;
 
-  /// Runs the image until `when`. Throws Fault or ResetRequest if the image causes it.
+  /// Runs the image until `when`. Throws Fault or ResetRequest if the image causes one.
   void run_until(Instant when);
 
  private:

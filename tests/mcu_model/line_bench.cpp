@@ -26,7 +26,7 @@ LineBench::LineBench(Timeline& timeline, Net& transmit, Net& enable, Net& receiv
         heard.push_back(
             {started, last_ended_, received.byte, !received.framing_error && !received.parity_error});
       }) {
-  // The resistors that every board has: the line is idle and the driver off while the pins float.
+  // Every board has these resistors. While the pins float, the line is idle and the driver is off.
   transmit_.drive(End::Resistor, Drive::WeakHigh);
   enable_.drive(End::Resistor, Drive::WeakLow);
   transmit_.on_change([this] { board_speaks(); });

@@ -20,7 +20,7 @@ class LineBench {
     Instant started;
     Instant ended;
     std::uint8_t byte;
-    bool good;  ///< the parity and the first stop bit were right
+    bool good;  ///< the parity and the first stop bit were correct
   };
   /// A time during which the board's driver was on.
   struct Driven {
@@ -28,8 +28,8 @@ class LineBench {
     Instant to;
   };
 
-  /// `transmit`, `enable`, `receive`: the board's pins. `receive` carries the output of the board's receiver.
-  /// `echo`: the board receives the bytes that it sends.
+  /// `transmit`, `enable` and `receive` are the board's pins. `receive` carries the output of the board's
+  /// receiver. If `echo` is true, the board receives the bytes that it sends.
   LineBench(Timeline& timeline, Net& transmit, Net& enable, Net& receive, bool echo = true);
 
   /// Sets the rate of the master.
@@ -38,7 +38,7 @@ class LineBench {
   void set_format(LineFormat format);
   [[nodiscard]] Instant bit_time() const { return bit_time_; }
   [[nodiscard]] Instant character_time() const { return bits_on_wire(format_) * bit_time_; }
-  /// Queues characters for the line; they follow the waiting ones without a gap.
+  /// Queues characters. They follow the characters that already wait, without a gap.
   void send(const std::vector<std::uint8_t>& bytes);
   void send_one(Character character);
   [[nodiscard]] bool sending() const { return sender_.busy() || !waiting_.empty(); }

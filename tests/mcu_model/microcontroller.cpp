@@ -130,10 +130,10 @@ Peripheral& Microcontroller::peripheral_at(std::uint32_t address) {
       return *place.peripheral;
     }
   }
-  throw Fault(address, "nothing is there");
+  throw Fault(address, "no peripheral has this address");
 }
 
-/// Throws Fault if the peripheral has no clock or is held in reset. On silicon, an access to a peripheral
+/// Throws Fault if the peripheral has no clock or is held in reset. On a chip, an access to a peripheral
 /// without a clock causes a fault, and a peripheral that is held in reset ignores every access. Both are
 /// errors of a driver.
 void Microcontroller::check_usable(const Place& place, std::uint32_t address) const {

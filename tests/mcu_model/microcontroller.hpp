@@ -99,14 +99,14 @@ class Microcontroller {
   /// Sets the function that lets time pass until `to`. It may return earlier. Default: Timeline::advance.
   void pass_time_by(std::function<void(Instant to)> pass) { pass_ = std::move(pass); }
 
-  /// Sets the clocks that each access takes. The default is 2, the minimum of a bus access. The model does
-  /// not count the instructions between two accesses, so a delay that consists of accesses has its shortest
-  /// length. A greater value makes long waits cheap to simulate.
+  /// Sets the number of clock cycles of each access. The default is 2, the minimum of a bus access. The model
+  /// does not count the instructions between two accesses, so a delay that consists of accesses has its
+  /// shortest length. A greater value makes long waits cheap to simulate.
   void set_clocks_an_access(int clocks) { clocks_an_access_ = clocks; }
   [[nodiscard]] std::uint64_t accesses() const { return accesses_; }
   void record(bool on) { recording_ = on; }
   [[nodiscard]] const std::vector<Access>& recorded() const { return recorded_; }
-  /// Returns the greatest number of accesses while interrupts were held.
+  /// Returns the greatest number of accesses during which interrupts were disabled without a break.
   [[nodiscard]] std::uint64_t most_accesses_held() const { return most_held_; }
   [[nodiscard]] unsigned watchdog_expiries() const { return watchdog_expiries_; }
   /// Sets a function to call before each write takes effect.

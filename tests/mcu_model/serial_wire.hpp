@@ -11,7 +11,7 @@
 
 namespace ex9000::registers {
 
-/// The parts of a format. They are stated here again, so that the model does not depend on the firmware.
+/// The parts of a format. They are defined here again, so that the model does not depend on the firmware.
 struct Form {
   bool parity_bit;
   bool odd;
@@ -30,7 +30,7 @@ constexpr unsigned bits_on_wire(LineFormat format) {
   return first_stop_bit(format) + form_of(format).stop_bits;
 }
 
-/// Returns the right level of the parity bit. `format` must have one.
+/// Returns the correct level of the parity bit. `format` must have one.
 constexpr bool parity_of(std::uint8_t byte, LineFormat format) {
   bool level = form_of(format).odd;
   for (unsigned bit = 0; bit < 8; ++bit) {
@@ -43,7 +43,7 @@ constexpr bool parity_of(std::uint8_t byte, LineFormat format) {
 struct Character {
   std::uint8_t byte = 0;
   bool stop = true;           ///< false: the last stop bit is low
-  unsigned low_bits = 0;      ///< not 0: a break, this many bits low instead of a character
+  unsigned low_bits = 0;      ///< if not 0: a break of this many low bits instead of a character
   bool wrong_parity = false;  ///< for formats with a parity bit
 };
 

@@ -41,7 +41,7 @@ std::uint32_t SystemControl::read(std::uint32_t offset) {
   if (offset >= kSrcr && offset < kSrcr + 12) {
     return resets_.at((offset - kSrcr) / 4);
   }
-  fault(offset, "no such register of system control is known here");
+  fault(offset, "the model has no such register of system control");
 }
 
 void SystemControl::write(std::uint32_t offset, std::uint32_t value) {
@@ -70,7 +70,7 @@ void SystemControl::write(std::uint32_t offset, std::uint32_t value) {
       }
     }
   } else {
-    fault(offset, "no such register of system control may be written");
+    fault(offset, "the model has no writable register of system control here");
   }
 }
 

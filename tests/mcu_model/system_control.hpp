@@ -36,7 +36,7 @@ class SystemControl final : public Peripheral {
   std::uint32_t read(std::uint32_t offset) override;
   void write(std::uint32_t offset, std::uint32_t value) override;
 
-  /// Sets RESC as after a reset. `before`: its value before the reset.
+  /// Sets RESC to its value after a reset by `cause`. `before` is its value before the reset.
   void was_reset_by(ResetCause cause, std::uint32_t before);
   [[nodiscard]] std::uint32_t causes() const { return causes_; }
 
@@ -55,14 +55,14 @@ class SystemControl final : public Peripheral {
     return (resets_.at(index) >> bit & 1U) != 0;
   }
 
-  /// The state of a clock gate. Open: its bit in RCGC is set. TooFresh: the bit has not been set for long
-  /// enough.
+  /// The state of a clock gate. Shut: its bit in RCGC is clear. TooFresh: the bit is set, but not yet for
+  /// long enough. Open: the bit has been set for long enough.
   enum class Gate : std::uint8_t { Shut, TooFresh, Open };
   [[nodiscard]] Gate gate(unsigned index, unsigned bit) const;
 
   /// Sets how long the crystal takes to start, about 2 to 18 ms.
   void set_crystal_start(Instant time) { crystal_start_ = time; }
-  /// Sets how long the PLL takes to lock; kNever: it does not lock.
+  /// Sets how long the PLL takes to lock. With kNever, it does not lock.
   void set_lock_time(Instant time) { lock_time_ = time; }
 
  private:

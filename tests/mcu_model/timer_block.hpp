@@ -47,7 +47,7 @@ class TimerBlock final : public Peripheral {
       case kInterval:
         return interval_;
       default:
-        fault(offset, "no such register of a timer is known here");
+        fault(offset, "the model has no such register of a timer");
     }
   }
 
@@ -79,7 +79,7 @@ class TimerBlock final : public Peripheral {
         interval_ = value;
         break;
       default:
-        fault(offset, "no such register of a timer may be written");
+        fault(offset, "the model has no writable register of a timer here");
     }
   }
 

@@ -56,7 +56,7 @@ std::uint32_t UartPort::read(std::uint32_t offset) {
     case kMasked:
       return raw_ & mask_;
     default:
-      fault(offset, "no such register of a UART is known here");
+      fault(offset, "the model has no such register of a UART");
   }
 }
 
@@ -109,7 +109,7 @@ void UartPort::write(std::uint32_t offset, std::uint32_t value) {
       tell_interrupt();
       break;
     default:
-      fault(offset, "no such register of a UART may be written");
+      fault(offset, "the model has no writable register of a UART here");
   }
 }
 
@@ -132,7 +132,7 @@ void UartPort::transmit(std::uint8_t byte) {
   }
 }
 
-/// Begins to send a byte. The start bit begins at a tick of the baud rate generator, which runs all the time.
+/// Begins to send a byte. The start bit begins at a tick of the baud rate generator, which runs continuously.
 void UartPort::begin_character(std::uint8_t byte, Instant not_before) {
   const Instant tick = bit_time_ / 16;
   shifting_ = true;

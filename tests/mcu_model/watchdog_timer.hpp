@@ -38,7 +38,7 @@ class WatchdogTimer final : public Peripheral {
       case kLock:
         return locked_ ? 1 : 0;
       default:
-        fault(offset, "no such register of the watchdog is known here");
+        fault(offset, "the model has no such register of the watchdog");
     }
   }
 
@@ -68,14 +68,14 @@ class WatchdogTimer final : public Peripheral {
         begin();
         break;
       default:
-        fault(offset, "no such register of the watchdog may be written");
+        fault(offset, "the model has no writable register of the watchdog here");
     }
   }
 
   [[nodiscard]] bool locked() const { return locked_; }
   [[nodiscard]] bool running() const { return end_.is_set(); }
   [[nodiscard]] unsigned feeds() const { return feeds_; }
-  /// Returns whether the first of the two countdowns is over.
+  /// Returns whether the first of the two countdowns has ended.
   [[nodiscard]] bool flagged() const { return flagged_; }
 
  private:

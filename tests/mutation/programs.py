@@ -314,8 +314,8 @@ PICO_TESTS = """
 
 
 def filter_of_pico_tests():
-    """Returns the value of GTEST_FILTER that selects PICO_TESTS. A test with parameters runs with Nothing only. Ends the
-    program if a test does not exist, because GoogleTest ignores the name of a test that does not exist."""
+    """Returns the value of GTEST_FILTER that selects PICO_TESTS. A test with parameters runs only with Nothing. Ends
+    the program if a test does not exist, because GoogleTest ignores the name of such a test."""
     source = (ROOT / "tests/boards/pico_image_test.cpp").read_text(encoding="utf-8")
     patterns = []
     for test in PICO_TESTS:

@@ -1,6 +1,6 @@
-// One copy of the settings in the EEPROM, read without the firmware's code. It implements the layouts of
-// firmware/settings/record.hpp and old_layouts.hpp independently, the check from its definition, and the
-// settings that commands can store from wire.md sections 4, 8 and 12.
+// One copy of the settings in the EEPROM, read without the firmware's code. It is an independent
+// implementation of the layouts of firmware/settings/record.hpp and old_layouts.hpp, of the check, and of the
+// settings that commands can store (wire.md sections 4, 8 and 12).
 #pragma once
 
 #include <algorithm>

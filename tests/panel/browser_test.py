@@ -11,7 +11,7 @@ READ_INPUTS = bytes.fromhex("020200000008") + crc(bytes.fromhex("020200000008"))
 
 
 class Modules(Panel):
-    def test_an_input_that_is_clicked_counts_over_modbus(self):
+    def test_clicks_on_an_input_are_counted_over_modbus(self):
         _, master = self.show_two()
         counted = text(INPUTS, "li:nth-child(4) .count", "1")
         self.assertEqual(master.counter(2, 3), 0)
@@ -23,7 +23,7 @@ class Modules(Panel):
         self.assertEqual(master.counter(2, 3), 1)
         self.picture("counted")
 
-    def test_an_input_is_held_while_pressed_and_pulsed(self):
+    def test_an_input_can_be_held_and_pulsed(self):
         _, master = self.show_two()
         self.browser.click("input[value=hold]")
         self.browser.pointer(DI3, "down")
@@ -36,7 +36,7 @@ class Modules(Panel):
         self.browser.until(text(INPUTS, "li:nth-child(4) .count", "2"))
         self.assertEqual(master.counter(2, 3), 2)
 
-    def test_a_host_watchdog_that_expires_is_seen(self):
+    def test_the_page_shows_the_expiry_of_a_host_watchdog(self):
         _, master = self.show_two()
         master.coil(1, 0x0081, True)  # the safe value of output 1
         master.ask("010F0000000D020500", 8)
@@ -61,7 +61,7 @@ class Modules(Panel):
         self.browser.until(text(OUTPUTS, ".ledtext", "flashing"))
         self.picture("timed-out-without-motion")
 
-    def test_init_and_a_power_cycle_find_a_lost_address(self):
+    def test_a_power_cycle_with_init_lets_the_master_read_a_lost_address(self):
         simulator = self.show("EX9042D-M@5A,baud=19200,protocol=modbus", "--baud", "9600")
         master = Master(simulator.lines[0])
         self.addCleanup(master.close)
@@ -77,7 +77,7 @@ class Modules(Panel):
         self.assertEqual(master.say("$002"), "!5A400700")
         self.picture("init-mode")
 
-    def test_a_simulator_that_is_killed_and_comes_back_is_noticed(self):
+    def test_the_page_reports_a_killed_simulator_and_connects_to_the_next_run(self):
         simulator, _ = self.show_two()
         self.browser.click(DI3)
         self.browser.until(pressed(DI3))
@@ -118,7 +118,7 @@ class Modules(Panel):
             .map((each) => each.outerHTML)"""
         self.assertEqual(self.browser.run(nameless), [])
 
-    def test_faults_are_switched_on_and_off_and_seen_on_the_bus(self):
+    def test_faults_can_be_switched_and_the_page_shows_their_effect(self):
         _, master = self.show_two()
         noise = "[aria-label='Fault inserted-bytes 0.01']"
         self.browser.type("[aria-label='Another fault']", "nonsense\ue007")
@@ -138,7 +138,7 @@ class Modules(Panel):
         self.browser.run(f'document.querySelector("{noise}").click()')
         self.browser.until(f"!({pressed(noise)})")
 
-    def test_the_bus_is_searched_and_paused(self):
+    def test_the_bus_can_be_searched_and_paused(self):
         _, master = self.show_two()
         for channel in range(3):
             master.coil(1, channel, True)

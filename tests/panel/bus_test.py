@@ -65,7 +65,7 @@ class Bus(Panel):
         self.browser.click("#pause")
         self.browser.until(f"{TALLY} === '10 frames' && {ROWS} === 10")
 
-    def test_a_search_goes_on_while_paused(self):
+    def test_a_search_works_while_the_page_is_paused(self):
         _, master = self.show_two()
         master.coil(1, 2, True)
         master.counter(2, 0)
@@ -80,7 +80,7 @@ class Bus(Panel):
         self.type("#search", "")
         self.browser.until(f"{ROWS} === 6")
 
-    def test_each_line_counts_the_frames_that_a_paused_page_left_out(self):
+    def test_each_line_counts_the_frames_that_a_paused_page_has_omitted(self):
         modules = [{"model": "EX9052D-M", "address": "02"}]
         simulator = self.bus([{"name": name, "tcp": 0, "line": "instant", "modules": modules}
                               for name in ("hall", "yard")])
@@ -104,7 +104,7 @@ class Bus(Panel):
             self.browser.until(f"{left_out}.some((said) => /^{name}: [0-9]+ frames were left out here$/.test(said))")
         self.picture("left-out")
 
-    def test_a_page_that_is_paused_begins_anew_with_another_run_and_other_modules(self):
+    def test_a_paused_page_starts_again_with_a_new_run_and_its_modules(self):
         simulator, master = self.show_two()
         self.ask_inputs(master, 1)
         self.browser.until(f"{TALLY} === '2 frames'")
@@ -125,7 +125,7 @@ class Bus(Panel):
         with repeating(lambda: again.say("$02M")):
             self.browser.until(f"{PAINTED}('master', 20) && {PAINTED}('module', 30)")
 
-    def test_the_strip_moves_while_there_are_only_remarks_on_it(self):
+    def test_the_strip_moves_while_it_shows_only_notes(self):
         simulator = self.show("EX9042D")
         page = Page(simulator.port)
         self.addCleanup(page.close)
@@ -190,7 +190,7 @@ class Bus(Panel):
             move()
             self.browser.until(f"{PICTURE} !== before")
 
-    def test_clicks_on_a_fault_sooner_than_it_is_seen_all_count(self):
+    def test_each_of_several_fast_clicks_on_a_fault_counts(self):
         simulator, _ = self.show_two()
         noise = "[aria-label='Fault inserted-bytes 0.01']"
         click = f"""document.querySelector("{noise}").click();"""
@@ -203,7 +203,7 @@ class Bus(Panel):
 
     def test_a_fault_of_one_module_is_switched_on_and_off(self):
         simulator, _ = self.show_two()
-        self.browser.type("[aria-label='Whose']", "2")
+        self.browser.type("[aria-label='Target of the fault']", "2")
         self.browser.type("[aria-label='Another fault']", "late-reply 50ms\ue007")
         fault = "[aria-label='Fault module 2: late-reply 50ms']"
         self.browser.until(pressed(fault))

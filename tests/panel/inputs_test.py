@@ -50,7 +50,7 @@ class Inputs(Panel):
         self.browser.until(f"!({pressed(DI3)}) && {COUNT} === 1")
         self.browser.pointer("up")
 
-    def test_clicks_sooner_than_they_are_seen_all_count(self):
+    def test_each_of_several_fast_clicks_on_an_input_counts(self):
         _, master = self.show_two()
         self.click_in_the_page(DI3, 5)
         self.browser.until(f"{pressed(DI3)} && {COUNT} === 2")
@@ -58,7 +58,7 @@ class Inputs(Panel):
         self.click_in_the_page(DI3, 2)
         self.browser.until(f"{pressed(DI3)} && {COUNT} === 3")
 
-    def test_a_hold_by_keys_swallows_no_click_behind_it(self):
+    def test_a_click_after_a_hold_by_keys_is_not_lost(self):
         self.show_two()
         self.focus(DI3)
         self.browser.key("+Shift", "+Space")
@@ -74,7 +74,7 @@ class Inputs(Panel):
         self.click_in_the_page(DI3)
         self.browser.until(pressed(DI3))
 
-    def test_a_finger_that_moves_goes_on_holding_until_it_is_lifted_or_taken_away(self):
+    def test_a_moving_finger_holds_an_input_until_the_touch_ends_or_is_cancelled(self):
         self.show_two()
         self.browser.devtools("Emulation.setTouchEmulationEnabled", enabled=True)
         self.addCleanup(self.browser.devtools, "Emulation.setTouchEmulationEnabled", enabled=False)
@@ -96,7 +96,7 @@ class Inputs(Panel):
         self.click_in_the_page(DI3)
         self.browser.until(pressed(DI3))
 
-    def test_a_pulse_is_given_by_alt_and_a_click_and_by_keys(self):
+    def test_alt_with_a_click_and_keys_in_pulse_mode_give_a_pulse(self):
         self.show_two()
         self.browser.key("+Alt")
         self.browser.click(DI3)

@@ -70,7 +70,7 @@ class Looks(Panel):
             ("StaticText", "counter of DI3:"), ("image", "DI3: rising edge not latched"),
             ("region", "Modules"), ("region", "Bus"), ("region", "Faults of the bus"), ("table", "Frames"),
             ("button", "Pause"), ("searchbox", "Search"), ("image", "The last 1000 ms of 1 line"),
-            ("switch", "Fault gone"), ("textbox", "Another fault"), ("combobox", "Whose"), ("status", ""),
+            ("switch", "Fault gone"), ("textbox", "Another fault"), ("combobox", "Target of the fault"), ("status", ""),
         ):
             self.assertIn(wanted, found)
 
@@ -119,12 +119,12 @@ class Looks(Panel):
         self.browser.until(f"{left}.every((each) => each.hidden)")
 
     def let_in(self, simulator):
-        """Returns another page, or None if the server has no room for it."""
+        """Returns another page, or None if the server accepts no more pages."""
         page = Page(simulator.port)
         self.addCleanup(page.close)
         return page if page.next() is not None else None
 
-    def test_one_page_too_many_says_so_and_comes_as_soon_as_another_goes(self):
+    def test_an_extra_page_reports_the_limit_and_connects_when_another_page_closes(self):
         simulator, _ = self.show_two()
         pages = []
         while len(pages) < MOST_PAGES - 1:
@@ -152,7 +152,7 @@ class Looks(Panel):
         self.expect_no_scrolling_sideways()
         self.picture("320", whole=True)
 
-    def test_the_header_hides_nothing_that_has_the_focus(self):
+    def test_the_header_does_not_hide_the_focused_element(self):
         self.browser.size(660, 700)
         modules = [{"model": "EX9052D-M", "address": f"{n + 1:02X}"} for n in range(30)]
         self.look_at(self.bus([{"name": "n" * 60, "tcp": 0, "modules": modules}]))
@@ -166,7 +166,7 @@ class Looks(Panel):
         self.browser.key("-Shift")
         self.assertGreater(self.browser.run("return document.querySelector('.top').offsetHeight"), 64)
 
-    def test_terminals_are_as_in_the_manual_from_edge_to_edge(self):
+    def test_terminals_are_as_in_the_manual_and_fill_the_width(self):
         self.show("EX9042D-M@01", "EX9052D-M@02", "EX9063D@03")
         edge = """const terminals = document.querySelectorAll(`[aria-label='${arguments[0]}'] .edge li`);
             return [...terminals].map((each) => each.textContent)"""

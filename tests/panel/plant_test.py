@@ -1,4 +1,4 @@
-"""Tests a panel with more modules than a page can show at once."""
+"""Tests a panel with more modules than a page can show at the same time."""
 
 import unittest
 

@@ -86,7 +86,7 @@ class Server(unittest.TestCase):
             self.expect(403, upgrade(self.port, host=host))
         self.expect(403, request(self.port, headers=["Host: example.org"]))
 
-    def test_another_origin_is_refused_and_a_web_socket_without_one(self):
+    def test_another_origin_and_a_web_socket_without_an_origin_are_refused(self):
         for origin in ("http://example.org", "null", f"https://127.0.0.1:{self.port}",
                        f"http://127.0.0.1:{self.port}.example.org", "http://127.0.0.1"):
             self.expect(403, request(self.port, headers=[f"Origin: {origin}"]))
@@ -121,7 +121,7 @@ class Server(unittest.TestCase):
             self.assertNotEqual(body, b"")
             self.assertEqual(ask(self.port, request(self.port, target, method="HEAD")), header + b"\r\n\r\n")
 
-    def test_what_is_malformed_is_refused(self):
+    def test_malformed_requests_are_refused(self):
         self.expect(431, request(self.port, headers=["X: " + "x" * 10000]))
         self.expect(431, request(self.port, "/" + "x" * 20000))
         for garbage in (b"\0\1\2\3\r\n\r\n", b"GET\r\n\r\n", b"GET / HTTP/9.9\r\n\r\n",
@@ -157,7 +157,7 @@ class Server(unittest.TestCase):
         for page in pages:
             page.close()
 
-    def test_one_request_too_many_is_turned_away_and_disturbs_no_page(self):
+    def test_an_extra_request_is_rejected_and_disturbs_no_page(self):
         page = self.page()
         rounds = 0
 
@@ -195,7 +195,7 @@ class Server(unittest.TestCase):
         while binary.next() is not None:
             pass
 
-    def test_a_page_does_what_the_control_socket_does_but_end_the_simulator(self):
+    def test_a_page_can_send_all_control_commands_except_quit(self):
         page = self.page()
         hello = page.next()["hello"]
         self.assertEqual([module["model"] for module in hello["modules"]], ["EX9042D-M", "EX9052D-M"])
@@ -207,7 +207,7 @@ class Server(unittest.TestCase):
             self.assertFalse(page.tell(command)["ok"])
         self.assertTrue(page.tell("list")["ok"])
 
-    def test_what_a_page_holds_is_let_go_when_its_connection_ends(self):
+    def test_a_held_input_is_released_when_the_connection_of_its_page_ends(self):
         page, another = self.page(), self.page()
         page.say("2 input 5 on", undo="2 input 5 off")
         self.assertTrue(page.until(lambda message: message.get("reply"))["reply"]["ok"])
@@ -224,7 +224,7 @@ class Server(unittest.TestCase):
 
 
 class Start(unittest.TestCase):
-    def test_it_ends_properly_with_pages_open(self):
+    def test_the_simulator_ends_without_an_error_while_pages_are_open(self):
         simulator = Simulator("EX9042D", "--tcp", "0")
         self.addCleanup(simulator.close)
         pages = [Page(simulator.port) for _ in range(3)]
@@ -236,7 +236,7 @@ class Start(unittest.TestCase):
         for each in [*pages, waiting]:
             each.close()
 
-    def test_a_port_that_is_named_and_taken_is_refused_and_the_usual_one_is_replaced(self):
+    def test_a_port_in_use_is_refused_if_it_is_named_and_replaced_if_it_is_the_default(self):
         first = Simulator("EX9042D", "--tcp", "0")
         self.addCleanup(first.close)
         second = run("EX9042D", "--tcp", "0", "--panel", str(first.port))
@@ -251,7 +251,7 @@ class Start(unittest.TestCase):
             self.assertEqual(status(ask(each.port, request(each.port))), 200)
         self.assertNotEqual(usual[0].port, usual[1].port)
 
-    def test_at_the_usual_port_of_http_browsers_leave_it_out(self):
+    def test_on_port_80_requests_that_omit_the_port_are_accepted(self):
         with socket.socket() as usual:
             usual.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
             try:
@@ -267,7 +267,7 @@ class Start(unittest.TestCase):
                 self.assertEqual(status(page.recv(12)), 101)
         self.assertEqual(status(ask(80, request(80, host="example.org"))), 403)
 
-    def test_it_listens_on_the_loopback_alone(self):
+    def test_the_server_listens_only_on_the_loopback_address(self):
         simulator = Simulator("EX9042D", "--tcp", "0")
         self.addCleanup(simulator.close)
         listening = [line.split()[1] for line in tcp_sockets() if line.split()[3] == "0A"]
@@ -275,7 +275,7 @@ class Start(unittest.TestCase):
         self.assertNotIn(f"00000000:{simulator.port:04X}", listening)
 
     @unittest.skipUnless(pathlib.Path("/proc/net/if_inet6").exists(), "this machine has no IPv6")
-    def test_it_does_not_listen_on_the_loopback_of_ipv6(self):
+    def test_the_server_does_not_listen_on_the_loopback_address_of_ipv6(self):
         simulator = Simulator("EX9042D", "--tcp", "0")
         self.addCleanup(simulator.close)
         with self.assertRaises(OSError):
@@ -283,7 +283,7 @@ class Start(unittest.TestCase):
 
 
 class Slow(unittest.TestCase):
-    def test_a_page_that_does_not_read_delays_no_other_and_then_gets_the_state(self):
+    def test_a_page_that_does_not_read_delays_no_other_page_and_later_gets_the_state(self):
         simulator = Simulator("EX9042D-M@01", "EX9052D-M@02", "--tcp", "0", "--line", "instant")
         self.addCleanup(simulator.close)
         master = Master(simulator.lines[0])

@@ -1,4 +1,4 @@
-// Controls the time of the emulated machine: it runs for a given time and then stands still.
+// Controls the time of the emulated machine, which runs for a given time and then stops.
 #pragma once
 
 #include <chrono>
@@ -17,7 +17,7 @@ class Halted : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// The machine stands still between calls. The same calls have the same effects, independently of the host,
+/// The machine is stopped between calls. The same calls have the same effects, independently of the host,
 /// with one exception. When the emulator advances time for a processor that has just gone to sleep, it can
 /// lose the last instructions, depending on the host. About one in a hundred transcripts then ends up to 2 us
 /// later or earlier than in the previous run, or up to 7 us with input pulses.
@@ -38,10 +38,10 @@ class AlarmClock {
   void set_up();
   /// Runs the machine for `time`, but at least for 2.5 us.
   void run_for(std::chrono::nanoseconds time);
-  /// Runs the machine and gives an input `edges` edges, one about every 4 us. Returns the duration.
+  /// Runs the machine and generates `edges` edges at an input, about one every 4 us. Returns the duration.
   std::chrono::nanoseconds make_edges(Pin pin, std::uint32_t edges);
 
-  /// From now on the machine also stops before each store to these bytes of the bus. After this call only
+  /// Makes the machine also stop before each store to these bytes of the bus. After this call only
   /// `run_to_store` may run the machine.
   void watch_stores(std::uint32_t address, std::uint32_t size);
   /// Runs the machine until the next watched store, at most for the `time` of the first call. Returns whether
@@ -72,7 +72,7 @@ class AlarmClock {
   bool at_store_ = false;      ///< the machine has stopped before a store, and the alarm has not occurred yet
   std::string watched_;        ///< the range in the debugger's format
   std::uint32_t ordered_ = 0;  ///< the time until the next alarm, in clocks
-  std::uint32_t last_report_ = 0;  ///< by the interrupt code
+  std::uint32_t last_report_ = 0;  ///< the last report of the interrupt code
 };
 
 }  // namespace ex9000::rig

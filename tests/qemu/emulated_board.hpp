@@ -28,9 +28,9 @@ class EmulatedBoard {
   /// Returns the output levels. Bit n is channel n.
   [[nodiscard]] std::uint16_t outputs();
   [[nodiscard]] bool led_lit();
-  /// Returns the baud rate and the line format of the UART as the image has configured its registers; a rate
-  /// of 0: the UART is off. Throws std::runtime_error if the line control register selects a format that
-  /// modules do not have, or enables the FIFOs.
+  /// Returns the baud rate and the line format of the UART as the image has configured its registers. The
+  /// rate is 0 if the UART is off. Throws std::runtime_error if the line control register selects a format
+  /// that modules do not have, or enables the FIFOs.
   [[nodiscard]] hal::SerialMode mode();
 
   /// Returns the emulator. Call it only while the board is powered.

@@ -70,7 +70,8 @@ Emulator::Emulator(const std::string& image, const std::string& memory) {
 }
 
 /// With reboot=shutdown the emulator halts even if a reset is requested, so this function changes the action
-/// for a moment. The emulated UARTs ignore a reset, so it restores the registers that matter.
+/// temporarily. The emulated UARTs ignore a reset, so this function also restores the registers of UART0 that
+/// affect a start.
 void Emulator::reset() {
   qmp_->execute("set-action", "return", R"({"reboot": "reset"})");
   qmp_->execute("system_reset", "RESET");

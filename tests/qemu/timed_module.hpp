@@ -15,8 +15,8 @@
 
 namespace ex9000::rig {
 
-/// The module stands still between calls. The same calls have the same effects, independently of the host.
-/// See AlarmClock.
+/// The module is stopped between calls. The same calls have the same effects, independently of the host. See
+/// AlarmClock.
 class TimedModule : public EmulatedBoard {
  public:
   using Bytes = std::vector<std::uint8_t>;
@@ -29,23 +29,23 @@ class TimedModule : public EmulatedBoard {
   void power(bool on);
   /// Switches the supply off and kills the emulator. Only the EEPROM's file remains. No time passes.
   void kill();
-  /// Resets the module with the reset pin. Does nothing without power. No time passes.
+  /// Resets the module with the reset pin. Has no effect without power. No time passes.
   void reset();
   /// Sets the level of an input channel; 100 us pass. Ignores channels that the model does not have.
   void set_input(unsigned channel, bool level);
-  /// Generates `count` complete pulses of 8 us from the present level and back.
+  /// Generates `count` pulses from the present level and back, one every 8 us.
   void pulse_input(unsigned channel, std::uint32_t count);
 
   /// Lets time pass. The image runs if the module is powered.
   void run_for(std::chrono::nanoseconds time);
-  /// Returns the time that has passed since the module was created.
+  /// Returns the time that has passed since the module was created or last replaced by `begin_anew`.
   [[nodiscard]] std::chrono::nanoseconds now() const { return now_; }
 
-  /// From now on `run_to_store` stops the module before each store to these bytes of the bus. Until `kill`,
-  /// no other function may run the module.
+  /// Makes `run_to_store` stop the module before each store to these bytes of the bus. Until `kill`, no other
+  /// function may run the module.
   void watch_stores(std::uint32_t address, std::uint32_t size) { clock_->watch_stores(address, size); }
-  /// Runs until the next watched store, at most for the `time` of the first call. Returns whether there was
-  /// one.
+  /// Runs until the next watched store, at most for the `time` of the first call. Returns whether the module
+  /// has stopped before a store.
   bool run_to_store(std::chrono::nanoseconds time) { return clock_->run_to_store(time); }
 
   /// Runs until the watchdog (`WATCHDOG`) or the image (`SHUTDOWN`) is about to reset the module. After this

@@ -10,8 +10,8 @@ const { CHIP_RESET, REASON, SCRATCH_REGISTERS } = require("./system");
 const PINS = 30;
 
 class Board {
-  // `image`: the content of the flash from its first byte on. `pins`: the numbers of the pins transmit, receive,
-  // driverEnable and data (SDA; SCL is the next pin).
+  // `image` is the content of the flash from its first byte on. `pins` contains the numbers of the pins transmit,
+  // receive, driverEnable and data (SDA; SCL is the next pin).
   constructor(image, pins) {
     this.time = new Time();
     this.pins = pins;
@@ -22,7 +22,7 @@ class Board {
     this.outside[pins.data] = true; // pull-ups
     this.outside[pins.data + 1] = true;
     this.chip = null;
-    this.trace = null; // a Trace that each chip gets
+    this.trace = null; // the Trace to which each chip is attached, or null
     this.transmitted = true;
     this.driverOn = false;
     this.echoes = true;
@@ -188,7 +188,7 @@ class Board {
     }
   }
 
-  // Rejects an enabled input that floats, because it may read as either level.
+  // Rejects an enabled input that floats, because its level is undefined.
   checkPins() {
     if (this.chip === null) {
       return;

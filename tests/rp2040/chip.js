@@ -45,7 +45,8 @@ const REJECT = {
 };
 
 class Chip {
-  // `board`: { clock, flash, pins, reason, chipReset, scratch, transmit(level), pinChanged(number), reset(reason) }
+  // `board` contains { clock, flash, pins, reason, chipReset, scratch, transmit(level), pinChanged(number),
+  // reset(reason) }.
   constructor(board) {
     this.board = board;
     this.mcu = new RP2040(board.clock);
@@ -166,8 +167,8 @@ class Chip {
     return pin.pullupEnabled;
   }
 
-  // Does what the boot ROM does: it reads the second stage until the checksum is right, so it waits while the flash is
-  // busy.
+  // Acts like the boot ROM, which reads the second stage again until the checksum is correct. While the flash is
+  // busy, the checksum cannot be correct, so this function tries again later.
   boot() {
     const { board, mcu } = this;
     mcu.core.waiting = board.flash.busy;

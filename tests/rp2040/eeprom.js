@@ -21,14 +21,14 @@ class Eeprom {
     this.reset();
   }
 
-  // Forgets the transfer on the bus.
+  // Discards the transfer on the bus.
   reset() {
     this.written = [];
     this.addressed = false;
   }
 
-  // Connects to the I2C master of a chip. `bitTime()`: the time of a bit in nanoseconds. `connected()`: whether the
-  // pins are connected to the master.
+  // Connects to the I2C master of a chip. `bitTime()` returns the duration of a bit in nanoseconds. `connected()`
+  // returns whether the pins are connected to the master.
   attach(master, clock, bitTime, connected) {
     const later = (bits, act) => {
       const alarm = clock.createAlarm(() => {

@@ -17,7 +17,7 @@ const integer = (text) => {
 const hexOf = (bytes) => Buffer.from(bytes).toString("hex");
 const bytesOf = (text) => [...Buffer.from(text ?? "", "hex")];
 
-// Loads a file to `address` of a memory, and writes each change of these bytes to it.
+// Loads a file to `address` of a memory, and writes each change of these bytes to the file.
 function keep(memory, descriptor, address) {
   const { size } = fs.fstatSync(descriptor);
   fs.readSync(descriptor, memory.content, address, size, 0);
@@ -71,7 +71,7 @@ const COMMANDS = {
       board.runUntil(until);
     }
   },
-  // queue HEX: begins to send, and returns at once
+  // queue HEX: begins to send, and returns immediately
   queue: (hex) => board.send(bytesOf(hex)),
   // receive COUNT PATIENCE: lets time pass until COUNT bytes have arrived, or until none has arrived for PATIENCE
   // nanoseconds. Returns the bytes.
@@ -104,7 +104,7 @@ const COMMANDS = {
       }
     }
   },
-  // train NUMBER COUNT NANOSECONDS: begins the same pulses, and returns at once
+  // train NUMBER COUNT NANOSECONDS: begins the same pulses, and returns immediately
   train(number, count, nanoseconds) {
     const pin = integer(number);
     let left = 2 * integer(count);
@@ -146,9 +146,10 @@ const COMMANDS = {
   flash: (address, size) => hexOf(board.flash.content.subarray(integer(address), integer(address) + integer(size))),
   // set-flash ADDRESS HEX: changes bytes of the flash chip
   "set-flash": (address, hex) => board.flash.content.set(bytesOf(hex), integer(address)),
-  // keep-flash DESCRIPTOR ADDRESS: keeps the bytes of the flash chip from ADDRESS on in an open file
+  // keep-flash DESCRIPTOR ADDRESS: loads an open file to the flash chip from ADDRESS on, and writes each change to
+  // the file
   "keep-flash": (descriptor, address) => keep(board.flash, integer(descriptor), integer(address)),
-  // keep-eeprom DESCRIPTOR: keeps the content of the EEPROM in an open file
+  // keep-eeprom DESCRIPTOR: loads an open file to the EEPROM, and writes each change to the file
   "keep-eeprom": (descriptor) => keep(board.eeprom, integer(descriptor), 0),
   // flash-times ERASE PROGRAM: sets the durations of an erase and of a page program, in nanoseconds
   "flash-times"(erase, program) {
@@ -174,9 +175,9 @@ const COMMANDS = {
   "trace-instructions"(on) {
     board.trace.instructions = on === "on";
   },
-  // note TEXT: writes a line to the same file
+  // note TEXT: writes a line to the file of the trace
   note: (...words) => board.trace.note(words.join(" ")),
-  // cycles: returns the cycles of the processor since the last reset of the chip, without those of sleep
+  // cycles: returns the cycles of the processor since the last reset of the chip, without the cycles of sleep
   cycles: () => board.chip?.mcu.core.cycles ?? 0,
 };
 

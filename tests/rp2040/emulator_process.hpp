@@ -1,4 +1,4 @@
-// The emulator of an RP2040, as a process of its own. Virtual time passes only during a command.
+// The emulator of an RP2040, in a separate process. Virtual time passes only during a command.
 #pragma once
 
 #include <string>
@@ -14,7 +14,7 @@ class EmulatorProcess {
   EmulatorProcess& operator=(const EmulatorProcess&) = delete;
 
   /// Executes a command, see emulator.js, and returns its result. Throws std::runtime_error with the reason
-  /// if the command fails, for example because the image does something that silicon rejects.
+  /// if the command fails, for example because the image does something that is an error on a real chip.
   std::string execute(const std::string& command);
 
  private:

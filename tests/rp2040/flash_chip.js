@@ -8,7 +8,7 @@ const SECTOR = 4096;
 const SUSPEND = 20_000; // ns, the largest tSUS, and the shortest time from a resume to the next suspend
 
 class FlashChip {
-  // `content`: 2 MiB, which this object changes. `times`: { erase, program } in nanoseconds.
+  // `content` has 2 MiB; this object changes it. `times` contains the durations { erase, program } in nanoseconds.
   constructor(time, content, times = { erase: 45e6, program: 400e3 }) {
     this.time = time;
     this.content = content;

@@ -1,5 +1,5 @@
-// Corrects the I2C master of rp2040js: the interrupt mask, the interrupt "queue is low", and the order of accesses that
-// silicon requires. Source: RP2040 data sheet, 4.3.
+// Corrects the I2C master of rp2040js: the interrupt mask, the interrupt "queue is low", and the order of accesses
+// that the chip requires. Source: RP2040 data sheet, 4.3.
 "use strict";
 
 const CONTROL = 0x00;

@@ -1,8 +1,8 @@
 // A serial line: a sender of characters, and a receiver that samples each bit in its middle.
 "use strict";
 
-// A character has a start bit, eight data bits, a parity bit in some formats, and stop bits. `parity`: null, or the
-// level of the parity bit of 00.
+// A character has a start bit, eight data bits, a parity bit in some formats, and stop bits. `parity` is null, or the
+// level of the parity bit of the byte 00.
 const FORMATS = {
   "8N1": { parity: null, stopBits: 1 },
   "8N2": { parity: null, stopBits: 2 },
@@ -10,9 +10,9 @@ const FORMATS = {
   "8O1": { parity: 1, stopBits: 1 },
 };
 
-// The position of the first stop bit, which is the last bit that a receiver reads. The start bit is at 0.
+// Returns the position of the first stop bit, which is the last bit that a receiver reads. The start bit is at 0.
 const firstStopBit = (format) => (format.parity === null ? 9 : 10);
-// The duration of a character in bits.
+// Returns the duration of a character in bits.
 const bitsOf = (format) => firstStopBit(format) + format.stopBits;
 
 function parityOf(byte, format) {
@@ -23,14 +23,14 @@ function parityOf(byte, format) {
   return level;
 }
 
-// The levels of a character, the start bit at bit 0.
+// Returns the levels of a character. Bit 0 is the start bit.
 function levelsOf(byte, format) {
   const stopBits = ((1 << format.stopBits) - 1) << firstStopBit(format);
   return (byte << 1) | stopBits | (format.parity === null ? 0 : parityOf(byte, format) << 9);
 }
 
 class Sender {
-  // Calls `drive(level)` to set the level, and `ended()` when the last stop bit is over.
+  // Calls `drive(level)` to set the level, and `ended()` when the last stop bit has ended.
   constructor(clock, drive, ended) {
     this.drive = drive;
     this.ended = ended;
@@ -65,7 +65,7 @@ class Sender {
 
 class Receiver {
   // Calls `receive({ byte, good, rightParity, isBreak })` in the middle of the first stop bit of each character.
-  // `good`: the stop bit is high.
+  // `good` is true if the stop bit is high.
   constructor(clock, receive) {
     this.receive = receive;
     this.bitTime = 0; // 0: off

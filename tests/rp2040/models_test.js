@@ -1,4 +1,4 @@
-// Tests that the models reject what silicon rejects, and that they take as long as silicon does.
+// Tests that the models reject what is an error on a real chip, and that they take as much time as a real chip.
 "use strict";
 const assert = require("node:assert/strict");
 const fs = require("node:fs");
@@ -87,7 +87,7 @@ test("a receiver at another rate reports framing errors, and ignores glitches", 
   assert.equal(received[0].good, false);
 });
 
-test("a UART sends with line time, and its transmit interrupt comes when the holding register is empty", () => {
+test("a UART sends 10 bits for a byte, and raises its transmit interrupt when the holding register is empty", () => {
   const chip = setUp();
   const { uart } = uartOf(chip);
   uart.writeUint32(0x38, 1 << 5);
@@ -104,7 +104,7 @@ test("a UART sends with line time, and its transmit interrupt comes when the hol
   assert.equal(uart.readUint32(0x18) & 8, 0, "the stop bit is over");
 });
 
-// Sends a byte in one format, and returns what a receiver in another one reports.
+// Sends a byte in the format `sentIn`, and returns what a receiver in the format `format` reports.
 function receivedIn(format, byte, sentIn) {
   const time = new Time();
   const received = [];
@@ -130,7 +130,7 @@ test("a character has the bits of its format, and a receiver reports it in its f
   }
 });
 
-test("a receiver reports wrong parity, and a parity bit without a stop bit", () => {
+test("a receiver reports wrong parity, and a low parity bit in place of the stop bit", () => {
   for (const [format, sentIn] of [["8E1", "8O1"], ["8O1", "8E1"]]) {
     const [{ byte, good, rightParity }] = receivedIn(format, 0x55, sentIn);
     assert.deepEqual({ byte, good, rightParity }, { byte: 0x55, good: true, rightParity: false });
@@ -166,7 +166,7 @@ test("a UART takes its format from the line control register, and reports wrong 
   assert.throws(() => uart.writeUint32(0x2c, 0x6e), /only 8N1, 8N2, 8E1 and 8O1/);
 });
 
-test("a UART reports overrun with the next byte, framing errors and breaks", () => {
+test("a UART reports an overrun with the next byte, and a break as a framing error and a break", () => {
   const chip = setUp();
   const { uart } = uartOf(chip);
   character(uart, chip.time, 1);
@@ -181,7 +181,7 @@ test("a UART reports overrun with the next byte, framing errors and breaks", () 
   assert.equal(uart.readUint32(0x00), (1 << 8) | (1 << 10));
 });
 
-test("a UART with FIFOs has levels and a receive time-out", () => {
+test("a UART with FIFOs raises interrupts at a FIFO level and at the receive time-out", () => {
   const chip = setUp();
   const { uart } = uartOf(chip, false);
   uart.writeUint32(0x24, 67);
@@ -213,7 +213,7 @@ test("a UART rejects a wrong order of its registers", () => {
   assert.throws(() => off.writeUint32(0x30, 0x301), /divisors have no effect/);
 });
 
-test("the flash erases and programs in its times, and rejects what it cannot do", () => {
+test("the flash takes time for an erase and a program, and rejects commands that it cannot execute", () => {
   const time = new Time();
   const flash = new FlashChip(time, new Uint8Array(FLASH_SIZE));
   const send = (...bytes) => {
@@ -260,7 +260,7 @@ test("the flash erases and programs in its times, and rejects what it cannot do"
   assert.equal(send(0x03, 0x1f, 0, 0, 0)[4], 0x03, "programming only clears bits");
 });
 
-test("the crystal is stable after its delay, and cannot be the reference clock before", () => {
+test("the crystal is stable after its delay, and cannot be the reference clock before that", () => {
   const { mcu, time } = setUp();
   const crystal = new Crystal(mcu, "XOSC");
   requireStable(mcu.clocks, crystal);
@@ -275,7 +275,7 @@ test("the crystal is stable after its delay, and cannot be the reference clock b
   assert.equal(mcu.clocks.refFreq, 12e6);
 });
 
-test("a power failure leaves an erase undefined", () => {
+test("a power failure leaves the content of a sector that is being erased undefined", () => {
   const time = new Time();
   const flash = new FlashChip(time, new Uint8Array(FLASH_SIZE));
   flash.writeEnabled = true;
@@ -318,7 +318,7 @@ test("a block in reset, or without its clock, cannot be used", () => {
   assert.equal(resets.readUint32(8) & uart, 0, "its clock does not run");
 });
 
-test("the watchdog counts twice a tick, and requires a tick and a full reset", () => {
+test("the watchdog counts two for each tick, and requires a tick and a reset of the whole chip", () => {
   const { mcu, time } = setUp();
   const psm = { wdsel: 0 };
   const reasons = [];
@@ -377,7 +377,7 @@ test("an I2C master rejects settings while it is on, and reports a low queue as 
   assert.throws(() => master.writeUint32(0x10, 0), /before the abort is cleared/);
 });
 
-test("a pending interrupt wakes the processor, although PRIMASK keeps its handler from running", () => {
+test("a pending interrupt wakes the processor even if PRIMASK prevents its handler from running", () => {
   const { mcu } = setUp();
   const { core } = mcu;
   const processor = new Processor(mcu);
@@ -402,7 +402,7 @@ test("a pending interrupt wakes the processor, although PRIMASK keeps its handle
   assert.equal(core.IPSR, 16);
 });
 
-test("the PLL locks while it has power, and cannot clock the system before", () => {
+test("the PLL locks while it has power, and cannot clock the system before it has locked", () => {
   const { time, mcu } = setUp();
   const pll = mcu.peripherals[0x40028];
   const crystal = { stable: false };

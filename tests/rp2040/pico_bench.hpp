@@ -16,17 +16,18 @@ namespace ex9000::pico {
 
 using board::Memory;
 
-/// All functions throw std::runtime_error if the image does something that silicon rejects.
+/// All functions throw std::runtime_error if the image does something that is an error on a real chip.
 class PicoBench {
  public:
-  /// `memory`: where the images of this board store their settings.
+  /// `memory` is the memory in which the images of this board store their settings.
   explicit PicoBench(Memory memory = Memory::Flash) : memory_(memory) {}
 
   /// Provides a new board with the image of `model`. Its supply is off. `settings` are in its memory; if the
   /// pointer is null, the memory holds no settings. A store in the flash knows that its free sectors are
   /// erased.
   void begin_anew(const Model& model, const Settings* settings);
-  /// The same with the contents of the memory in place of the settings, 384 bytes.
+  /// Provides the same board, but sets the 384 bytes of its memory to `memory`. If `memory` is empty, the
+  /// memory holds no settings.
   void begin_anew(const Model& model, const play::Bytes& memory);
   /// Lets the store in the flash of a new board erase all free sectors, as on the first start of a module.
   void forget_erased_sectors();
@@ -51,7 +52,7 @@ class PicoBench {
   void send(const play::Bytes& bytes);
   /// Returns the bytes that arrive until there are `count` of them, or until none has arrived for `patience`.
   play::Bytes receive(std::size_t count, std::chrono::nanoseconds patience);
-  /// Returns the bytes that have arrived.
+  /// Returns the bytes that have arrived and that no earlier call has returned.
   play::Bytes heard();
 
   void set_init(bool asserted);

@@ -9,7 +9,7 @@ namespace {
 using std::chrono::microseconds;
 using std::chrono::milliseconds;
 
-/// At most this time after a reset, a module is ready to reply (wire.md section 2).
+/// The longest time from a reset until a module is ready to reply (wire.md section 2).
 constexpr milliseconds kComingUp{100};
 /// The image processes a byte and updates its pins in less time.
 constexpr microseconds kSettling{100};

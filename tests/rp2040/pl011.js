@@ -1,5 +1,5 @@
-// A PL011 UART with line time, errors, overrun, FIFO levels and receive time-out. Sources: RP2040 data sheet, 4.2;
-// Arm PrimeCell UART (PL011) TRM, 2.4 and 3.3.
+// A PL011 UART with the duration of each bit, errors, overrun, FIFO levels and receive time-out. Sources: RP2040 data
+// sheet, 4.2; Arm PrimeCell UART (PL011) TRM, 2.4 and 3.3.
 "use strict";
 const { BasePeripheral } = require("rp2040js");
 const { FORMATS, Receiver, Sender, bitsOf } = require("./line");
@@ -28,7 +28,7 @@ const DEPTH = 32;
 const LEVELS = [4, 8, 16, 24, 28]; // IFLS
 
 class Pl011 extends BasePeripheral {
-  // `wires`: { transmit(level), mayReceive(), mayTransmit() }
+  // `wires` contains { transmit(level), mayReceive(), mayTransmit() }.
   constructor(rp2040, name, irq, wires) {
     super(rp2040, name);
     this.irq = irq;

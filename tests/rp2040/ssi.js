@@ -54,7 +54,7 @@ class Ssi extends BasePeripheral {
     this.divider = 0;
     this.toSend = [];
     this.received = [];
-    this.left = 0; // number of frames that an EEPROM read has still to receive
+    this.left = 0; // number of frames that an EEPROM read still has to receive
     this.shifting = false;
     this.alarm = rp2040.clock.createAlarm(() => this.frameEnds());
   }

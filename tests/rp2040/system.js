@@ -1,5 +1,5 @@
 // Resets of blocks, the power-on state machine, the source of the last chip-level reset, the watchdog with its tick,
-// and a guard that rejects the use of a block that silicon would not allow. Sources: RP2040 data sheet, 2.12.7, 2.13,
+// and a guard that rejects each access to a block that cannot be used. Sources: RP2040 data sheet, 2.12.7, 2.13,
 // 2.14, 4.6.2 and 4.7; erratum RP2040-E1.
 "use strict";
 const { BasePeripheral } = require("rp2040js");
@@ -103,7 +103,8 @@ const FIRST_SCRATCH = 0x0c;
 const isScratch = (offset) => offset >= FIRST_SCRATCH && offset < FIRST_SCRATCH + 4 * SCRATCH_REGISTERS;
 
 class Watchdog extends BasePeripheral {
-  // `scratch`: the scratch registers, which outlive the resets by the watchdog. `reset(reason)` resets the chip.
+  // `scratch` contains the scratch registers, which keep their values during a reset by the watchdog. `reset(reason)`
+  // resets the chip.
   constructor(rp2040, name, psm, { reason, scratch, reset }) {
     super(rp2040, name);
     this.psm = psm;

@@ -22,7 +22,7 @@ class ChildProcess {
 
   [[nodiscard]] int pid() const { return pid_; }
   /// Reads the output until it contains `text` at least `times` times. Returns false if the program ends
-  /// before, or if it prints nothing for 60 s.
+  /// earlier, or if it prints nothing for 60 s.
   bool wait_for(const std::string& text, unsigned times = 1);
   /// Returns all output that has been read so far.
   [[nodiscard]] const std::string& output() const { return output_; }

@@ -19,13 +19,13 @@ class ControlClient {
   std::string ask(const std::string& command);
   /// Sends a command and returns the text after `ok `. Throws std::runtime_error if the reply is an error.
   std::string ok(const std::string& command);
-  /// Sends bytes without a newline.
+  /// Sends `bytes` unchanged; adds no newline.
   void send(const std::string& bytes);
   /// Sends as many bytes as possible without blocking. Returns their number.
   std::size_t offer(const std::string& bytes);
   /// Closes the sending direction. The client can still receive.
   void close_writing();
-  /// Returns the next line without the newline. Throws std::runtime_error if the connection ends before, or
+  /// Returns the next line without the newline. Throws std::runtime_error if the connection ends earlier, or
   /// if nothing arrives for 60 s.
   std::string line();
   /// Returns whether the simulator has closed the connection and all its bytes have been read. Waits until

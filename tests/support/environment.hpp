@@ -23,8 +23,9 @@ inline std::uint64_t number_in_environment(const char* variable, std::uint64_t o
   return std::stoull(digits);
 }
 
-/// Returns true if EX9000_CUTS=all selects all cases, and false if the variable is not set, which selects
-/// some of them. Throws std::runtime_error if it has another value.
+/// Returns true if the environment variable EX9000_CUTS is `all`, which selects all cases. Returns false if
+/// the variable is not set, which selects some of the cases. Throws std::runtime_error if the variable has
+/// another value.
 inline bool all_cases_requested() {
   const char* const which = std::getenv("EX9000_CUTS");  // NOLINT(concurrency-mt-unsafe): tests set none
   if (which != nullptr && std::string(which) != "all") {

@@ -92,7 +92,7 @@ void PtyBridge::take(std::uint8_t byte) {
   if (is_whole(request_)) {
     const Bytes reply = exchange_(std::exchange(request_, {}));
     if (write(fd_, reply.data(), reply.size()) != static_cast<ssize_t>(reply.size())) {
-      throw std::runtime_error("the pseudo-terminal takes no reply");
+      throw std::runtime_error("the pseudo-terminal does not accept the reply");
     }
   }
 }

@@ -20,7 +20,7 @@ std::string shipped_simulator_path() { return EX9000_SHIPPED_SIMULATOR; }
 SimulatorProcess::SimulatorProcess(const std::vector<std::string>& arguments, const std::string& program)
     : process_(command_of(arguments, program), directory_.path()) {
   if (!wait_for("press Ctrl-C to end")) {
-    throw std::runtime_error("the simulator did not come up: " + output());
+    throw std::runtime_error("the simulator has ended, or has printed nothing for 60 s: " + output());
   }
 }
 

@@ -18,7 +18,7 @@ std::string shipped_simulator_path();
 class SimulatorProcess {
  public:
   /// Starts the program with `arguments` in a new temporary directory. Returns when it has printed its
-  /// greeting. Throws std::runtime_error if it ends before, or if it prints nothing for 60 s.
+  /// greeting. Throws std::runtime_error if the program ends earlier, or if it prints nothing for 60 s.
   explicit SimulatorProcess(const std::vector<std::string>& arguments,
                             const std::string& program = simulator_path());
 

@@ -20,7 +20,7 @@ class SocketClient {
   void send(const std::string& text) { send(std::vector<std::uint8_t>(text.begin(), text.end())); }
   /// Closes the sending direction. The client can still receive.
   void close_writing();
-  /// Closes the connection with a reset, like a program that crashes. Call no other function after this one.
+  /// Closes the connection with a TCP reset (RST). Call no other function after this one.
   void abort();
   /// Waits until `count` bytes have arrived and returns them. Returns fewer bytes if the other side closes
   /// the connection, or if none arrive for 60 s, which only detects a program that hangs.

@@ -76,8 +76,9 @@ inline void put_layout_2(const Model& model, const Settings& settings, std::uint
 /// Returns a byte that newer firmware has stored after the settings that this firmware supports.
 inline std::uint8_t unknown_byte(std::size_t index) { return static_cast<std::uint8_t>(0xC1U ^ index); }
 
-/// Returns the bytes of settings in a record without unknown settings: up to the last one that differs from
-/// its factory value, at least 19.
+/// Returns the number of bytes that a record without unknown settings uses for `settings`. The record ends
+/// after the last setting that differs from its factory value, or after `safe_value`, which is the minimum of
+/// 19 bytes.
 inline std::size_t bytes_of_settings(const Settings& settings) {
   if (settings.response_delay != 0) {
     return 55;
@@ -91,7 +92,7 @@ inline std::size_t bytes_of_settings(const Settings& settings) {
   return settings.input_filters.any() ? 51 : 19;
 }
 
-/// The bytes of settings that this firmware supports.
+/// The number of bytes of all settings that this firmware supports.
 inline constexpr std::size_t kSupportedSettings = 55;
 
 /// Extends the valid record of layout 3 at `place` to `length` bytes of settings. The settings that this

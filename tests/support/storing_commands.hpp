@@ -26,12 +26,13 @@ struct StoringCommand {
   Init init = Init::Released;
   /// Changes the settings to a state in which the command can store something.
   std::function<void(Settings&)> prepare;
-  /// Returns the frame to send: ASCII without checksum and CR, or Modbus without CRC. If it is empty, no
-  /// frame is sent, and the timeout of the host watchdog stores the settings.
+  /// Returns the frame to send: ASCII without checksum and CR, or Modbus without CRC. If this function is
+  /// empty, the test sends no frame, and the timeout of the host watchdog stores the settings.
   std::function<std::vector<std::uint8_t>(const Settings&)> frame;
   /// Applies the expected change to the settings. `outputs` are the outputs at that time.
   std::function<void(Settings&, std::uint16_t outputs)> change;
-  /// Returns the outputs after the command. Empty if the command does not change the outputs.
+  /// Returns the outputs after the command. This function is empty if the command does not change the
+  /// outputs.
   std::function<std::uint16_t(const Settings& done, std::uint16_t outputs)> drive;
   bool answered = true;  ///< false for a broadcast and for a timeout of the host watchdog
 

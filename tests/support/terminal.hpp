@@ -23,11 +23,11 @@ class Terminal {
   /// Waits until bytes arrive and returns them. Returns nothing if none arrive within `patience` on the wall
   /// clock.
   std::vector<std::uint8_t> read(std::chrono::nanoseconds patience);
-  /// Reads until the last received byte is a CR, and returns all bytes. Returns them without CR if no more
-  /// arrive within `patience`. The default only detects a program that hangs: a reply takes less than a
-  /// second, and on a busy machine a few seconds.
+  /// Reads until the last received byte is a CR, and returns all bytes. If no more bytes arrive within
+  /// `patience`, returns the bytes that have arrived. The default only detects a program that hangs: a reply
+  /// takes less than a second, and on a busy machine a few seconds.
   std::string read_line(std::chrono::milliseconds patience = std::chrono::seconds(60));
-  /// Returns the number of bytes that were read so far.
+  /// Returns the number of bytes that have been read so far.
   [[nodiscard]] std::uint64_t received() const { return received_; }
 
  private:

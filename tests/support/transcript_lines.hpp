@@ -14,7 +14,7 @@
 namespace ex9000::system {
 
 /// One process serves all transcripts, because the start of a process takes longer than most transcripts. All
-/// its lines have the same line time, so a test must play the transcripts one after another.
+/// its lines share one line time, so a test must play the transcripts one after another.
 class TranscriptLines {
  public:
   enum class Over { PseudoTerminal, Tcp };

@@ -1,4 +1,4 @@
-// Transcripts, which name their models, without scenarios.
+// Loads transcripts. A transcript names its models; a scenario does not.
 #pragma once
 
 #include <chrono>

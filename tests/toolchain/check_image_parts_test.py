@@ -95,7 +95,7 @@ class WorstCase(unittest.TestCase):
         31: Node("asks", 8, frozenset({3, 30})),
     }
 
-    def test_handlers_of_one_level_count_once_the_deepest(self) -> None:
+    def test_only_the_deepest_handler_of_a_level_counts(self) -> None:
         # 8 + 100 + 4; then 36 for the exception and 24 for its handler.
         self.assertEqual(worst_case(self.GRAPH, 0, [Level("interrupts", [10, 11, 12])]).size, 112 + 36 + 24)
 
@@ -115,7 +115,7 @@ class WorstCase(unittest.TestCase):
 
 
 class UnsuitableFiles(unittest.TestCase):
-    def test_are_named_with_the_error_and_the_remedy(self) -> None:
+    def test_an_unsuitable_file_is_named_with_the_error_and_the_remedy(self) -> None:
         with tempfile.TemporaryDirectory() as folder:
             image, missing = Path(folder, "image.elf"), Path(folder, "missing.elf")
             image.write_text("text", encoding="utf-8")
@@ -158,7 +158,7 @@ Refusal answer (const struct State & state, struct Bytes args)
         sites = call_sites.parse(self.DUMP)["_Z6answerRK5State", f"dcon.cpp:{line}:{column}"]
         return all(site.can_reach(Function("", readable, 0, 0, ())) for site in sites)
 
-    def test_parameters_decide(self) -> None:
+    def test_the_parameters_decide_which_functions_a_call_can_reach(self) -> None:
         for readable, expected in {
             "ex::read(ex::State const&, ex::Bytes, unsigned short, ex::Kind)": True,
             "ex::read(ex::State const&, ex::Bytes, unsigned short, char)": True,  # Kind can be a char
@@ -172,18 +172,18 @@ Refusal answer (const struct State & state, struct Bytes args)
             with self.subTest(readable):
                 self.assertEqual(self.reaches(9, 71, readable), expected)
 
-    def test_a_member_function_has_its_object_in_front(self) -> None:
+    def test_the_object_is_the_first_parameter_of_a_member_function(self) -> None:
         self.assertTrue(self.reaches(10, 5, "Thing::turn()"))
         self.assertFalse(self.reaches(10, 5, "Thing::turn(int)"))
 
-    def test_a_virtual_function_has_slot_parameters_and_constness(self) -> None:
+    def test_slot_parameters_and_constness_decide_which_virtual_functions_a_call_can_reach(self) -> None:
         (site,) = call_sites.parse(self.DUMP)["_Z6answerRK5State", "dcon.cpp:12:7"]
         self.assertEqual(site, call_sites.VirtualCall(3, True, 1))
         self.assertTrue(self.reaches(12, 7, "Eeprom::busy(int) const"))
         self.assertFalse(self.reaches(12, 7, "Eeprom::busy(int)"))
         self.assertFalse(self.reaches(12, 7, "Eeprom::busy() const"))
 
-    def test_for_a_named_type_only_the_number_of_parameters_decides(self) -> None:
+    def test_for_a_named_function_type_only_the_number_of_parameters_decides(self) -> None:
         self.assertTrue(self.reaches(13, 7, "ex::at(int, ex::Time)"))
         self.assertFalse(self.reaches(13, 7, "ex::at(int, ex::Time, int)"))
 
@@ -234,7 +234,7 @@ class MachineCode(unittest.TestCase):
             with self.subTest(text), self.assertRaises(StackPointerUnknown):
                 self.stack(text)
 
-    def test_calls_and_jumps_through_registers(self) -> None:
+    def test_calls_and_jumps_through_registers_are_indirect(self) -> None:
         for mnemonic, operands, expected in (
             ("blx", "r3", True),
             ("bx", "r3", True),

@@ -75,20 +75,20 @@ class Rejects(unittest.TestCase):
         with self.assertRaisesRegex(NotAnImage, message):
             info_of(flash_content(file))
 
-    def test_a_file_without_information(self) -> None:
+    def test_a_file_without_information_is_rejected(self) -> None:
         message = "no information about an image at 0xc0 or 0x1a8"
         for file in (b"text", bytes(1000), bytes(0xC1) + INFO, b"\x7fELF\x02\x01" + bytes(500)):
             self.refused(file, message)
         self.refused(b"", "contains no data")
 
-    def test_a_truncated_file(self) -> None:
+    def test_a_truncated_file_is_rejected(self) -> None:
         self.refused(STELLARIS[:-20], "ends within the information")
         self.refused(elf((0, STELLARIS))[:-20], "truncated ELF file")
         self.refused(elf((0, STELLARIS))[:60], "truncated ELF file")
         self.refused(uf2(0x10000000, PICO)[:-20], "truncated UF2 file")
         self.refused(hex_file(0, STELLARIS)[:-13], "truncated HEX file")
 
-    def test_a_damaged_file(self) -> None:
+    def test_a_damaged_file_is_rejected(self) -> None:
         self.refused(STELLARIS.replace(b"a-board", b"a\xffboard"), "damaged information")
         self.refused(STELLARIS.replace(b"a-board", bytes(7)), "damaged information")
         self.refused(uf2(0, PICO)[:512] + bytes(512), "block 1 is not a UF2 block")
@@ -97,7 +97,7 @@ class Rejects(unittest.TestCase):
         self.refused(good.replace(b":", b":0", 1), "line 1 is not a record")
         self.refused(record(7, 0, b"") + good, "record type 7")
 
-    def test_addresses_that_no_flash_has(self) -> None:
+    def test_addresses_beyond_the_largest_flash_are_rejected(self) -> None:
         self.refused(elf((0, b"a"), (0x20000000, b"b")), "at most 16 MiB")
 
 

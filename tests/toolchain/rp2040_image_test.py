@@ -84,7 +84,8 @@ class Uf2(unittest.TestCase):
                     [str(TOOLCHAIN / words[0]), *map(str, words[1:])], capture_output=True, text=True, check=False
                 )
                 self.assertEqual(done.returncode, 1)
-                self.assertEqual(done.stderr, f"{image}: it is no 32-bit little-endian ELF file\n")
+                problem = "is not a 32-bit little-endian ELF file; name the linked image"
+                self.assertEqual(done.stderr, f"{image}: {problem}\n")
 
 
 if __name__ == "__main__":

@@ -1,1 +1,1 @@
-"""Reads what a firmware image says about itself."""
+"""Reads the information that a firmware image contains about itself."""

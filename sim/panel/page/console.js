@@ -96,7 +96,8 @@ export class Console {
     const plate = chosen && this.plate;
     this.items = !model || !plate?.listening ? []
       : plate.protocol === "modbus" ? modbusItems(model) : dconItems(model, plate.address);
-    this.item.replaceChildren(make("option", {value: ""}, this.items.length ? "choose, or type" : "type a request"),
+    const hint = this.items.length ? "choose or type a request" : "type a request";
+    this.item.replaceChildren(make("option", {value: ""}, hint),
       ...this.items.map(({label}, index) => make("option", {value: String(index)}, label)));
   }
 

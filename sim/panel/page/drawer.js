@@ -53,7 +53,7 @@ export class Drawer {
       "Host watchdog": `${settings.watchdog ? "enabled" : "disabled"}, ${(settings.timeout / 10).toFixed(1)} s`,
       "Restarted by": settings.fedByRequests ? "host OK and requests" : "host OK",
       "Timeout status": settings.timedOut ? "set" : "clear",
-      "Reset status": plate.listening && guard?.resetStatus ? "reset since last asked" : "–",
+      "Reset status": plate.listening && guard?.resetStatus ? "reset since the last query" : "–",
       "Module watchdog": `${plate.resets} resets`,
     };
     for (const [name, element] of Object.entries(this.settings)) {

@@ -27,7 +27,8 @@ export class Faults {
   form(modules) {
     const text = make("input", {type: "text", placeholder: "late-reply 50ms every 5th reply", autocomplete: "off",
       spellcheck: "false", size: "30", "aria-label": "Another fault"});
-    const whose = make("select", {"aria-label": "Whose"}, make("option", {value: ""}, "the line, all its modules"),
+    const whose = make("select", {"aria-label": "Target of the fault"},
+      make("option", {value: ""}, "the line and all its modules"),
       ...modules.map(({position, model}) => make("option", {value: position}, `${position + 1} ${model}`)));
     return make("form", {class: "bar", onsubmit: async (event) => {
       event.preventDefault();
@@ -91,9 +92,9 @@ export class Faults {
       const these = on.get(key) ?? [];
       this.known.get(key).numbers = these.map((fault) => fault.number);
       knob.show(these.length > 0);
-      setAttribute(item, "data-strikes", these.some((fault) => fault.strikes));
-      const struck = these.reduce((sum, fault) => sum + fault.soFar, 0);
-      setText(count, these.length ? `struck ${struck}×` : "");
+      setAttribute(item, "data-in-progress", these.some((fault) => fault.inProgress));
+      const occurrences = these.reduce((sum, fault) => sum + fault.soFar, 0);
+      setText(count, these.length ? `occurred ${occurrences}×` : "");
     }
   }
 }

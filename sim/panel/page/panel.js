@@ -148,7 +148,7 @@ function repaint(when) {
 /// The text for each reason of a lost connection.
 const reasons = {
   gone: "Not connected to the simulator; trying again. The page shows the last known state.",
-  tooMany: "Too many pages are open already – waiting until another is closed.",
+  tooMany: "Too many pages are open. This page connects when another page is closed.",
 };
 
 function lost(why) {

@@ -58,7 +58,7 @@ export class Timeline {
   setPaused(paused) {
     this.paused = paused;
     setAttribute(this.pause, "aria-pressed", paused);
-    setText(this.pause, paused ? "Go on" : "Pause");
+    setText(this.pause, paused ? "Resume" : "Pause");
     this.strip.setPaused(paused);
     this.list.paused = paused;
     if (!paused) {

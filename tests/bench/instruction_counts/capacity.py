@@ -25,7 +25,7 @@ class Found:
         self.received_byte = 0
         self.sent_byte = 0
         self.interrupts = {}
-        self.edges = {}  # number of edges served at once -> instructions of the whole interrupt
+        self.edges = {}  # number of edges that one interrupt serves -> its instructions
 
     def add(self, counter):
         """Adds the counts of a counter.Counter."""

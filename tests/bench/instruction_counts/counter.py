@@ -76,7 +76,7 @@ class Counter:
         self._of_the_tick = {execution.as_logged(address) for address in of_the_tick}
         self._seen = threading.Event()
         self._pass = None  # addresses of the current pass; None between passes
-        self.answered = False  # the driver enable has gone off
+        self.answered = False  # the driver enable has been switched off
         self.nothing_happens = False  # nothing except ticks happens
         self.at_rest = False  # the main loop has gone to sleep, and no interrupt has occurred since
         self.requests = {}
@@ -88,7 +88,7 @@ class Counter:
         self.received_byte = Highest()
         self.sent_byte = Highest()
         self.interrupts = {}  # other interrupts, by exception number
-        self.edges = {}  # by the number of edges served at once
+        self.edges = {}  # by the number of edges that one interrupt serves
         self.ticks_turn = Highest()
         self.idling = Sum()  # all code that is executed while only ticks occur
 

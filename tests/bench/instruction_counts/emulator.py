@@ -37,7 +37,7 @@ HERTZ = 50_000_000
 AT_RESET = 4  # clock divisor at reset, relative to HERTZ
 INTERRUPT_TAKES = 0.7e-6
 ROOT = pathlib.Path(__file__).resolve().parents[3]
-HANG = 60  # seconds; only detects a hang: a busy machine is faster than this
+HANG = 60  # seconds; only detects a hang: even a busy machine is faster than this
 
 
 def alarm_code():
@@ -51,7 +51,7 @@ def alarm_code():
 
 
 def die_with_parent():
-    """Ends the calling child process when this program ends, even if the user interrupts it. Linux only."""
+    """Makes the kernel end the calling child process when its parent ends, for whatever reason. Linux only."""
     set_parent_death_signal = 1
     ctypes.CDLL(None).prctl(set_parent_death_signal, signal.SIGKILL)
 
@@ -59,8 +59,8 @@ def die_with_parent():
 class Emulator:
     """The emulator runs only during `run_for`. `log` is a stream of lines, which a thread must read continuously.
 
-    The emulated time is independent of real time: 8 ns for each instruction, however long logging takes. It stands
-    still between calls of `run_for`: an interrupt of this tool stops the emulator at a gate (tests/qemu/gate.cpp).
+    The emulated time is independent of real time: 8 ns for each instruction, however long logging takes. The emulated
+    time stops between calls of `run_for`: an interrupt of this tool stops the emulator at a gate (tests/qemu/gate.cpp).
     execution.follow excludes that interrupt. -singlestep executes one instruction at a time, so that each one is
     logged.
     """

@@ -61,7 +61,7 @@ class Session:
                 self._set_init(False)
 
     def count_edges(self, passes):
-        """Changes each input alone, then all inputs of a group at once. Levels alternate between high and low."""
+        """Changes each input alone, then all inputs of a group together. Levels alternate between high and low."""
         groups = self._board.groups
         for pins in [[pin] for group in groups for pin in group] + groups:
             for attempt in range(passes):
@@ -150,7 +150,7 @@ class Session:
         raise RuntimeError(f"{self._model.name}: {name} does not end")
 
     def _let_counter_catch_up(self):
-        """Waits until the counter has read the log up to now. The emulator stands still meanwhile."""
+        """Waits until the counter has read the log up to now. The emulator does not run during this time."""
         self._emulator.write_sync_line()
         self.counter.wait_until_seen(HANG)
 

@@ -7,7 +7,7 @@
 // Fails if one module costs more than its limit, or if a module requires too much memory. The limit applies
 // to the best round, because other programs on the processors disturb single rounds. The cost of many modules
 // is only printed, because other programs change it if they use the caches.
-// tests/bench/simulator_instructions judges that cost.
+// tests/bench/simulator_instructions checks that cost.
 #include <sched.h>
 
 #include <array>
@@ -54,8 +54,8 @@ void judge(const std::string& what, double ratio, double target, double limit) {
 }
 
 /// Restricts this process, and the servers that it starts, to one processor while this object exists. On two
-/// processors, a program that wakes another one sometimes needs ten times the processor time of a transaction
-/// for that, and sometimes none. This changes from round to round.
+/// processors, it sometimes takes ten times the processor time of a transaction to wake another program, and
+/// sometimes none. This cost changes from round to round.
 class OneProcessor {
  public:
   OneProcessor() {

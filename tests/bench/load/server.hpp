@@ -46,7 +46,7 @@ inline double processor_seconds(int pid) {
   return static_cast<double>(time.tv_sec) + static_cast<double>(time.tv_nsec) * 1e-9;
 }
 
-/// Returns the time that all processors of the machine together have been busy since it started, in seconds.
+/// Returns the time that all processors together have been busy since the machine started, in seconds.
 /// Includes all programs and the time that a hypervisor has given to other machines.
 inline double busy_seconds() {
   std::ifstream file("/proc/stat");

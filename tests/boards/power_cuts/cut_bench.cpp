@@ -43,8 +43,8 @@ bool CutBench::has_unfinished_update(const Contents& contents) const {
 
 constexpr std::size_t pages_of(std::size_t bytes) { return (bytes + kStoredPage - 1) / kStoredPage; }
 
-/// Returns the number of pages that the next store, of `settings`, programs, including those that invalidate
-/// old copies (firmware/settings/store.hpp).
+/// Returns the number of pages that the next store programs if it stores `settings`. Includes the pages that
+/// invalidate old copies (firmware/settings/store.hpp).
 std::size_t CutBench::pages_of_a_store(const Contents& contents, const Settings& settings) const {
   const StoringModel storing = storing_model(model_);
   const std::size_t place = place_that_counts(storing, contents.data());
@@ -252,8 +252,8 @@ FrameFormat CutBench::get_ready(const Contents& contents, const Settings& before
   return frame_format;
 }
 
-/// Waits until the module has finished an update that a power cut has interrupted: it saves the settings once
-/// more and invalidates the old copies, without a command.
+/// Waits until the module has finished an update that a power cut has interrupted. Without a command, the
+/// module stores the settings once more and invalidates the old copies.
 void CutBench::finish_update() {
   const Instant gives_up = bench_.timeline.now() + kFinishesAnUpdateWithin;
   while (has_unfinished_update(CutBench::contents()) && bench_.timeline.now() < gives_up) {
@@ -286,7 +286,7 @@ Cuts CutBench::cut_everywhere(const Contents& contents, const Settings& before,
     note_cuts(cuts);
     cuts.events.push_back(bench_.timeline.now() - began);
     if (bench_.eeprom.programming()) {
-      // A timeout drives the outputs at once; a command drives them when it is stored.
+      // A timeout drives the outputs immediately. A command drives them when it is stored.
       EXPECT_EQ(bench_.outputs(), command.is_timeout() ? outputs_done : cuts.outputs);
     }
   });

@@ -25,9 +25,10 @@ using Contents = std::array<std::uint8_t, kStoredMemory>;
 /// The results of power cuts during one command.
 struct Cuts {
   std::size_t points = 0;  ///< on the bus, and within each byte that is programmed
-  std::size_t cuts = 0;    ///< points, multiplied by the effects that a cut may have on the page
-  /// Each of the resulting contents, once. True: after at least one of these cuts the command was certainly
-  /// done, because the reply had begun, or because enough time had passed for a command without a reply.
+  std::size_t cuts = 0;    ///< each point counts once for each effect that a cut may have on the page
+  /// Each of the resulting contents, once. The value is true if the command was certainly done after at least
+  /// one of these cuts, because the reply had begun, or because enough time had passed for a command without
+  /// a reply.
   std::map<Contents, bool> left;
   std::uint16_t outputs = 0;    ///< before the command
   std::vector<Instant> events;  ///< times of events on the EEPROM's bus, from the beginning of the command
@@ -59,8 +60,8 @@ struct Attempt {
   Instant reply_after{0};  ///< from the end of the request until the driver is on; up to 0.1 ms too short
   unsigned spoiled = 0;    ///< bytes that the memory has stored incorrectly
   unsigned tries = 0;      ///< number of pages that were programmed with at least 20 bytes
-  std::vector<Contents> meanwhile;  ///< until the reply began, or the last page was programmed
-  std::vector<Contents> behind;     ///< after that time, for more than a second
+  std::vector<Contents> meanwhile;  ///< at each event before the reply; without a reply, at each event
+  std::vector<Contents> behind;     ///< at each event after that for more than a second, and at the end
   std::uint16_t outputs_before = 0;
   std::uint16_t outputs = 0;  ///< at the end
 };
@@ -79,7 +80,7 @@ class CutBench {
                          const StoringCommand& command);
 
   /// Starts a module with `contents`, which a cut during the first store after an update has left, and lets
-  /// it finish the update. Returns no cuts if nothing is unfinished.
+  /// it finish the update. Returns no cuts if the update is already complete.
   Cuts cut_while_finishing_update(const Contents& contents);
 
   /// Starts a module with `contents`, which store `before`. Then wears out its memory: the bits `bits` of the
@@ -94,8 +95,8 @@ class CutBench {
   [[nodiscard]] std::uint16_t outputs_before(const Settings& settings) const;
 
   /// Starts the module with `contents` and reads all its settings with the protocol, baud rate and address of
-  /// the first of `guesses` to which the module replies. Modbus cannot read the data format: if `thoroughly`,
-  /// the format is read in INIT mode; otherwise it is taken from the guess.
+  /// the first of `guesses` to which the module replies. Modbus has no register for the data format. If
+  /// `thoroughly` is true, reads the format in INIT mode; otherwise uses the format of the guess.
   Found come_up(const Contents& contents, const std::vector<Settings>& guesses, bool thoroughly);
 
  private:
@@ -119,7 +120,8 @@ class CutBench {
                  std::size_t pages);
 
   const Model& model_;
-  Outputs shown_;  ///< except for the present levels; declared before the board because it must outlive it
+  /// Does not include the present levels. Declared before `bench_` because it must outlive `bench_`.
+  Outputs shown_;
   BoardBench bench_;
 };
 

@@ -1,6 +1,6 @@
 // Tests a worn-out EEPROM: it acknowledges everything, but some bits of one byte keep a fixed value. The
-// firmware reads back every write, so wire.md 8 still holds: "If a write fails, the module replies `?AA` or
-// exception 04, and everything stays as it was." As wire.md D15 requires, the firmware tries the store three
+// firmware reads back every write, so wire.md section 8 still applies: "If a write fails, the module replies
+// `?AA` or exception 04, and nothing changes." As wire.md D15 requires, the firmware tries the store three
 // times.
 #include <gtest/gtest.h>
 
@@ -29,8 +29,8 @@ struct Stuck {
 constexpr Stuck kStuck[] = {{23, 0xFF, 0x00}, {4, 0x80, 0x80},  {25, 0xFF, 0xFF},
                             {2, 0x03, 0x03},  {24, 0x55, 0xAA}, {14, 0xFF, 0x00}};
 
-/// Returns the number of pages of a record with these settings. Those of firmware/extensions.md are in the
-/// second page.
+/// Returns the number of pages of a record with these settings. The settings of firmware/extensions.md are in
+/// the second page.
 unsigned pages_of(const Settings& settings) { return bytes_of_settings(settings) > 19 ? 2 : 1; }
 
 class WornPageOf : public testing::TestWithParam<ImageName> {

@@ -1,5 +1,5 @@
-// Tests what only boards/pico/run does: the memory of the images with an EEPROM, and what the module does on
-// the line.
+// Tests what only boards/pico/run does: the file of the EEPROM, the baud rate of the master, and the error if
+// Node.js is missing.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -19,8 +19,8 @@ TEST(PicoRun, AnImageWithAnEepromStoresItsSettingsInTheEepromFile) {
   EXPECT_EQ(RunningImage::of_file(image).ask("$01M"), "!019043D");
 }
 
-/// The master has the new rate of the module after the next start, without an option.
-TEST(PicoRun, TheMasterFollowsTheBaudRateOfTheModule) {
+/// After the next start, the master uses the new rate of the module without an option.
+TEST(PicoRun, TheMasterUsesTheStoredBaudRateOfTheModule) {
   const Directory directory;
   const Arguments options{"--flash", directory / "flash"};
   Arguments grounded = options;

@@ -1,4 +1,4 @@
-// Tests what only boards/lm3s6965evb/run does: resets, and the errors of QEMU.
+// Tests what only boards/lm3s6965evb/run does: resets through a debugger, and the errors of QEMU.
 #include <gtest/gtest.h>
 
 #include <array>

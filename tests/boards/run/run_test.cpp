@@ -1,4 +1,4 @@
-// Tests that each program boards/BOARD/run must pass. It is built once for each board that has such a
+// These tests apply to each program boards/BOARD/run. They are built once for each board that has such a
 // program.
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -44,7 +44,7 @@ TEST(Run, LibmodbusReadsBackTheCoilsThatItHasWritten) {
   EXPECT_EQ(errno, EMBXILADD);
 }
 
-TEST(Run, ACommandMayBeTypedByHand) {
+TEST(Run, TheModuleRepliesToACommandThatIsTypedByHand) {
   // A busy machine makes the pauses longer, which does not affect the result.
   constexpr std::chrono::milliseconds kBetweenKeys{50};
   const RunningImage image("EX9042D");

@@ -43,7 +43,7 @@ class RunningImage {
     return {File{image}, options};
   }
 
-  /// Returns the first line of its output, which names the terminal.
+  /// Returns the first line of the program's output, which is the path of the terminal.
   [[nodiscard]] std::string tty() const { return process_.output().substr(0, process_.output().find('\n')); }
   ChildProcess& process() { return process_; }
   [[nodiscard]] int emulator() const {
@@ -56,7 +56,7 @@ class RunningImage {
 
   /// Sends a command and its CR, and returns the reply up to its CR.
   [[nodiscard]] std::string ask(const std::string& command) const { return ask_behind("", command); }
-  /// Like `ask`, but first skips replies to earlier requests, which are all `before`.
+  /// Works like `ask`, but first skips the replies to earlier requests, each of which is `before`.
   [[nodiscard]] std::string ask_behind(const std::string& before, const std::string& command) const {
     Terminal terminal(tty(), 9600);
     terminal.type(command + "\r");
@@ -97,7 +97,7 @@ class RunningImage {
   ChildProcess process_;
 };
 
-/// Returns whether the process has ended. It may still have an entry that its parent has not read.
+/// Returns whether the process has ended. Its parent may not have read its exit status yet.
 inline bool has_ended(int pid) {
   std::ifstream status("/proc/" + std::to_string(pid) + "/stat");
   std::string number;

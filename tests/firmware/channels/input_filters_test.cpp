@@ -27,13 +27,13 @@ class InputFiltersTest : public testing::Test {
   }
   [[nodiscard]] Duration until_settled() const { return inputs_.until_settled(edges_, now_, kLong); }
 
-  Time now_{0xFFFF'FF00U};  // times wrap soon
+  Time now_{0xFFFF'FF00U};  // the clock wraps soon
   InputFilters filters_;
   InputEdges edges_;
   Inputs inputs_;
 };
 
-TEST_F(InputFiltersTest, ALevelCountsWhenItHasStoodForTheTimeOfTheFilterNeverEarly) {
+TEST_F(InputFiltersTest, ALevelIsAcceptedAfterTheFilterTimeAndNeverEarlier) {
   for (const std::uint16_t time : std::initializer_list<std::uint16_t>{1, 20, 2000}) {
     use_filter(time);
     const bool level = !high();
@@ -49,7 +49,7 @@ TEST_F(InputFiltersTest, ALevelCountsWhenItHasStoodForTheTimeOfTheFilterNeverEar
   }
 }
 
-TEST_F(InputFiltersTest, EveryEdgeStartsTheTimeAgainEvenOfAPulseThatIsOver) {
+TEST_F(InputFiltersTest, EveryEdgeRestartsTheFilterTimeEvenIfItsPulseIsOver) {
   use_filter(10);
   edge(true);
   pass(milliseconds(9));
@@ -101,7 +101,7 @@ TEST_F(InputFiltersTest, ANewFilterTimeAppliesFromTheLastEdge) {
   EXPECT_TRUE(high());
 }
 
-TEST_F(InputFiltersTest, ANewFilterTimeThatIsAlreadyOverLetsTheLevelCountAtOnce) {
+TEST_F(InputFiltersTest, ALevelIsAcceptedImmediatelyIfTheNewFilterTimeIsOver) {
   for (const std::uint16_t time : std::initializer_list<std::uint16_t>{0, 1, 49}) {
     use_filter(100);
     const bool level = !high();
@@ -112,7 +112,7 @@ TEST_F(InputFiltersTest, ANewFilterTimeThatIsAlreadyOverLetsTheLevelCountAtOnce)
     pass(Duration());
     EXPECT_EQ(high(), level) << time;
   }
-  EXPECT_EQ(inputs_.long_counter(kChannel), 1U);  // one of the three edges was a falling one
+  EXPECT_EQ(inputs_.long_counter(kChannel), 1U);  // only one of the three edges was a falling edge
 }
 
 TEST_F(InputFiltersTest, AfterTheFilterIsSwitchedOffEveryEdgeCountsAgain) {
@@ -154,7 +154,7 @@ TEST_F(InputFiltersTest, AnInvertedChannelCountsTheOppositeEdges) {
   EXPECT_EQ(inputs_.latched_high(), kBit);
 }
 
-TEST_F(InputFiltersTest, ALevelThatIsSettlingGoesOnSettlingWhenTheInversionChanges) {
+TEST_F(InputFiltersTest, AChangeOfTheInversionDoesNotStopTheFilterTime) {
   use_filter(10);
   edge(true);
   pass(milliseconds(5));
@@ -165,7 +165,7 @@ TEST_F(InputFiltersTest, ALevelThatIsSettlingGoesOnSettlingWhenTheInversionChang
   EXPECT_FALSE(high());
   EXPECT_EQ(inputs_.latched_low(), kBit);
   EXPECT_EQ(inputs_.latched_high(), 0U);
-  EXPECT_EQ(inputs_.counter(kChannel), 1U);  // falling
+  EXPECT_EQ(inputs_.counter(kChannel), 1U);  // the falling edge
 }
 
 }  // namespace

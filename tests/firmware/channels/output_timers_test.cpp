@@ -7,8 +7,8 @@ namespace ex9000 {
 namespace {
 
 constexpr Duration kLong = milliseconds(10'000);
-/// A timer ends this many microseconds late, because the output is switched on during a pass of the main
-/// loop.
+/// A timer runs this many microseconds longer than its units, because the main loop switches the output on
+/// later in the same pass.
 constexpr std::uint32_t kLate = 300;
 
 class OutputTimersTest : public testing::Test {
@@ -16,17 +16,17 @@ class OutputTimersTest : public testing::Test {
   void pass(Duration time) { now_ = now_ + time; }
 
   OutputTimers timers_;
-  Time now_{0xFFFF'FF00U};  // times wrap soon
+  Time now_{0xFFFF'FF00U};  // the clock wraps soon
 };
 
-TEST_F(OutputTimersTest, NoneIsRunningAtFirst) {
+TEST_F(OutputTimersTest, NoTimerRunsAtFirst) {
   EXPECT_EQ(timers_.running(), 0U);
   EXPECT_EQ(timers_.left(0), 0U);
   EXPECT_EQ(timers_.expire(now_), 0U);
   EXPECT_TRUE(timers_.until_due(now_, kLong) == kLong);
 }
 
-TEST_F(OutputTimersTest, EachEndsAfterItsTimeNeverEarly) {
+TEST_F(OutputTimersTest, EachTimerEndsAfterItsTimeAndNeverEarly) {
   for (unsigned channel = 0; channel < kMaxOutputs; ++channel) {
     timers_.start(channel, static_cast<std::uint16_t>(channel + 1), now_);
   }
@@ -41,7 +41,7 @@ TEST_F(OutputTimersTest, EachEndsAfterItsTimeNeverEarly) {
   EXPECT_EQ(timers_.running(), 0U);
 }
 
-TEST_F(OutputTimersTest, WhatIsLeftIsRoundedUp) {
+TEST_F(OutputTimersTest, TheRemainingTimeIsRoundedUp) {
   timers_.start(3, 3, now_);
   EXPECT_EQ(timers_.left(3), 3U);
   pass(milliseconds(100));
@@ -53,7 +53,7 @@ TEST_F(OutputTimersTest, WhatIsLeftIsRoundedUp) {
   EXPECT_EQ(timers_.left(2), 0U);
 }
 
-TEST_F(OutputTimersTest, TheLongestTimeIsExactAlthoughItIsLongerThanTimesCanExpress) {
+TEST_F(OutputTimersTest, TheLongestTimeIsExactAlthoughItExceedsTheRangeOfTheClock) {
   timers_.start(15, 0xFFFF, now_);
   for (unsigned unit = 1; unit <= 0xFFFF; ++unit) {
     pass(milliseconds(100));
@@ -73,7 +73,7 @@ TEST_F(OutputTimersTest, SeveralUnitsMayPassBetweenTwoCalls) {
   EXPECT_EQ(timers_.expire(now_), 1U);
 }
 
-TEST_F(OutputTimersTest, OneThatIsStartedAgainRunsForItsNewTime) {
+TEST_F(OutputTimersTest, ATimerThatIsStartedAgainRunsForItsNewTime) {
   timers_.start(1, 1, now_);
   pass(milliseconds(90));
   timers_.start(1, 2, now_);
@@ -83,7 +83,7 @@ TEST_F(OutputTimersTest, OneThatIsStartedAgainRunsForItsNewTime) {
   EXPECT_EQ(timers_.expire(now_), 2U);
 }
 
-TEST_F(OutputTimersTest, OneThatIsStoppedNeverEnds) {
+TEST_F(OutputTimersTest, AStoppedTimerNeverEnds) {
   timers_.start(1, 1, now_);
   timers_.start(2, 1, now_);
   timers_.stop(1U << 1U);
@@ -93,7 +93,7 @@ TEST_F(OutputTimersTest, OneThatIsStoppedNeverEnds) {
   EXPECT_EQ(timers_.expire(now_), 1U << 2U);
 }
 
-TEST_F(OutputTimersTest, TheNextUnitOfAnyTimerIsDueNext) {
+TEST_F(OutputTimersTest, UntilDueReturnsTheTimeToTheNextUnitOfAnyTimer) {
   timers_.start(7, 9, now_);
   pass(milliseconds(30));
   timers_.start(2, 9, now_);

@@ -16,22 +16,22 @@ std::string data_of(std::uint8_t inputs, std::uint8_t outputs) {
   return {reply.bytes().begin(), reply.bytes().end()};
 }
 
-TEST(Data, OfMoreThanEightOutputsHasBothOutputBytesHighByteFirst) {
+TEST(Data, MoreThanEightOutputsTakeBothBytesHighByteFirst) {
   EXPECT_EQ(data_of(0, 9), "1234");
   EXPECT_EQ(data_of(0, 16), "1234");
 }
 
-TEST(Data, OfMoreThanEightInputsHasBothInputBytesHighByteFirst) {
+TEST(Data, MoreThanEightInputsTakeBothBytesHighByteFirst) {
   EXPECT_EQ(data_of(9, 0), "5678");
   EXPECT_EQ(data_of(16, 0), "5678");
 }
 
-TEST(Data, OfUpToEightOutputsAndInputsHasOutputsFirst) {
+TEST(Data, UpToEightOutputsPrecedeTheInputs) {
   EXPECT_EQ(data_of(8, 8), "3478");
   EXPECT_EQ(data_of(1, 1), "3478");
 }
 
-TEST(Data, OfUpToEightInputsWithoutOutputsHasTheInputsFirst) { EXPECT_EQ(data_of(8, 0), "7800"); }
+TEST(Data, UpToEightInputsComeFirstIfThereAreNoOutputs) { EXPECT_EQ(data_of(8, 0), "7800"); }
 
 }  // namespace
 }  // namespace ex9000::dcon

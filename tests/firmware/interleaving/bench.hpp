@@ -135,7 +135,7 @@ class Bench {
   }
   void is_asked(const std::string& reply) { asked[reply] = chip_.now; }
 
-  /// Like `rest`, but the main loop is woken every 10 microseconds.
+  /// Does the same as `rest`, and also wakes the main loop every 10 microseconds.
   void rest_restlessly(Duration length) {
     constexpr std::uint32_t kStep = 10;
     for (std::uint32_t passed = 0; passed < length.microseconds(); passed += kStep) {

@@ -44,8 +44,8 @@ class Interleaver {
     }
   }
 
-  /// For each point, tries all steps at this point, and then one step each at this point and at the points
-  /// after it.
+  /// For each point, first tries all steps at this point. Then tries the first step at this point and each
+  /// further step at the next point.
   void at_every_point() {
     for (int point = 0; point < static_cast<int>(points_); ++point) {
       check(Places(steps_, point));

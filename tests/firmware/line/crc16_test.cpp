@@ -26,7 +26,7 @@ const std::vector<FrameBytes> kWorkedFrames{
     {0x01, 0x11, 0x08, 0x90, 0x42, 0xFF, 0x39, 0x30, 0x34, 0x32, 0x4D, 0x4D, 0x71},
 };
 
-TEST(Crc16, OfNoBytesIsFFFF) { EXPECT_EQ(Crc16().value(), 0xFFFF); }
+TEST(Crc16, TheCrcOfNoBytesIsFFFF) { EXPECT_EQ(Crc16().value(), 0xFFFF); }
 
 TEST(Crc16, TheCheckValueIs4B37) {
   Crc16 crc;
@@ -43,7 +43,7 @@ TEST(Crc16, TheExampleOfTheSerialLineGuideIs1241) {
   EXPECT_EQ(crc.high_byte(), 0x12);
 }
 
-TEST(Crc16, OfSwitchingChannel0OnIs3A8C) {
+TEST(Crc16, TheCrcOfSwitchingChannel0OnIs3A8C) {
   EXPECT_EQ(crc_of({0x01, 0x05, 0x00, 0x00, 0xFF, 0x00}).value(), 0x3A8C);
 }
 

@@ -101,7 +101,7 @@ TEST_F(DconAssemblerTest, AnyCharacterButCarriageReturnIsContentWithinAFrame) {
   }
 }
 
-TEST_F(DconAssemblerTest, ASecondDelimiterDoesNotStartAnew) {
+TEST_F(DconAssemblerTest, ASecondDelimiterDoesNotStartANewFrame) {
   EXPECT_EQ(put("$02$01M\r"), Verdict::Foreign);
   expect_hunting();
 }
@@ -259,14 +259,14 @@ TEST_F(DconAssemblerTest, AFrameThatEndsWhileAnotherWaitsIsDropped) {
   expect_hunting();
 }
 
-TEST_F(DconAssemblerTest, AHostOkNeedsNoRoom) {
+TEST_F(DconAssemblerTest, AHostOkIsRecognisedWhileTheQueueIsFull) {
   EXPECT_EQ(put("$01M\r"), Verdict::Accepted);
   EXPECT_EQ(put("~**\r"), Verdict::HostOk);
   EXPECT_EQ(put("~**\r"), Verdict::HostOk);
   EXPECT_EQ(taken(), "$01M");
 }
 
-TEST_F(DconAssemblerTest, AForeignFrameNeedsNoRoom) {
+TEST_F(DconAssemblerTest, AForeignFrameIsRecognisedWhileTheQueueIsFull) {
   EXPECT_EQ(put("$01M\r"), Verdict::Accepted);
   EXPECT_EQ(put("$02M\r"), Verdict::Foreign);
   EXPECT_EQ(taken(), "$01M");

@@ -136,7 +136,7 @@ TEST_F(DconAssemblerTest, TheSampleBroadcastIsAccepted) {
   EXPECT_EQ(taken(), "#**");
 }
 
-TEST_F(DconAssemblerTest, TheHostOkBroadcastIsRecognizedAndNotQueued) {
+TEST_F(DconAssemblerTest, TheHostOkBroadcastIsRecognisedAndNotQueued) {
   EXPECT_EQ(put("~**\r"), Verdict::HostOk);
   EXPECT_EQ(taken(), "nothing");
   expect_hunting();

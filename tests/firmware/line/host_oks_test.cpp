@@ -6,7 +6,7 @@
 namespace ex9000 {
 namespace {
 
-TEST(HostOks, NoneIsWaitingAtFirst) {
+TEST(HostOks, NoHostOkIsWaitingAtFirst) {
   const HostOks host_oks;
   EXPECT_FALSE(host_oks.waiting());
   EXPECT_EQ(host_oks.received(), 0U);
@@ -22,7 +22,7 @@ TEST(HostOks, AHostOkWaitsUntilItIsTaken) {
   EXPECT_FALSE(host_oks.waiting());
 }
 
-TEST(HostOks, OfSeveralTheTimesOfTheFirstAndTheLastAreTaken) {
+TEST(HostOks, TheTimesOfTheFirstAndTheLastOfSeveralAreTaken) {
   HostOks host_oks;
   for (const std::uint32_t time : {5U, 6U, 7U}) {
     host_oks.add_in_interrupt(Time(time));

@@ -110,7 +110,7 @@ TEST_F(ReceiverTest, EveryDamagedByteIsCountedInBothProtocols) {
   }
 }
 
-TEST_F(ReceiverTest, AFrameForWhichThereIsNoRoomIsCountedOnce) {
+TEST_F(ReceiverTest, AFrameThatIsLostBecauseTheQueueIsFullIsCountedOnce) {
   listen(Protocol::Ascii);
   text("$01M\r$01F\r");
   EXPECT_EQ(receiver_.tallies().lost_frames(), 1U);

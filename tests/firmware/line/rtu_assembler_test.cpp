@@ -344,7 +344,7 @@ TEST_F(RtuAssemblerTest, AFrameThatEndsWhileAnotherWaitsIsDropped) {
   expect_next_frame_accepted();
 }
 
-TEST_F(RtuAssemblerTest, AHostOkAndAForeignFrameNeedNoRoom) {
+TEST_F(RtuAssemblerTest, AHostOkAndAForeignFrameAreRecognisedWhileTheQueueIsFull) {
   wire_.collect = false;
   EXPECT_EQ(verdict_of(kChannel0On), Verdict::Accepted);
   EXPECT_EQ(verdict_of(with_crc({0x01, 0x03, 0x30, 0x38, 0x00, 0x00})), Verdict::HostOk);
@@ -382,7 +382,7 @@ TEST_F(RtuAssemblerTest, ACompleteFrameCutOffBeforeItsSilenceIsAccepted) {
   expect_next_frame_accepted();
 }
 
-TEST_F(RtuAssemblerTest, TheNextFrameMayFollowADiscardedOneAtOnce) {
+TEST_F(RtuAssemblerTest, TheNextFrameMayFollowADiscardedOneImmediately) {
   wire_.byte(0x01, ByteStatus::FramingError);
   wire_.byte(0x05, ByteStatus::Overrun);
   EXPECT_EQ(assembler_.cut_off(queue_), Verdict::Open);

@@ -36,16 +36,17 @@ inline FrameBytes behind(std::uint8_t first, const FrameBytes& frame) {
   return bytes;
 }
 
-/// Returns T1.5 or T3.5 of the Modbus serial line guide: a number of half characters of 11 bits up to 19200
-/// baud, and above that `fixed`, which is 750 or 1750 microseconds.
+/// Returns T1.5 or T3.5 of the Modbus serial line guide, in nanoseconds. Up to 19200 baud, the time is
+/// `halves` times half a character of 11 bits. Above 19200 baud it is `fixed`, which is 750 or 1750
+/// microseconds.
 inline Nanoseconds silence_of_half_characters(int halves, std::uint32_t baud, Nanoseconds fixed) {
   return baud <= 19200 ? Nanoseconds{halves} * 11 * 500'000'000 / baud : fixed;
 }
 inline Nanoseconds t15(std::uint32_t baud) { return silence_of_half_characters(3, baud, 750'000); }
 inline Nanoseconds t35(std::uint32_t baud) { return silence_of_half_characters(7, baud, 1'750'000); }
 
-/// The assembler's clock counts whole microseconds, and the times that it compares are rounded to them. Tests
-/// keep this distance from a limit.
+/// The assembler's clock counts whole microseconds, and the assembler compares rounded times. Tests keep this
+/// distance from a limit.
 inline constexpr Nanoseconds kClock = 5'000;
 
 /// A wire at one baud rate, with its silence timer. A byte takes ten bits in 8N1 and eleven in the other

@@ -45,7 +45,7 @@ std::string name_of(const testing::TestParamInfo<RtuGaps::ParamType>& mode) {
   return "Baud" + std::to_string(baud) + "Format" + kNames.at(static_cast<std::size_t>(format));
 }
 
-// Every format has the same silences, of characters of 11 bits.
+// The silences are the same in every format: they are multiples of a character of 11 bits.
 INSTANTIATE_TEST_SUITE_P(AllRatesAndFormats, RtuGaps,
                          testing::Combine(testing::ValuesIn(kBaudRates), testing::ValuesIn(kFormats)),
                          name_of);

@@ -23,7 +23,7 @@ constexpr std::size_t kMaster = 0;
 constexpr std::array<const char*, 9> kCrowd{"EX9052D-M", "EX9042D-M,ascii", "EX9043D-M",
                                             "EX9052D",   "EX9068D-M",       "EX9055D",
                                             "EX9042D-M", "EX9052D-M,ascii", "EX9068AD-M"};
-/// The longest times to a reply, 20 and 200 ms in wire.md 3 and 7, with a margin.
+/// The longest times until a reply begins: 20 and 200 ms (wire.md 3 and 7) and a margin.
 constexpr milliseconds kAnswers{25};
 constexpr milliseconds kAnswersStoring{210};
 

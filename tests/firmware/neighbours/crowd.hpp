@@ -50,15 +50,15 @@ class Crowd final : public sim::BusObserver {
  public:
   static constexpr std::size_t kModules = 32;
 
-  /// Creates 32 modules at the addresses 01 to 20 (hex): the models that support Modbus, most of them in
-  /// Modbus RTU and some in ASCII, and some ASCII-only models. The modules in ASCII use their checksum,
+  /// Creates 32 modules at the addresses 01 to 20 (hex): some models that support Modbus, most of them in
+  /// Modbus RTU and the others in ASCII, and some ASCII-only models. The modules in ASCII use their checksum,
   /// because without one the bytes of a Modbus frame could form a command.
   Crowd(std::uint32_t baud, std::uint64_t seed);
 
   [[nodiscard]] sim::VirtualTime now() { return line_.clock().virtual_now(); }
   Pulser& pulser() { return pulser_; }
   /// Sends one request to a random module, or a broadcast, and checks the replies. The next request may
-  /// follow at once. Reports failures through GoogleTest.
+  /// follow immediately. Reports failures through GoogleTest.
   void exchange();
 
   [[nodiscard]] std::uint64_t replies() const { return replies_; }

@@ -2,7 +2,8 @@
 // module replies only to its own requests, does not treat another module's reply as a request, keeps
 // receiving, and counts its pulses.
 //
-//     EX9000_VIRTUAL_SECONDS=N    at 9600 baud; default 60, 86400 is a day; at 115200 baud N/15, at most 600
+//     EX9000_VIRTUAL_SECONDS=N    duration at 9600 baud; default 60; 86400 is a day.
+//                                 At 115200 baud the duration is N/15, at most 600.
 //     EX9000_SEED=N               default 1
 #include <gtest/gtest.h>
 

@@ -48,11 +48,11 @@ TEST_P(Checks, MissAsManyDamagedFramesAsTheTheoryExpects) {
         seen.low, seen.high, tally.expected, static_cast<unsigned long long>(tally.taken_otherwise));
     std::fflush(stdout);
     // After such a command, the test sets up the module again, because the theory does not consider a module
-    // with another address. More such commands than this limit would be very unlikely.
+    // with another address. More such commands than this limit are very unlikely.
     std::printf("  %llu stored something\n", static_cast<unsigned long long>(tally.storing));
     EXPECT_LE(tally.storing, 1 + tally.sent / 10'000);
-    // The limits are twice as wide as the 95 % interval. Otherwise one of the twelve rows would fail in every
-    // second run.
+    // The limits are twice as wide as the 95 % interval. With the interval itself, about every second run
+    // would fail, because there are twelve rows.
     const double centre = static_cast<double>(tally.taken_in_data);
     EXPECT_GE(tally.expected, centre - 2 * (centre - seen.low));
     EXPECT_LE(tally.expected, centre + 2 * (seen.high - centre));
@@ -80,7 +80,7 @@ void with_rates(NoisyLine& noisy, std::uint64_t exchanges, sim::NoiseRates rates
   for (std::uint64_t i = 0; i < exchanges; ++i) {
     ask(noisy);
   }
-  EXPECT_GT(noisy.noise().strikes(), exchanges / 20);
+  EXPECT_GT(noisy.noise().changes(), exchanges / 20);
 }
 
 sim::NoiseRates only(double sim::NoiseRates::*what, double rate) {
@@ -160,14 +160,14 @@ const std::vector<Trouble>& troubles() {
 
 class ALineWith : public testing::TestWithParam<std::tuple<Trouble, Check>> {};
 
-TEST_P(ALineWith, CausesActionOnlyForValidFramesAndTheFirstCleanFrameIsAnswered) {
+TEST_P(ALineWith, TheModuleActsOnlyOnValidFramesAndRepliesToTheFirstCleanFrame) {
   const auto& [trouble, check] = GetParam();
   const std::uint64_t exchanges = frames() / 20;
   NoisyLine noisy(check, seed());
   trouble.happens(noisy, exchanges);
   const std::uint64_t replies_and_output_changes = noisy.replies_and_output_changes();
   noisy.expect_the_first_clean_frame_is_answered();
-  std::printf("%s, %s: %llu exchanges, %llu replies and changes of outputs, each with its reason\n",
+  std::printf("%s, %s: %llu exchanges, %llu replies and changes of outputs, each required by a request\n",
               trouble.name, name_of(check), static_cast<unsigned long long>(exchanges),
               static_cast<unsigned long long>(replies_and_output_changes));
   EXPECT_GT(replies_and_output_changes, exchanges / 20);

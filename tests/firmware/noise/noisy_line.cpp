@@ -138,7 +138,7 @@ void NoisyLine::exchange(const FrameBytes& request, double flipped_bit, Tally& t
   if (taken && damaged) {
     ++(in_framing == 0 ? tally.taken_in_data : tally.taken_otherwise);
   }
-  ASSERT_TRUE(damaged || requests == 1) << "the witness heard something else";
+  ASSERT_TRUE(damaged || requests == 1) << "the witness did not receive exactly one request";
   ASSERT_EQ(onlooker_.replies() - replies_before, requests)
       << "the number of replies differs from the number of received frames";
   if (after.storing != before.storing) {

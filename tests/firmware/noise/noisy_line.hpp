@@ -54,8 +54,8 @@ class NoisyLine final : public sim::Disturbance, public sim::Station {
   /// Sends `request` while noise flips each bit with the probability `flipped_bit`, and checks all effects.
   /// Reports failures through GoogleTest.
   void exchange(const FrameBytes& request, double flipped_bit, Tally& tally);
-  /// Checks the module after the disturbance of the line has ended. After a silence, and after a CR if frames
-  /// end with one, the module replies correctly to the first frame.
+  /// Ends the noise, waits, and sends a CR if frames end with one. Then checks that the module replies
+  /// correctly to the first frame.
   void expect_the_first_clean_frame_is_answered();
 
   /// Returns the number of replies and changes of outputs. The witness has found a reason for each of them in

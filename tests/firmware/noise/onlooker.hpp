@@ -1,5 +1,5 @@
-// Connects a witness to a simulated module: it checks each reply and each change of the outputs when it
-// happens.
+// Connects a witness to a simulated module. The witness checks each reply and each change of the outputs when
+// it happens.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -38,7 +38,7 @@ class Onlooker final : public sim::BusObserver {
 
   /// Stops checking. Call this before the module is switched off.
   void stop_checking() { checking_ = false; }
-  /// Begins to check. Call this when the module has started and nothing has been sent to it since.
+  /// Begins to check. Call this when the module has started, before anything is sent to it.
   void start_checking() {
     judges::Listening listening = judges::listening_of(module_.module().state());
     // The greatest difference between the module's clock and the clock of the witness.

@@ -165,7 +165,8 @@ double dcon_misses(const std::string& frame, bool checksum, double flipped_bit) 
 }
 
 Interval interval_of(std::uint64_t count) {
-  // Finds, by bisection, the means at which the tail of the distribution beyond `count` is 2.5 %.
+  // For at most `kMany` events, finds by bisection the two means at which `count` or more extreme counts have
+  // a probability of 2.5 %. For more events, uses the normal approximation.
   const auto at_most = [](std::uint64_t events, double mean) {
     double term = std::exp(-mean);
     double sum = term;

@@ -28,7 +28,7 @@ std::vector<unsigned> syndromes_of(std::size_t bytes) {
   return all;
 }
 
-/// The number of ways in which 1, 2, 3 and 4 flips leave the CRC unchanged, found by trying all of them.
+/// The number of ways in which 1, 2, 3 and 4 flips leave the CRC unchanged. `count_misses` tries all ways.
 struct Misses {
   std::array<std::uint64_t, 5> of{};
   std::uint64_t tried_with_four = 0;
@@ -58,7 +58,7 @@ Misses count_misses(std::size_t bytes) {
   return misses;
 }
 
-TEST(Theory, OfUpToFourFlipsMissedByTheCrcMatchesAnExhaustiveCount) {
+TEST(Theory, MatchesAnExhaustiveCountOfUpToFourFlipsThatTheCrcMisses) {
   const Misses misses = count_misses(8);  // a frame of function 01 or 05
   EXPECT_EQ(misses.tried_with_four, 635'376U);
   EXPECT_GT(misses.of[4], 0U);

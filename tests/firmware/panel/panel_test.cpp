@@ -11,7 +11,7 @@ namespace {
 
 using Pattern = StatusLed::Pattern;
 
-/// The last start is so near the wrap that every timed interval crosses it.
+/// The last start is 4 ms before the wrap of the clock, so all longer intervals cross it.
 constexpr Time kStarts[] = {Time(0), Time(123'456'789), Time(0xFFFF'FFFFU - 4'000)};
 
 Time ms(Time start, std::uint32_t after) { return start + milliseconds(after); }
@@ -59,7 +59,7 @@ TEST(Debounce, RequestsASampleEachMillisecondUntilALevelIsStable) {
   }
 }
 
-TEST(Debounce, EveryBounceStartsThe10MsAnew) {
+TEST(Debounce, EveryBounceRestartsThe10Ms) {
   for (const Time start : kStarts) {
     Debounce debounce;
     bool level = false;
@@ -166,7 +166,7 @@ TEST(StatusLed, ReportsTheTimeOfItsNextChange) {
   }
 }
 
-TEST(StatusLed, IsSteadyAtOnceWhenThePatternEnds) {
+TEST(StatusLed, IsSteadyImmediatelyAfterThePatternEnds) {
   for (const Pattern pattern : {Pattern::HostTimeout, Pattern::SettingsUnreadable}) {
     LedOverTime led(pattern, Time(0));
     led.lit(300);

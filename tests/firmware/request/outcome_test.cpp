@@ -59,7 +59,7 @@ TEST(Outcome, HasTheEffectsThatWereRequestedAndNoOthers) {
   }
 }
 
-TEST(Outcome, ThatDrivesOutputsHasNoEffectAndNoSettingsChange) {
+TEST(Outcome, AnOutcomeThatDrivesOutputsHasNoEffectAndNoSettingsChange) {
   Outcome outcome;
   outcome.drive({0x0003, 0x0002});
   EXPECT_FALSE(outcome.has_effects());
@@ -68,7 +68,7 @@ TEST(Outcome, ThatDrivesOutputsHasNoEffectAndNoSettingsChange) {
   EXPECT_EQ(outcome.outputs_to_drive().value, 0x0002);
 }
 
-TEST(Outcome, ThatChangesSettingsHasNoEffectAndDrivesNoOutputs) {
+TEST(Outcome, AnOutcomeThatChangesSettingsHasNoEffectAndDrivesNoOutputs) {
   Outcome outcome;
   outcome.change().address = 0x2A;
   outcome.change().watchdog_timeout = 0x64;
@@ -81,13 +81,13 @@ TEST(Outcome, ThatChangesSettingsHasNoEffectAndDrivesNoOutputs) {
   EXPECT_TRUE(outcome.change().applied_to(Settings::factory(the_model())) == expected);
 }
 
-TEST(Outcome, ThatIsClearedIsEmpty) {
+TEST(Outcome, AClearedOutcomeIsEmpty) {
   Outcome outcome = of_everything();
   outcome.clear();
   expect_nothing(outcome);
 }
 
-TEST(Outcome, ThatWasClearedKeepsItsRefusal) {
+TEST(Outcome, AClearedOutcomeKeepsItsRefusal) {
   Outcome outcome = of_everything();
   outcome.refusal = Refusal::OutOfRange;
   outcome.clear();
@@ -96,7 +96,7 @@ TEST(Outcome, ThatWasClearedKeepsItsRefusal) {
 }
 
 // A module uses one outcome object for all requests.
-TEST(Outcome, ThatWasClearedHasOnlyLaterEffects) {
+TEST(Outcome, AClearedOutcomeHasOnlyLaterEffects) {
   Outcome outcome = of_everything();
   outcome.clear();
   outcome.change().watchdog_timeout = 0x64;

@@ -43,7 +43,7 @@ TEST(StoredBytes, KeepTheirAddressWhenOtherSettingsAreStored) {
   }
 }
 
-TEST(StoredBytes, OfAnotherModelAreNotRead) {
+TEST(StoredBytes, SettingsOfAnotherModelAreNotRead) {
   for (const StoredBytes& stored : all_stored_bytes()) {
     for (const Model& each : kModels) {
       if (&each != stored.model) {
@@ -74,7 +74,7 @@ TEST(OldLayouts, EverySingleCorruptedByteIsDetected) {
   }
 }
 
-TEST(OldLayouts, WithTheInvalidatingZerosAreNotRead) {
+TEST(OldLayouts, CopiesWithTheInvalidatingZerosAreNotRead) {
   for (const StoredBytes& stored : all_stored_bytes()) {
     for (const std::size_t place : {0x00U, 0x20U}) {
       std::vector<std::uint8_t> memory = stored.memory;

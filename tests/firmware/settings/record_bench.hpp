@@ -1,5 +1,5 @@
-// Records of settings, as a module stores them: contents for tests, and the check by an implementation of its
-// own.
+// Records of settings, as a module stores them: contents for tests, and an independent implementation of the
+// check.
 #pragma once
 
 #include <cstddef>

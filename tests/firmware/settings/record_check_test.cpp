@@ -102,7 +102,7 @@ TEST(Record, AnyFourAdjacentBytesAreDeterminedByTheCheckAndTheOtherBytes) {
 
 // Follows from the property that the previous test checks. Compares more than 1000 records for each group of
 // adjacent settings.
-TEST(Record, ThatDifferInUpToFourAdjacentBytesHaveDifferentChecks) {
+TEST(Record, RecordsThatDifferInUpToFourAdjacentBytesHaveDifferentChecks) {
   OfOneKind lines("address, baud code, format and protocol", 4);
   OfOneKind watchdogs("watchdog and timeout status", 8);
   OfOneKind beginnings("the name's first characters", 11);
@@ -219,7 +219,7 @@ TEST(Record, ATornWriteOverThePreviousRecordIsOneOfTheTwoOrInvalid) {
   }
 }
 
-TEST(Record, WithACheckOfZerosIsInvalid) {
+TEST(Record, ARecordWithACheckOfZerosIsInvalid) {
   std::mt19937 random(4);
   for (int i = 0; i < 1000; ++i) {
     Record record = record_of(random_settings(the_model(), random));

@@ -12,11 +12,11 @@
 namespace ex9000 {
 namespace {
 
-/// The bytes of settings that this firmware supports.
+/// The number of bytes of settings that this firmware supports.
 constexpr std::size_t kSupported = 55;
 
-/// Returns a record of firmware that has more or fewer settings. The settings that this firmware supports
-/// beyond those of `stored` have their factory values.
+/// Returns a record of firmware that has more or fewer settings. The supported settings after the safe value
+/// have their factory values.
 Record with_length(const Stored& stored, std::size_t length) {
   Record record = record_of(stored);
   Record settings(record.begin() + kSettingsAt, record.begin() + kCheckAt);
@@ -39,7 +39,7 @@ TEST(Record, HasRoomFor96BytesOfSettingsAndMore) {
   }
 }
 
-TEST(Record, ThatIsLongerThanItsPlaceIsInvalid) {
+TEST(Record, ARecordThatIsLongerThanItsPlaceIsInvalid) {
   for (std::size_t length = 121; length <= 255; ++length) {
     const Record record = with_length(changed_settings(), length);
     EXPECT_EQ(record_size({record.data(), record.size()}), 0U) << length;
@@ -47,14 +47,14 @@ TEST(Record, ThatIsLongerThanItsPlaceIsInvalid) {
   }
 }
 
-TEST(Record, ThatIsIncompleteIsNotRead) {
+TEST(Record, AnIncompleteRecordIsNotRead) {
   const Record record = with_length(changed_settings(), 60);
   for (std::size_t size = kSettingsAt; size < record.size(); ++size) {
     EXPECT_FALSE(read_record(the_model(), {record.data(), size})) << size;
   }
 }
 
-TEST(Record, ThatLacksTheLastSettingsHasTheirFactoryValues) {
+TEST(Record, MissingLastSettingsHaveTheirFactoryValues) {
   Settings expected = changed_settings().settings;
   const auto found = [](std::size_t length) {
     return read(the_model(), with_length(changed_settings(), length)).value().settings;
@@ -73,7 +73,7 @@ TEST(Record, ThatLacksTheLastSettingsHasTheirFactoryValues) {
   EXPECT_TRUE(found(0) == Settings::factory(the_model()));
 }
 
-TEST(Record, ThatIsWrittenOverALongerOneKeepsTheUnknownSettings) {
+TEST(Record, ARecordWrittenOverALongerOneKeepsTheUnknownSettings) {
   for (std::size_t length = kSupported + 1; length <= 120; ++length) {
     const Record longer = with_length(factory(), length);
     RecordBytes bytes{};
@@ -100,7 +100,7 @@ TEST(Record, EndsAfterTheLastSettingThatDiffersFromItsFactoryValue) {
   EXPECT_EQ(record_of(of_inputs, model("EX9052D-M")).size(), kRecordSize + 34);
 }
 
-TEST(Record, ThatIsWrittenOverOneWithMoreSettingsIsShortAgain) {
+TEST(Record, ARecordWrittenOverOneWithMoreSettingsIsShortAgain) {
   Stored stored = factory();
   stored.settings.response_delay = 5;
   RecordBytes bytes{};
@@ -110,7 +110,7 @@ TEST(Record, ThatIsWrittenOverOneWithMoreSettingsIsShortAgain) {
   EXPECT_TRUE(std::equal(bytes.begin(), bytes.begin() + kRecordSize, record_of(factory()).begin()));
 }
 
-TEST(Record, ThatIsWrittenOverAShorterOneIsAWholeOne) {
+TEST(Record, ARecordWrittenOverAShorterOneIsComplete) {
   const Record shorter = with_length(changed_settings(), 7);
   RecordBytes bytes{};
   std::copy(shorter.begin(), shorter.end(), bytes.begin());
@@ -120,7 +120,7 @@ TEST(Record, ThatIsWrittenOverAShorterOneIsAWholeOne) {
 
 // --- the newest of several copies ---
 
-TEST(Edition, OfANewerLayoutIsNewerThanAnyOfAnOlderLayout) {
+TEST(Edition, ANewerLayoutIsNewerThanAnyEditionOfAnOlderLayout) {
   constexpr std::uint16_t kSequences[] = {0, 1, 0x7FFF, 0x8000, 0xFFFF};
   for (const std::uint16_t a : kSequences) {
     for (const std::uint16_t b : kSequences) {
@@ -132,7 +132,7 @@ TEST(Edition, OfANewerLayoutIsNewerThanAnyOfAnOlderLayout) {
   }
 }
 
-TEST(Edition, OfALaterSequenceIsNewerAcrossTheWrap) {
+TEST(Edition, ALaterSequenceIsNewerAcrossTheWrap) {
   for (unsigned from = 0; from < 0x10000; from += 0x1FF) {
     const Edition older{3, static_cast<std::uint16_t>(from)};
     for (const unsigned ahead : {1U, 2U, 0x7FFFU}) {

@@ -116,7 +116,7 @@ TEST(Record, HasTheDocumentedCheck) {
   }
 }
 
-TEST(Record, TwoThatDifferInAnyByteAreNotEqual) {
+TEST(Record, RecordsThatDifferInAnyByteAreNotEqual) {
   const Record record = record_of(changed_settings());
   for (std::size_t bit = 0; bit < kRecordBits; ++bit) {
     EXPECT_FALSE(with_flipped(record, bit) == record) << bit;
@@ -125,7 +125,7 @@ TEST(Record, TwoThatDifferInAnyByteAreNotEqual) {
 
 // --- contents that are no settings of the model ---
 
-TEST(Record, OfAnotherModelIsInvalid) {
+TEST(Record, ARecordOfAnotherModelIsInvalid) {
   for (const Model& writer : kModels) {
     const Record record = record_of({Settings::factory(writer), 1}, writer);
     for (const Model& reader : kModels) {
@@ -143,7 +143,7 @@ TEST(Record, BlankZeroedAndUniformMemoryIsNoRecord) {
   }
 }
 
-TEST(Record, WithACorrectCheckButImpossibleSettingsIsInvalid) {
+TEST(Record, ARecordWithImpossibleSettingsIsInvalidDespiteACorrectCheck) {
   struct Bad {
     const char* what;
     std::size_t at;
@@ -180,7 +180,7 @@ TEST(Record, WithACorrectCheckButImpossibleSettingsIsInvalid) {
   EXPECT_TRUE(is_good(the_model(), with_check(the_model(), good)));
 }
 
-TEST(Record, WithACorrectCheckButAnEnabledWatchdogAndTimeout0IsInvalid) {
+TEST(Record, ARecordWithAnEnabledWatchdogAndTimeout0IsInvalid) {
   Record record = record_of(changed_settings());
   record[8] = 0;
   EXPECT_FALSE(is_good(the_model(), with_check(the_model(), record)));

@@ -55,7 +55,7 @@ TEST_F(SettingsKeeperTest, WritesNothingAsLongAsNothingHasChanged) {
   EXPECT_EQ(writes(), 0U);
 }
 
-TEST_F(SettingsKeeperTest, StoresWhatACommandAsksFor) {
+TEST_F(SettingsKeeperTest, StoresTheSettingsOfACommand) {
   store(numbered(5));
   EXPECT_TRUE(keeper_.saved());
   EXPECT_TRUE(keeper_.stored() == numbered(5));
@@ -64,7 +64,7 @@ TEST_F(SettingsKeeperTest, StoresWhatACommandAsksFor) {
   EXPECT_EQ(writes(), 1U);
 }
 
-TEST_F(SettingsKeeperTest, StoresByItselfWhatChangedWithoutACommand) {
+TEST_F(SettingsKeeperTest, StoresAChangeWithoutACommand) {
   keeper_.settings_changed();
   keeper_.poll(numbered(5), now_);
   EXPECT_TRUE(keeper_.busy());
@@ -78,7 +78,7 @@ TEST_F(SettingsKeeperTest, StoresByItselfWhatChangedWithoutACommand) {
 }
 
 // wire.md D6: the host watchdog expires while a command is stored.
-TEST_F(SettingsKeeperTest, StoresWhatChangedWhileACommandWasStored) {
+TEST_F(SettingsKeeperTest, StoresAChangeThatOccursWhileACommandIsStored) {
   store(numbered(5));
   keeper_.poll(numbered(6), now_);
   drive_memory();
@@ -86,7 +86,7 @@ TEST_F(SettingsKeeperTest, StoresWhatChangedWhileACommandWasStored) {
 }
 
 // wire.md D15.
-TEST_F(SettingsKeeperTest, TriesAgainEverySecondUntilItIsStored) {
+TEST_F(SettingsKeeperTest, RetriesEverySecondUntilTheChangeIsStored) {
   keeper_.settings_changed();
   for (int failures = 0; failures < 3; ++failures) {
     memory_.unanswered_writes = 4;  // three attempts, and the write that would invalidate the copy
@@ -109,7 +109,7 @@ TEST_F(SettingsKeeperTest, TriesAgainEverySecondUntilItIsStored) {
 }
 
 // A record may take four pages of 10 ms each. Three failed attempts of the keeper and three of the command
-// would take more than the 200 ms that the command's reply has.
+// would take more than the 200 ms within which the reply to the command must begin.
 TEST_F(SettingsKeeperTest, ASaveForWhichACommandWaitsEndsAtItsNextFailure) {
   keeper_.settings_changed();
   keeper_.poll(numbered(5), now_);
@@ -175,8 +175,8 @@ TEST_F(SettingsKeeperTest, AnUpdateIsFinishedWithoutACommandAndNotRetriedForever
   EXPECT_FALSE(keeper.retry().armed());
   EXPECT_TRUE(keeper.certain());
   EXPECT_TRUE(Boot(memory).stored() == numbered(6));
-  // There are three attempts, and one write each to invalidate the failed copy, the old copy, and the failed
-  // copy again a second later.
+  // The six writes are three attempts to save, one failed attempt to invalidate their place, one write that
+  // invalidates the old copy, and one that invalidates the place a second later.
   EXPECT_EQ(memory.writes.size(), 6U);
   keeper.poll(numbered(6), now_ + milliseconds(5000));
   EXPECT_FALSE(keeper.busy());
@@ -217,7 +217,7 @@ TEST_F(SettingsKeeperTest, AChangeWhileARefusedCopyIsInvalidatedIsStoredImmediat
   ASSERT_FALSE(keeper_.saved());
   keeper_.poll(numbered(5), now_);
   drive_memory();              // invalidates the copy
-  keeper_.settings_changed();  // the host watchdog has expired meanwhile
+  keeper_.settings_changed();  // the host watchdog has expired during the write
   keeper_.poll(numbered(7), now_);
   EXPECT_TRUE(keeper_.busy());
   drive_memory();
@@ -246,12 +246,12 @@ TEST(SettingsKeeperAtReset, StoredSettingsAreUncertainIfTheMemoryDidNotAnswer) {
   EXPECT_FALSE(keeper.certain());
 }
 
-TEST_F(SettingsKeeperTest, ACommandNeedNotWaitForTheNextTry) {
+TEST_F(SettingsKeeperTest, ACommandIsStoredWithoutWaitingForTheNextRetry) {
   keeper_.settings_changed();
   memory_.unanswered_writes = 4;
   keeper_.poll(numbered(5), now_);
   drive_memory();
-  store(numbered(6));  // before its own failure has been polled
+  store(numbered(6));  // before the keeper has polled its failed save
   EXPECT_TRUE(keeper_.saved());
   keeper_.poll(numbered(6), now_);
   EXPECT_FALSE(keeper_.busy());

@@ -20,7 +20,7 @@ inline constexpr std::size_t kPage = 32;
 inline constexpr std::size_t kAttempts = 3;
 /// Three reads at the first place, and one at each of the other three places.
 inline constexpr std::size_t kReadsOfASilentMemory = kAttempts + 3;
-inline constexpr std::size_t kStuckCell = 4;  // offset in a page, at which a record has the address
+inline constexpr std::size_t kStuckCell = 4;  // offset in a page; a record stores the address there
 
 inline const Model& model(std::string_view designation) { return *find_model(designation); }
 
@@ -65,7 +65,7 @@ class FakeMemory {
   bool unanswered_but_done = false;   ///< the memory stores the data of writes that it does not answer
   bool stuck = false;                 ///< the settings' address cannot be written, in any page
   std::optional<std::size_t> power;   ///< the power fails after this many more bytes are written
-  Garbage garbage = Garbage::None;    ///< in the byte that is being written when the power fails
+  Garbage garbage = Garbage::None;    ///< content of the byte that is being written when the power fails
   std::vector<std::uint16_t> reads;   ///< addresses of all reads
   std::vector<std::uint16_t> writes;  ///< addresses of all writes
   std::size_t bytes_written = 0;

@@ -70,7 +70,7 @@ class PowerCuts : public testing::Test {
   std::size_t cuts_ = 0;
 };
 
-TEST_F(PowerCuts, AtAnyByteOfASaveLeaveTheOldSettingsOrTheNew) {
+TEST_F(PowerCuts, ACutAtAnyByteOfASaveLeavesTheOldOrTheNewSettings) {
   for (const FakeMemory& beginning : beginnings()) {
     const std::size_t bytes = bytes_of_a_save(beginning, numbered(200));
     for (std::size_t cut = 0; cut <= bytes; ++cut) {
@@ -83,7 +83,7 @@ TEST_F(PowerCuts, AtAnyByteOfASaveLeaveTheOldSettingsOrTheNew) {
   }
 }
 
-TEST_F(PowerCuts, AfterTheLastByteLeaveTheNewSettings) {
+TEST_F(PowerCuts, ACutAfterTheLastByteLeavesTheNewSettings) {
   for (const FakeMemory& beginning : beginnings()) {
     FakeMemory memory = beginning;
     const std::size_t bytes = bytes_of_a_save(beginning, numbered(200));
@@ -91,7 +91,7 @@ TEST_F(PowerCuts, AfterTheLastByteLeaveTheNewSettings) {
   }
 }
 
-TEST_F(PowerCuts, AfterASuccessfulSaveLeaveTheNewSettings) {
+TEST_F(PowerCuts, ACutAfterASuccessfulSaveLeavesTheNewSettings) {
   for (const FakeMemory& beginning : beginnings()) {
     FakeMemory memory = beginning;
     ASSERT_TRUE(Boot(memory).save(numbered(200)));
@@ -100,7 +100,7 @@ TEST_F(PowerCuts, AfterASuccessfulSaveLeaveTheNewSettings) {
   }
 }
 
-TEST_F(PowerCuts, AtAnyByteOfASaveThatFailsLeaveTheOldSettingsOrTheNew) {
+TEST_F(PowerCuts, ACutAtAnyByteOfAFailingSaveLeavesTheOldOrTheNewSettings) {
   for (const FakeMemory& beginning : beginnings()) {
     for (const auto fail : kFailures) {
       const auto failing = [&] {
@@ -136,7 +136,7 @@ TEST_F(PowerCuts, AtAnyByteOfASaveThatFailsLeaveTheOldSettingsOrTheNew) {
   }
 }
 
-TEST_F(PowerCuts, TwiceInARowLeaveTheOldSettingsOrTheNew) {
+TEST_F(PowerCuts, TwoCutsInARowLeaveTheOldOrTheNewSettings) {
   for (const FakeMemory& beginning : beginnings()) {
     const std::size_t bytes = bytes_of_a_save(beginning, numbered(200));
     for (std::size_t first = 0; first <= bytes; ++first) {
@@ -154,7 +154,7 @@ TEST_F(PowerCuts, TwiceInARowLeaveTheOldSettingsOrTheNew) {
   }
 }
 
-TEST_F(PowerCuts, ManyTimesInARowLeaveTheOldSettingsOrTheNew) {
+TEST_F(PowerCuts, ManyCutsInARowLeaveTheOldOrTheNewSettings) {
   for (FakeMemory memory : beginnings()) {
     for (unsigned i = 0; i < 1000; ++i) {
       const std::size_t cut = (i * 7) % (kBytesOfARecord + 1);

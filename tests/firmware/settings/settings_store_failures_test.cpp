@@ -56,7 +56,7 @@ TEST(SettingsStore, AfterThreeFailedAttemptsTheOldSettingsStayAndAreFoundAtTheNe
   }
 }
 
-TEST(SettingsStore, AFailedSaveIsTriedThreeTimesAndThenMadeInvalid) {
+TEST(SettingsStore, AfterThreeFailedAttemptsTheCopyIsInvalidated) {
   FakeMemory memory;
   Boot run(memory);
   memory.noisy_reads = kAttempts;
@@ -113,7 +113,7 @@ void end_jobs(SettingsStore& store, bool answered, int count) {
   }
 }
 
-TEST(SettingsStore, SettlingInvalidatesTheUncertainCopyAndNotTheLastReadCopy) {
+TEST(SettingsStore, TheUncertainCopyIsInvalidatedAndNotTheLastReadCopy) {
   constexpr int kAllReads = 4 * static_cast<int>(kAttempts);
   SettingsStore store(the_model());
   end_jobs(store, false, static_cast<int>(kReadsOfASilentMemory));
@@ -139,16 +139,17 @@ TEST(SettingsStore, SettlingInvalidatesTheUncertainCopyAndNotTheLastReadCopy) {
   EXPECT_FALSE(store.needs_invalidation());
 }
 
-// The memory did not answer at reset, a save failed and its copy could not be invalidated, and the next save
-// reads all copies again.
-TEST(SettingsStore, RefusedSettingsDoNotCountWhenAllCopiesAreReadOnceMore) {
+// The memory did not answer at reset. Then a save failed, and its copy could not be invalidated. The next
+// save reads all copies again.
+TEST(SettingsStore, RefusedSettingsAreNotUsedWhenAllCopiesAreReadAgain) {
   FakeMemory memory;
   put(memory, 0, numbered(5), 7);
   memory.failing_reads = kReadsOfASilentMemory;
   Boot run(memory);
   ASSERT_EQ(run.found(), Found::Unreadable);
   memory.unanswered_writes = kAttempts + 1;
-  // The rejected settings are stored, and so is the write that invalidates them.
+  // The memory carries out these writes without answering: it stores the refused settings and then
+  // invalidates them.
   memory.unanswered_but_done = true;
   EXPECT_FALSE(run.save(numbered(6)));
   put(memory, 1, numbered(6), 8);  // as if the invalidating write had not been done

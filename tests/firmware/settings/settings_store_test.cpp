@@ -313,7 +313,7 @@ Source source_of(FakeMemory& memory) {
   return store.source();
 }
 
-TEST(SettingsSource, TellsWhatTheSettingsWereReadFrom) {
+TEST(SettingsSource, ReportsTheStateOfTheCopies) {
   FakeMemory memory;
   EXPECT_EQ(source_of(memory), Source::Blank);
   put(memory, 0, numbered(5), 7);
@@ -326,7 +326,7 @@ TEST(SettingsSource, TellsWhatTheSettingsWereReadFrom) {
   EXPECT_EQ(source_of(memory), Source::NoneGood);
 }
 
-TEST(SettingsSource, OfAnOlderLayoutPrecedesThatOfABadCopy) {
+TEST(SettingsSource, IsTheOlderLayoutEvenIfACopyIsBad) {
   FakeMemory memory;
   put_old(memory, 0, numbered(5), 7);
   EXPECT_EQ(source_of(memory), Source::OlderLayout);
@@ -352,7 +352,7 @@ TEST(SettingsSource, StaysTheSameAfterASave) {
   EXPECT_EQ(source_of(memory), Source::Good);
 }
 
-TEST(SettingsSaves, CountThoseThatSucceed) {
+TEST(SettingsSaves, CountOnlySavesThatSucceed) {
   FakeMemory memory;
   SettingsStore store(the_model());
   drive(store, memory);
@@ -367,7 +367,7 @@ TEST(SettingsSaves, CountThoseThatSucceed) {
   EXPECT_EQ(store.saves(), 1U);
 }
 
-TEST(SettingsSaves, CountUpTo65535) {
+TEST(SettingsSaves, StopCountingAt65535) {
   FakeMemory memory;
   SettingsStore store(the_model());
   drive(store, memory);

@@ -32,7 +32,7 @@ TEST(FactorySettings, AreThoseOfSection2OnEveryModel) {
   }
 }
 
-TEST(FactorySettings, OfAnMModelSelectModbusAndThoseOfOtherModelsAscii) {
+TEST(FactorySettings, AnMModelUsesModbusAndOtherModelsUseAscii) {
   for (const Model& each : kModels) {
     const bool is_m = each.designation.substr(each.designation.size() - 2) == "-M";
     EXPECT_EQ(Settings::factory(each).protocol, is_m ? Protocol::ModbusRtu : Protocol::Ascii)
@@ -67,7 +67,7 @@ TEST(Name, HoldsUpTo7Characters) {
   EXPECT_EQ(text_of(Name()), "");
 }
 
-TEST(Name, KeepsTheFirst7OfMore) { EXPECT_EQ(text_of(Name("9068AD-M")), "9068AD-"); }
+TEST(Name, KeepsTheFirst7CharactersOfALongerText) { EXPECT_EQ(text_of(Name("9068AD-M")), "9068AD-"); }
 
 TEST(Name, EqualsOnlyANameWithTheSameCharacters) {
   EXPECT_TRUE(Name("9042D") == Name("9042D"));
@@ -76,7 +76,7 @@ TEST(Name, EqualsOnlyANameWithTheSameCharacters) {
   EXPECT_FALSE(Name("9042") == Name("9042 "));
 }
 
-TEST(Name, TakesCharactersFrom20To7E) {
+TEST(Name, ConsistsOfCharactersFrom20To7E) {
   for (unsigned character = 0; character < 256; ++character) {
     EXPECT_EQ(Name::is_name_character(static_cast<std::uint8_t>(character)),
               character >= 0x20 && character <= 0x7E);
@@ -251,27 +251,27 @@ std::vector<FieldChange> changes_of_each_field(const Settings& from) {
   return changes;
 }
 
-TEST(SettingsChange, WithoutValuesChangesNothing) {
+TEST(SettingsChange, AChangeWithoutValuesChangesNothing) {
   for (const Model& each : kModels) {
     EXPECT_TRUE(SettingsChange().applied_to(Settings::factory(each)) == Settings::factory(each));
   }
 }
 
-TEST(SettingsChange, OfOneFieldChangesThatFieldAlone) {
+TEST(SettingsChange, AChangeOfOneFieldChangesThatFieldAlone) {
   const Settings factory = Settings::factory(model("EX9042D-M"));
   for (const FieldChange& each : changes_of_each_field(factory)) {
     EXPECT_TRUE(each.change.applied_to(factory) == each.expected) << each.field;
   }
 }
 
-TEST(SettingsChange, OfAnyFieldMakesTheSettingsUnequal) {
+TEST(SettingsChange, AChangeOfAnyFieldMakesTheSettingsUnequal) {
   const Settings factory = Settings::factory(model("EX9042D-M"));
   for (const FieldChange& each : changes_of_each_field(factory)) {
     EXPECT_TRUE(each.change.applied_to(factory) != factory) << each.field;
   }
 }
 
-TEST(SettingsChange, OfOneFieldKeepsEarlierChangesOfOthers) {
+TEST(SettingsChange, AChangeOfOneFieldKeepsEarlierChangesOfOthers) {
   const Settings factory = Settings::factory(model("EX9042D-M"));
   Settings all = factory;
   for (const FieldChange& each : changes_of_each_field(factory)) {
@@ -289,7 +289,7 @@ TEST(SettingsChange, OfOneFieldKeepsEarlierChangesOfOthers) {
   EXPECT_TRUE(all.timeout_status);
 }
 
-TEST(SettingsChange, OfSeveralFieldsChangesThemTogether) {
+TEST(SettingsChange, AChangeOfSeveralFieldsChangesThemTogether) {
   const Settings factory = Settings::factory(model("EX9042D-M"));
   const Settings changed = change([](SettingsChange& c) {
                              c.address = 7;
@@ -323,7 +323,7 @@ TEST(SettingsChange, AShorterNameLeavesNothingOfALongerOne) {
   EXPECT_TRUE(twice.applied_to(settings) == expected);
 }
 
-TEST(SettingsChange, ToFalseOr0IsAChangeToo) {
+TEST(SettingsChange, SettingFalseOr0IsAChangeToo) {
   Settings settings = Settings::factory(model("EX9042D-M"));
   settings.watchdog_enabled = settings.timeout_status = true;
   settings.safe_value = 0x1FFF;
@@ -337,7 +337,7 @@ TEST(SettingsChange, ToFalseOr0IsAChangeToo) {
   EXPECT_EQ(changed.safe_value, 0);
 }
 
-TEST(SettingsChange, ThatWasClearedChangesNothing) {
+TEST(SettingsChange, AClearedChangeChangesNothing) {
   const Settings factory = Settings::factory(model("EX9042D-M"));
   for (FieldChange& each : changes_of_each_field(factory)) {
     each.change = SettingsChange();
@@ -346,7 +346,7 @@ TEST(SettingsChange, ThatWasClearedChangesNothing) {
 }
 
 // A module uses the same change object for all requests.
-TEST(SettingsChange, ThatWasClearedChangesOnlyWhatIsSetAfterwards) {
+TEST(SettingsChange, AClearedChangeChangesOnlyWhatIsSetAfterwards) {
   const Settings factory = Settings::factory(model("EX9042D-M"));
   SettingsChange reused;
   for (const FieldChange& each : changes_of_each_field(factory)) {

@@ -74,7 +74,7 @@ void expect_old_copies_do_not_count(FakeMemory memory) {
   EXPECT_EQ(Boot(memory).found(), Found::Unreadable);
 }
 
-TEST(UpdateCuts, AtEveryPointOfTheFirstStoreLeaveTheOldSettingsOrTheNew) {
+TEST(UpdateCuts, ACutAtAnyPointOfTheFirstStoreLeavesTheOldOrTheNewSettings) {
   std::size_t cuts = 0;
   for (const Beginning& beginning : beginnings()) {
     const std::size_t bytes = bytes_of(beginning.memory, numbered(200));
@@ -86,7 +86,7 @@ TEST(UpdateCuts, AtEveryPointOfTheFirstStoreLeaveTheOldSettingsOrTheNew) {
         const Settings found = come_up(memory);
         ASSERT_TRUE(found == numbered(200) || (!saved && found == beginning.settings))
             << beginning.what << ", cut after byte " << at;
-        ASSERT_NE(found.address, 1) << "the address has fallen back";
+        ASSERT_NE(found.address, 1) << "the module uses the factory address";
         if (found == numbered(200)) {
           expect_old_copies_do_not_count(memory);
         }
@@ -101,7 +101,7 @@ TEST(UpdateCuts, AtEveryPointOfTheFirstStoreLeaveTheOldSettingsOrTheNew) {
 
 // The number of pairs grows with the square of the bytes written, so this is a random sample with a fixed
 // seed.
-TEST(UpdateCuts, TwiceInARowLeaveTheOldSettingsOrTheNew) {
+TEST(UpdateCuts, TwoCutsInARowLeaveTheOldOrTheNewSettings) {
   constexpr int kPairs = 4000;
   std::mt19937 random(kSeed);
   for (const Beginning& beginning : beginnings()) {
@@ -126,8 +126,8 @@ TEST(UpdateCuts, TwiceInARowLeaveTheOldSettingsOrTheNew) {
   }
 }
 
-/// Tests the same with the files of stored bytes, at every point.
-TEST(UpdateCuts, WithDataOfEarlierFirmwareLeaveTheOldOrTheNewSettings) {
+/// Cuts the power at every byte of a save, with each file in stored_bytes/ as the memory before the save.
+TEST(UpdateCuts, ACutWithDataOfEarlierFirmwareLeavesTheOldOrTheNewSettings) {
   for (const StoredBytes& stored : all_stored_bytes()) {
     Settings changed = stored.settings;
     changed.watchdog_timeout = 0x77;

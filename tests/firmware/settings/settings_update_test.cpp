@@ -66,7 +66,7 @@ TEST(SettingsAfterAnUpdate, TheSecondStoreWritesOnlyTheOtherPlace) {
   EXPECT_TRUE(Boot(memory).stored() == numbered(10));
 }
 
-TEST(SettingsAfterAnUpdate, OldCopiesNeverCountAgainEvenIfAllNewOnesFail) {
+TEST(SettingsAfterAnUpdate, OldCopiesAreNeverUsedAgainEvenIfAllNewCopiesFail) {
   FakeMemory memory = updated();
   Boot run(memory);
   EXPECT_TRUE(run.save(numbered(9)));
@@ -78,7 +78,7 @@ TEST(SettingsAfterAnUpdate, OldCopiesNeverCountAgainEvenIfAllNewOnesFail) {
   EXPECT_TRUE(next.stored() == factory());
 }
 
-TEST(SettingsAfterAnUpdate, AFirstStoreThatFailsLeavesTheOldOnes) {
+TEST(SettingsAfterAnUpdate, AFirstStoreThatFailsLeavesTheOldCopies) {
   for (std::size_t failure = 0; failure < kFailures.size(); ++failure) {
     FakeMemory memory = updated();
     Boot run(memory);
@@ -134,7 +134,7 @@ TEST(SettingsAfterAnUpdate, OldCopiesAreUsedIfTheNewCopyFadesBeforeItIsSavedAgai
   EXPECT_TRUE(Boot(memory).stored() == numbered(6));
 }
 
-/// The other place cannot be written. The old copies must not count again even if the new copy fails later.
+/// The other place cannot be written. The old copies must not be used again even if the new copy fails later.
 TEST(SettingsAfterAnUpdate, OldCopiesAreInvalidatedIfTheSettingsCannotBeSavedAgain) {
   FakeMemory memory = updated();
   put(memory, 0, numbered(9), 9);
@@ -172,7 +172,7 @@ TEST(SettingsAfterAnUpdate, InvalidatingAnOldCopyIsRetried) {
   SettingsStore store(the_model());
   drive(store, memory);
   store.begin_saving(numbered(9));
-  // The new copy is written and verified; after that the memory answers no write.
+  // The new copy is written and verified. The memory does not answer the next three writes.
   for (int jobs = 0; jobs < 2; ++jobs) {
     store.done(*memory.run(store.job()));
   }
@@ -209,7 +209,7 @@ TEST(SettingsAfterAnUpdate, OldCopiesAreNotUsedAfterAStoreEvenIfTheMemoryWasSile
 
 // --- a record that is longer than this firmware expects ---
 
-TEST(ALongerRecord, IsReadAsFarAsItIsKnown) {
+TEST(ALongerRecord, IsReadUpToTheLastKnownSetting) {
   for (unsigned length = 20; length <= 120; ++length) {
     FakeMemory memory;
     put_longer(memory, 0, numbered(5), 7, static_cast<std::uint8_t>(length));
@@ -252,7 +252,7 @@ TEST(ALongerRecord, KeepsUnknownSettingsAfterAFailedStore) {
                          expected.cells.begin() + kCopies[1]));
 }
 
-TEST(ALongerRecord, IsWrittenPageByPageAndOnlyAsFarAsItGoes) {
+TEST(ALongerRecord, IsWrittenPageByPageAndOnlyUpToItsEnd) {
   FakeMemory memory;
   put_longer(memory, 0, numbered(5), 7, 96);  // 104 bytes
   EXPECT_TRUE(Boot(memory).save(numbered(6)));
@@ -264,7 +264,7 @@ TEST(ALongerRecord, IsWrittenPageByPageAndOnlyAsFarAsItGoes) {
   EXPECT_EQ(shorter.writes, (std::vector<std::uint16_t>{0x100, 0x120}));
 }
 
-TEST(ALongerRecord, WithAnyWrongByteIsInvalid) {
+TEST(ALongerRecord, IsInvalidIfAnyByteIsWrong) {
   FakeMemory good;
   put_longer(good, 0, numbered(5), 7, 96);
   put(good, 1, numbered(6), 6);

@@ -29,8 +29,8 @@ constexpr milliseconds kLongestJob{40};
 /// The greatest permitted number of register accesses in a turn of the main loop.
 constexpr std::uint64_t kMostAccessesATurn = 24;
 
-/// The driver and a main loop. The main loop makes a turn after each interrupt, every millisecond, and at
-/// once if the driver requests another turn.
+/// The driver and a main loop. The main loop makes a turn after each interrupt, every millisecond, and
+/// immediately if the driver requests another turn.
 template <Family family>
 class Bench {
  public:
@@ -344,9 +344,9 @@ TYPED_TEST(Eeprom, AReadSucceedsAfterAResetAtAnyTimeDuringARead) {
   EXPECT_GT(holding, 15U) << "the test did not reach the tested case";
 }
 
-// A reset releases both pins. If the clock line rises while the data line is low, the data line rises after
-// it, and this makes a STOP. If this happens directly after a byte, the STOP ends the write, and the EEPROM
-// programs the bytes that it has received. No driver can prevent that; the driver frees the bus afterwards.
+// A reset releases both pins. If the clock line rises before the data line, the rise of the data line is a
+// STOP. If this happens directly after a byte, the STOP ends the write, and the EEPROM programs the bytes
+// that it has received. No driver can prevent that; the driver frees the bus afterwards.
 TYPED_TEST(Eeprom, FreeingTheBusAfterAResetDuringAWriteProgramsNothing) {
   constexpr std::uint16_t kPlace = 0x20;
   unsigned nothing = 0;

@@ -164,7 +164,8 @@ class FlashChip {
   std::vector<std::uint8_t> cells = std::vector<std::uint8_t>(std::size_t{kSectorsOfStore} * kSector, 0xFF);
   Times times;
   bool hangs = false;  ///< the flash is always busy
-  /// Broken bytes. They begin at this index. Their lowest bit stays 0, or programming does not change them.
+  /// The index of the first broken byte. The lowest bit of a broken byte stays 0. If `broken_keeps` is true,
+  /// programming changes no bit of it.
   std::size_t broken = SIZE_MAX;
   std::size_t broken_size = 1;
   bool broken_keeps = false;  ///< programming does not change the broken bytes

@@ -1,5 +1,5 @@
-// Tests a whole module that keeps its settings in the flash, in virtual time: the module replies in time
-// while it erases sectors, and an idle module erases all free sectors in advance.
+// Tests a whole module that keeps its settings in the flash, in virtual time. The module replies in time
+// while it erases sectors. An idle module erases all free sectors in advance.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -133,7 +133,7 @@ class ModuleOnFlash {
   [[nodiscard]] unsigned timeout() { return ask({1, 0x03, 0x01, 0xE8, 0, 1}).at(4); }
 
   std::uint64_t latency = 0;  ///< us from the last byte of a request to the first one of its reply
-  std::uint64_t longest = 0;  ///< the longest of these
+  std::uint64_t longest = 0;  ///< the greatest `latency` so far
 
  private:
   [[nodiscard]] std::uint64_t next_event() {
@@ -198,7 +198,7 @@ FlashChip flash_at_115200() {
   return chip;
 }
 
-TEST(FlashDevice, AnIdleModuleErasesAllFreeSectorsAhead) {
+TEST(FlashDevice, AnIdleModuleErasesAllFreeSectorsInAdvance) {
   FlashChip chip = flash_at_115200();
   chip.cells.assign(chip.cells.size(), 0);  // no sector is erased or contains settings
   FlashChip used = flash_at_115200();
@@ -214,7 +214,7 @@ TEST(FlashDevice, AnIdleModuleErasesAllFreeSectorsAhead) {
   EXPECT_LE(module.latency, 10'000U);
 }
 
-TEST(FlashDevice, StoresHalfASecondApartReplyInTimeWithErasesOf400Milliseconds) {
+TEST(FlashDevice, StoresHalfASecondApartGetRepliesInTimeWithErasesOf400Milliseconds) {
   FlashChip chip = flash_at_115200();
   chip.times = FlashChip::kLongest;
   ModuleOnFlash module(chip);
@@ -227,7 +227,7 @@ TEST(FlashDevice, StoresHalfASecondApartReplyInTimeWithErasesOf400Milliseconds) 
               static_cast<double>(module.longest) / 1e3);
 }
 
-TEST(FlashDevice, StoresBackToBackReplyInTimeWithErasesOf45Milliseconds) {
+TEST(FlashDevice, StoresBackToBackGetRepliesInTimeWithErasesOf45Milliseconds) {
   constexpr unsigned kStores = 5'000;
   FlashChip chip = flash_at_115200();
   ModuleOnFlash module(chip);

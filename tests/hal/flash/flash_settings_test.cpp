@@ -154,7 +154,7 @@ bool cut(FlashChip& chip, const Settings& to, std::uint64_t after, std::size_t o
   return saved;
 }
 
-TEST(FlashSettingsCuts, AtEveryOperationLeaveTheOldSettingsOrTheNew) {
+TEST(FlashSettingsCuts, ACutAtAnyOperationLeavesTheOldOrTheNewSettings) {
   constexpr std::uint64_t kAfter = 60'000;
   std::size_t cuts = 0;
   std::size_t cuts_of_erases = 0;
@@ -188,7 +188,7 @@ TEST(FlashSettingsCuts, AtEveryOperationLeaveTheOldSettingsOrTheNew) {
 }
 
 // Tests a random sample of the pairs of cuts, with a fixed seed.
-TEST(FlashSettingsCuts, TwiceInARowLeaveTheOldSettingsOrTheNew) {
+TEST(FlashSettingsCuts, TwoCutsInARowLeaveTheOldOrTheNewSettings) {
   constexpr int kPairs = 300;
   std::mt19937 random(kSeed);
   for (const Beginning& beginning : beginnings()) {

@@ -106,8 +106,9 @@ class PageStoreCuts : public testing::Test {
     }
   }
 
-  /// Cuts the power at each operation of `write`, with each state in which a cut may leave the bytes (or, if
-  /// `in_every_way` is false, with some of them). Then carries out the write without a cut.
+  /// Cuts the power at each operation of `write`. For each operation, tries all states in which a cut may
+  /// leave the bytes; if `in_every_way` is false, tries only some of them. Then carries out the write without
+  /// a cut.
   void cut_everywhere(State& state, const Write& write, bool in_every_way = true) {
     State whole = state;
     bool reported = false;
@@ -171,7 +172,7 @@ class PageStoreCuts : public testing::Test {
   std::size_t cuts_ = 0;
 };
 
-TEST_F(PageStoreCuts, InTheFirstRunOnAFlashLeaveTheOldPageOrTheNew) {
+TEST_F(PageStoreCuts, ACutInTheFirstRunOnAFlashLeavesTheOldOrTheNewPage) {
   State state = blank();
   for (const unsigned content : {1U, 2U}) {
     // A write that arrives before the first erase has ended may be refused, so this one arrives later.
@@ -182,7 +183,7 @@ TEST_F(PageStoreCuts, InTheFirstRunOnAFlashLeaveTheOldPageOrTheNew) {
   }
 }
 
-TEST_F(PageStoreCuts, AtTheFirstWritesAfterAResetLeaveTheOldPageOrTheNew) {
+TEST_F(PageStoreCuts, ACutAtTheFirstWritesAfterAResetLeavesTheOldOrTheNewPage) {
   State state = settled();
   write(state, {0, 1, 0});
   write(state, {1, 2, 0});
@@ -194,7 +195,7 @@ TEST_F(PageStoreCuts, AtTheFirstWritesAfterAResetLeaveTheOldPageOrTheNew) {
   }
 }
 
-TEST_F(PageStoreCuts, AtTheEndOfASectorAndAtTheErasesAfterItLeaveTheOldPageOrTheNew) {
+TEST_F(PageStoreCuts, ACutAtTheEndOfASectorOrAtTheErasesAfterItLeavesTheOldOrTheNewPage) {
   State state = full();
   unsigned content = 5000;
   for (const unsigned pause : {1'000U, 3'000U, 3'000U, 10'000U, 60'000U, 3'000U, 100'000U}) {
@@ -203,7 +204,7 @@ TEST_F(PageStoreCuts, AtTheEndOfASectorAndAtTheErasesAfterItLeaveTheOldPageOrThe
   }
 }
 
-TEST_F(PageStoreCuts, WithTheLongestTimesOfTheFlashLeaveTheOldPageOrTheNew) {
+TEST_F(PageStoreCuts, ACutWithTheLongestTimesOfTheFlashLeavesTheOldOrTheNewPage) {
   State state = full();
   state.chip.times = FlashChip::kLongest;
   unsigned content = 5000;
@@ -215,7 +216,7 @@ TEST_F(PageStoreCuts, WithTheLongestTimesOfTheFlashLeaveTheOldPageOrTheNew) {
 
 // The number of pairs grows with the square of the number of cuts, so this is a random sample with a fixed
 // seed.
-TEST_F(PageStoreCuts, SeveralTimesInARowLeaveTheOldPageOrTheNew) {
+TEST_F(PageStoreCuts, SeveralCutsInARowLeaveTheOldOrTheNewPage) {
   constexpr int kRounds = 100;
   constexpr int kCutsInARow = 6;
   std::mt19937 random(kSeed);

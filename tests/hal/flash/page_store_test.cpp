@@ -277,7 +277,7 @@ TEST(PageStore, AWriteIntoAWornOutSectorFailsOnceAndThenSucceedsElsewhere) {
   EXPECT_LE(failures, 4U) << "once in each round through the sectors";
 }
 
-TEST(PageStore, ASectorThatCannotBeMarkedIsNotErasedAgainAndAgain) {
+TEST(PageStore, ASectorThatCannotBeMarkedIsNotErasedRepeatedly) {
   FlashChip chip;
   chip.broken = 3 * FlashChip::kSector;
   chip.broken_size = kMark.size();
@@ -334,7 +334,7 @@ TEST(PageStore, AFlashThatHangsFromTheStartFailsEachJobInTime) {
   EXPECT_LE(run.latency, Store::kLongestRead.microseconds() + 2'000);
 }
 
-TEST(PageStore, AnEntryWhoseProgrammingTookTooLongCountsIfItIsGood) {
+TEST(PageStore, AGoodEntryIsUsedEvenIfItsProgrammingTookTooLong) {
   FlashChip chip;
   Session run(chip);
   run.settle();
@@ -363,7 +363,7 @@ TEST(PageStore, ASectorThatTookTooLongToOpenIsWrittenNext) {
   EXPECT_EQ(Session(chip).page(1), numbered(2));
 }
 
-TEST(PageStore, AnEraseThatWasResumedRunsForAMomentBeforeItIsSuspended) {
+TEST(PageStore, AResumedEraseIsNotSuspendedTooEarly) {
   FlashChip chip;
   Session run(chip);
   std::vector<std::uint8_t> bytes(1);

@@ -21,7 +21,7 @@ FlashChip settled(const FlashChip::Times& times) {
 }
 
 /// Writes pages at most `most` times, one every `period` microseconds. If a write takes longer than `period`,
-/// the next one follows at once. Returns the number of writes before the first one that fails.
+/// the next one follows immediately. Returns the number of writes before the first one that fails.
 unsigned writes_without_failure(Session& run, FlashChip& chip, std::uint64_t period, unsigned most) {
   for (unsigned writes = 0; writes < most; ++writes) {
     const std::uint64_t next = chip.now + period;
@@ -92,14 +92,14 @@ TEST(PageStoreTiming, WritesAtTheDocumentedRateNeverWaitForAnErase) {
   EXPECT_EQ(writes_without_failure(run, chip, 12'000, kWrites), kWrites);
 }
 
-TEST(PageStoreTiming, WithTypicalTimesWritesAtAnyRateNeverWaitForAnErase) {
+TEST(PageStoreTiming, WritesAtAnyRateNeverWaitForAnEraseWithTypicalTimes) {
   constexpr unsigned kWrites = 20'000;
   FlashChip chip = settled({});
   Session run(chip);
   EXPECT_EQ(writes_without_failure(run, chip, 4'000, kWrites), kWrites);
 }
 
-TEST(PageStoreTiming, TheSectorsErasedAheadHaveRoomForABurst) {
+TEST(PageStoreTiming, TheSectorsErasedInAdvanceHaveRoomForABurst) {
   constexpr unsigned kBurst = (kSectors - 1) * (kSlotsOfASector - 1);
   FlashChip chip = settled({1'000'000'000, 3'000});  // an erase that never ends
   chip.times = {1'000'000'000, 3'000};

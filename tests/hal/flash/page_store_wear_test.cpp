@@ -1,4 +1,5 @@
-// Counts the erases of each sector over many stores, compared with the manufacturer's guarantee.
+// Counts the erases of each sector over many stores, and compares the result with the manufacturer's
+// guarantee.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,9 +10,9 @@
 namespace ex9000::hal::flash {
 namespace {
 
-/// Erase cycles of a sector: W25Q16JV data sheet, "Features".
+/// The guaranteed number of erase cycles of a sector: W25Q16JV data sheet, "Features".
 constexpr double kCycles = 100'000;
-/// Stores until a sector wears out.
+/// The required number of stores until a sector wears out.
 constexpr double kRequired = 10e6;
 
 class PageStoreWear : public testing::Test {
@@ -81,7 +82,7 @@ TEST_F(PageStoreWear, AllowsTenMillionStoresOfAPageWhileAllOthersHoldASectorEach
   stores_until_worn("one page, while all others hold a sector each", [this](unsigned) { write(0); });
 }
 
-TEST_F(PageStoreWear, OfReadingIsNone) {
+TEST_F(PageStoreWear, ReadingErasesAndProgramsNothing) {
   write(1);
   const auto erases = chip_.erases;
   const unsigned programs = chip_.programs;
@@ -93,7 +94,7 @@ TEST_F(PageStoreWear, OfReadingIsNone) {
   EXPECT_EQ(chip_.programs, programs);
 }
 
-TEST_F(PageStoreWear, OfResetsWithoutAStoreIsNone) {
+TEST_F(PageStoreWear, ResetsWithoutAStoreEraseAndProgramNothing) {
   write(1);
   Session(chip_).settle();
   const auto erases = chip_.erases;

@@ -110,7 +110,7 @@ class Sending : public testing::TestWithParam<std::tuple<bool, std::uint32_t, Li
       EXPECT_EQ(bench.line.heard[i].byte, bytes[i]);
       EXPECT_TRUE(bench.line.heard[i].good);
     }
-    ASSERT_EQ(bench.line.drives.size(), 1U) << "it is switched on and off once";
+    ASSERT_EQ(bench.line.drives.size(), 1U) << "the RS-485 driver is switched on and off once";
     EXPECT_LT(bench.line.drives[0].from, bench.line.heard.front().started);
     EXPECT_EQ(bench.line.bits_lost, 0U);
     // The clock of the microcontroller determines the length of the last stop bit.

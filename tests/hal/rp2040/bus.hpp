@@ -1,5 +1,4 @@
-// Registers for drivers of the RP2040 on a host. A test provides one object, which the drivers' bus accesses
-// go to.
+// Registers for drivers of the RP2040 on a host. The drivers access one object, which the test provides.
 #pragma once
 
 #include <cstdint>

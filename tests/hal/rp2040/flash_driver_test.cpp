@@ -109,7 +109,7 @@ class Chip {
   std::vector<std::uint8_t> bytes_;
 };
 
-/// The SSI in the mode in which each frame of 8 bits is sent and received, and the pin of chip select.
+/// A model of the chip-select pin and of the SSI, in the mode that sends and receives each frame of 8 bits.
 class Ssi final : public rp2040_model::Bus {
  public:
   std::uint32_t read(std::uint32_t address) override {

@@ -62,7 +62,7 @@ class TimerModel final : public rp2040_model::Bus {
     }
   }
   [[nodiscard]] bool interrupt() const { return (raw_ && enabled_) || forced_; }
-  /// Lets time pass in steps in which no microsecond is skipped.
+  /// Lets time pass in steps that skip no microsecond.
   void pass(std::uint64_t duration) {
     constexpr std::uint64_t kStep = 100;
     for (const std::uint64_t end = nanoseconds + duration; nanoseconds < end;) {
@@ -106,7 +106,7 @@ std::uint64_t time_to_interrupt(TimerModel& model) {
   while (!model.interrupt()) {
     model.pass(100);
     if (model.nanoseconds - begin > 100'000'000) {
-      ADD_FAILURE() << "it does not fire";
+      ADD_FAILURE() << "the timer does not fire";
       break;
     }
   }
@@ -143,7 +143,7 @@ void expect_that_it_fires() {
   EXPECT_FALSE(model.interrupt());
 }
 
-TEST(OneShotTimer, EachOneUsesItsOwnAlarm) {
+TEST(OneShotTimer, EachTimerUsesItsOwnAlarm) {
   expect_that_it_fires<0>();
   expect_that_it_fires<1>();
   expect_that_it_fires<2>();

@@ -61,7 +61,8 @@ class Clock : public testing::Test {
 };
 
 TEST_F(Clock, IsExactToTheMicrosecondInEveryPhaseAroundATick) {
-  // The accesses of one reading are two clocks apart; this covers every phase relative to the counter's zero.
+  // The accesses of one reading are two clocks apart. The loop covers every phase relative to the zero of the
+  // counter.
   for (int clocks = -40; clocks <= 40; ++clocks) {
     bench.mcu.run_until(began_ + milliseconds(20 * (clocks + 50)) + clocks * nanoseconds(20));
     for (int i = 0; i < 10; ++i) {
@@ -226,7 +227,8 @@ TEST(Watchdog, IsLockedAgainstUnintendedRegisterWrites) {
 
 // --- reason of a reset ---
 
-/// Returns what the driver takes after these resets. No software clears RESC between them.
+/// Returns the reason that `take_reset_reason` returns after these resets. No software clears RESC between
+/// them.
 ResetReason taken_after(const Chip& chip, const std::vector<ResetCause>& resets) {
   DriverBench bench(chip);
   SystemControl& system_control = bench.mcu.system_control;

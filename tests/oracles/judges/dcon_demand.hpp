@@ -26,7 +26,7 @@ constexpr std::optional<unsigned> hex_number(Bytes digits) {
   return number;
 }
 
-/// `text`: `#AABBDD` from BB on.
+/// Returns the effects of `#AABBDD`. `text`: the command from BB on.
 constexpr Demand demand_of_group_or_single(Bytes text, unsigned outputs) {
   const auto data = hex_number(text.from(2));
   if (!data) {
@@ -55,7 +55,7 @@ constexpr Demand demand_of_group_or_single(Bytes text, unsigned outputs) {
   return demand;
 }
 
-/// `digits`: `@AA(Data)` from the data on.
+/// Returns the effects of `@AA(Data)`. `digits`: the data.
 constexpr Demand demand_of_all(Bytes digits, unsigned outputs) {
   const std::size_t most = outputs > 8 ? 4 : outputs > 4 ? 2 : 1;
   const auto data = hex_number(digits);
@@ -68,7 +68,7 @@ constexpr Demand demand_of_all(Bytes digits, unsigned outputs) {
   return demand;
 }
 
-/// `text`: a `~AA` command from the character after AA on.
+/// Returns the effects of a `~AA` command. `text`: the command from the character after AA on.
 constexpr Demand demand_of_tilde(Bytes text, unsigned outputs) {
   Demand demand;
   demand.stores_something = text[0] == 'O' || text[0] == '1' || text[0] == '3' || text[0] == '5' ||

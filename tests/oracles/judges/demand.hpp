@@ -13,7 +13,7 @@ struct Values {
   std::uint16_t outputs = 0;   ///< bit n is channel n, also in the next two fields
   std::uint16_t power_on = 0;  ///< stored; applies at the next reset
   std::uint16_t safe = 0;      ///< stored; applies when the host watchdog expires
-  std::uint8_t timeout = 0;    ///< of the host watchdog, in 0.1 s
+  std::uint8_t timeout = 0;    ///< the timeout of the host watchdog, in 0.1 s
   bool enabled = false;        ///< host watchdog enabled
   bool timed_out = false;      ///< timeout status; while it is set, output commands are refused
   std::uint16_t timed = 0;     ///< the outputs that a timer will switch off
@@ -48,17 +48,18 @@ struct Values {
 
 /// The effects of a command that is executed. A refused command has no effects.
 struct Demand {
-  std::uint16_t channels = 0;             ///< the driven channels; 0: not an output command
-  std::uint16_t levels = 0;               ///< of the driven channels
-  std::uint16_t timers = 0;               ///< the driven channels whose timer starts; the others' timers end
-  std::array<std::uint16_t, 16> units{};  ///< of these timers, in 0.1 s
+  std::uint16_t channels = 0;  ///< the driven channels; 0: not an output command
+  std::uint16_t levels = 0;    ///< the levels of the driven channels
+  /// The driven channels whose timer starts. The timers of the other driven channels end.
+  std::uint16_t timers = 0;
+  std::array<std::uint16_t, 16> units{};  ///< the times of these timers, in 0.1 s
   bool of_power_on = false;               ///< Modbus: the power-on value of these channels becomes `levels`
   bool of_safe = false;                   ///< Modbus: the safe value of these channels becomes `levels`
   bool keeps_power_on = false;            ///< `~AA5P`: the outputs are stored as power-on value
   bool keeps_safe = false;                ///< `~AA5S`: the outputs are stored as safe value
   bool clears_timeout = false;            ///< clears the timeout status
   bool restarts = false;                  ///< restarts the host watchdog if it is enabled afterwards
-  bool stores_something = false;          ///< any setting; storing takes time and may fail
+  bool stores_something = false;          ///< stores a setting, which takes time and may fail
   std::optional<std::uint8_t> timeout{};
   std::optional<bool> enabled{};
 
@@ -84,9 +85,9 @@ struct Demand {
     return values;
   }
 
-  /// Like `made_of`, if the host watchdog expired while the command was being stored: the command drives
-  /// nothing (wire.md D6) and clears nothing (wire.md D17). `outputs`: the lasting outputs before the
-  /// timeout.
+  /// Returns the values after the command, if the host watchdog expired while the command was being stored.
+  /// Then the command drives nothing (wire.md D6) and clears nothing (wire.md D17). `outputs`: the lasting
+  /// outputs before the timeout.
   [[nodiscard]] constexpr Values values_after_a_timeout(Values values, std::uint16_t outputs) const {
     store(values, outputs);
     values.outputs = values.safe;

@@ -12,7 +12,7 @@ struct Finding {
     Foreign,    ///< for another module
     Request,    ///< for the module, which may reply once
     Broadcast,  ///< for every module; none replies
-    HostOk,     ///< for every module; none replies, and each restarts its host watchdog
+    HostOk,     ///< for this or for every module; none replies, and each receiver restarts its host watchdog
   };
 
   Kind kind = Kind::Nothing;

@@ -10,8 +10,8 @@
 
 namespace ex9000::judges {
 
-/// Stores the latest restart and the latest timeout of the host watchdog. Ignores restarts by requests if
-/// register 0x0251 is 1.
+/// Stores the latest restart and the latest timeout of the host watchdog. Does not track the restarts by
+/// requests that register 0x0251 enables.
 class HostWatchdog {
  public:
   void module_reset(Microseconds now) {

@@ -13,11 +13,11 @@ namespace ex9000::judges {
 struct LineTimes {
   Microseconds character = 0;    ///< from the start bit to the end of the last stop bit
   Microseconds received = 0;     ///< from the start bit to the end of the first stop bit
-  Microseconds rest = 0;         ///< from there to the end of the last stop bit
+  Microseconds rest = 0;         ///< from the end of the first stop bit to the end of the last one
   Microseconds t35 = 0;          ///< T3.5
   Microseconds turn_around = 0;  ///< least time from the report of CR to an ASCII reply
   Microseconds silence = 0;      ///< from the report of a byte to the end of T3.5 after it
-  Microseconds slack = 0;        ///< greatest time between the reports of two bytes at most T1.5 apart
+  Microseconds slack = 0;        ///< time between the reports of two bytes with a gap of T1.5
 
   static constexpr LineTimes at(std::uint32_t baud, LineFormat format) {
     constexpr unsigned kStartDataStop = 10;
@@ -25,7 +25,7 @@ struct LineTimes {
     const unsigned second_stop = format == LineFormat::k8N2 ? 1 : 0;
     const unsigned all = kStartDataStop + parity + second_stop;
     const auto half_bits = [baud](unsigned count) { return count * 500'000ULL / baud; };
-    // T1.5 and T3.5 are characters of 11 bits in every format, and fixed above 19200 baud.
+    // T1.5 and T3.5 are multiples of a character of 11 bits in every format. Above 19200 baud they are fixed.
     const bool fixed = baud > 19200;
     LineTimes times;
     times.character = half_bits(2 * all);

@@ -31,8 +31,8 @@ struct Request {
   [[nodiscard]] bool is_silent_store() const { return broadcast && demand.stores_something; }
 };
 
-/// A queue of requests. The module keeps one frame and executes another one. It may lose further frames. Such
-/// a loss cannot be seen from outside, so the queue keeps some more.
+/// A queue of requests. The module keeps one frame while it executes another one. It may lose further frames.
+/// A judge cannot observe such a loss, so the queue keeps more requests than the module.
 class Requests {
  public:
   /// The greatest number of requests in the queue.

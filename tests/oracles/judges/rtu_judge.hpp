@@ -15,9 +15,9 @@ namespace ex9000::judges {
 
 class RtuJudge {
  public:
-  /// `strict`: a gap of more than 1.5 characters invalidates a frame. `doubt`: the module has its own clock,
-  /// so if a gap differs by at most this much from the silence that ends a frame, the module may or may not
-  /// end the frame; then the judge considers both cases.
+  /// `strict`: a gap of more than 1.5 characters invalidates a frame. `doubt`: the greatest difference
+  /// between the clocks of the module and of the judge. If a gap differs by at most this much from the
+  /// silence that ends a frame, the module may or may not end the frame. The judge then considers both cases.
   RtuJudge(std::uint8_t own_address, const LineTimes& times, bool strict, Microseconds doubt = 0)
       : own_(own_address),
         received_(times.received),

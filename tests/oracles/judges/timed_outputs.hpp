@@ -26,7 +26,7 @@ class TimedOutputs {
   }
 
   /// Call this when the timers of these channels have started, and after it `may_be_started_by` for each
-  /// request that the module may have executed. If no request starts a timer, it may end at any time.
+  /// request that the module may have executed. A timer that no request starts may end at any time.
   void started(std::uint16_t channels) {
     for (unsigned channel = 0; channel < ends_.size(); ++channel) {
       ends_[channel] = (channels >> channel & 1U) != 0 ? kAnyTime : ends_[channel];

@@ -45,7 +45,7 @@ class ValueChanges {
                : "values change only because of a command, a timeout or a reset";
   }
 
-  /// Takes over the new values.
+  /// Stores the new values `to`. `requests`: those that may have started timers.
   void change(const Values& to, const Requests& requests) {
     const auto started = static_cast<std::uint16_t>(to.timed & ~values_.timed);
     if (started != 0) {
@@ -84,8 +84,9 @@ class ValueChanges {
              demand.values_after_a_timeout(from, watchdog_.outputs_before()) == to));
   }
 
-  /// Returns whether one command can have changed the values to `to`, which is nearly always the case. Also
-  /// records the change.
+  /// Returns whether a single command can have changed the values to `to`; this is the usual case. Also
+  /// records the cause: a timeout if it explains the change, or else the command if it is the only one that
+  /// explains the change.
   bool one_leads_to(const Values& to, Requests& requests, Microseconds now) {
     Request* only = nullptr;
     unsigned count = 0;

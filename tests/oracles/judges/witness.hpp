@@ -40,12 +40,13 @@ struct Listening {
 /// Reports a violated claim if
 ///  - a reply begins that no frame has requested, or begins too early or too late, or does not have the
 ///    format that the request requires;
-///  - outputs, power-on value, safe value, timeout or enable of the host watchdog, or the timeout status
-///    change, except exactly as a received command demands, because the host watchdog expires, or because the
-///    timer of an output ends;
-///  - a command gets a reply, or an idle module receives a broadcast that drives outputs without storing, and
-///    these values are not what the command demands;
-///  - a command is refused although one of these values has changed, or a valid output command is refused;
+///  - the values (outputs, power-on value, safe value, timeout and enable of the host watchdog, timeout
+///    status) change without a permitted cause: a received command that demands exactly this change, the
+///    expiry of the host watchdog, or the end of an output's timer;
+///  - the values are not what a command demands after the reply to this command, or after an idle module has
+///    received a broadcast that drives outputs and stores nothing;
+///  - a command is refused although it has changed a value, or a valid output command is refused although
+///    the timeout status is not set and no store can have failed;
 ///  - an idle module does not reply to a frame that is addressed to it;
 ///  - the host watchdog expires too early;
 ///  - the timer of an output ends too early;
@@ -53,7 +54,7 @@ struct Listening {
 ///  - outputs are not the safe value while the timeout status is set, or an output is driven that the model
 ///    does not have.
 ///
-/// It does not check that a timer ends in time, that a reply waits for the response delay, and that requests
+/// It does not check that a timer ends in time, that a reply waits for the response delay, or that requests
 /// restart the host watchdog if register 0x0251 is 1.
 ///
 /// `now` must never decrease from one call to the next.
@@ -65,9 +66,9 @@ class Witness {
   struct Counts {
     std::uint64_t requests = 0;
     std::uint64_t silent = 0;    ///< executed without a reply
-    std::uint64_t host_oks = 0;  ///< the part of `silent` that are host OKs
+    std::uint64_t host_oks = 0;  ///< the frames of `silent` that are host OKs
     std::uint64_t foreign = 0;
-    std::uint64_t storing = 0;  ///< the part of `requests` and `silent` that store something
+    std::uint64_t storing = 0;  ///< the frames of `requests` and `silent` that store something
   };
 
   Witness(const Model& model, ReportViolation report_violation)
@@ -198,7 +199,7 @@ class Witness {
       case Finding::Kind::HostOk:
         ++counts_.silent;
         ++counts_.host_oks;
-        if (!held_) {  // while it is held, the module uses only the last one
+        if (!held_) {  // while the main loop is held, the module uses only the first and last one
           changes_.watchdog().restarts_at_the_earliest(finding.last);
         }
         return;
@@ -267,7 +268,7 @@ class Witness {
         return;
       }
       if (!oldest.broadcast && oldest.alone) {
-        report_violation_("a module with nothing else to do answers in time");
+        report_violation_("an idle module replies in time");
       }
       if (oldest.is_silent_store()) {
         free_ = latest;
@@ -281,7 +282,7 @@ class Witness {
   template <class FormOf>
   ReplyForm answered(bool refuses_outputs, FormOf form_of) {
     mark_fresh();
-    const char* objection = "only a frame for the module is answered";
+    const char* objection = "a module replies only to frames for it";
     for (std::size_t i = 0; i < pending_.size(); ++i) {
       const Request& request = pending_[i];
       if (request.broadcast || !request.fresh) {

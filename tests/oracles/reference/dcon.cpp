@@ -12,7 +12,7 @@ namespace ex9000::reference {
 /// Returns the AA of replies. wire.md 2: in INIT mode every reply carries 00.
 std::string Module::aa() const { return hex(address_, 2); }
 
-/// Returns First and Second of a model (wire.md 1).
+/// Returns the fields First and Second of a reply (wire.md 1).
 std::string Module::first_second(unsigned outputs, unsigned inputs) const {
   if (row_.outputs > 8) {
     return hex(outputs >> 8, 2) + hex(outputs, 2);
@@ -145,7 +145,7 @@ std::string Module::set_configuration(const std::string& body) {
   stored_.address = address;
   stored_.baud_code = baud_code;
   stored_.format = format;
-  // The new address is in force at once. In INIT mode the module continues to reply as 00.
+  // The new address is in force immediately. In INIT mode the module continues to reply as 00.
   if (!init_mode_) {
     address_ = address;
   }
@@ -374,7 +374,7 @@ std::string Module::tilde_command(const std::string& body) {
       value = outputs_ & ~timed_outputs();
       return "!" + aa();
     }
-    // wire.md E6: the value is shown as on an output-only model, without inputs.
+    // wire.md E6: the reply contains no inputs, also on a model with inputs and outputs.
     return "!" + aa() + first_second(value, 0);
   }
   if (command == 'O') {

@@ -1,5 +1,5 @@
-// Recognises the requests that only a module with extensions has: wire.md 12. A reference module without
-// extensions leaves the reply to these requests open.
+// Recognises the requests that require an extension: wire.md 12. A reference module without extensions leaves
+// the reply to these requests open.
 #pragma once
 
 #include <string>
@@ -15,8 +15,8 @@ bool has_line_format(unsigned baud_code);
 bool is_extension_command(char delimiter, const std::string& body);
 
 /// Returns whether the first coil or register of the request is one of the extensions, or whether the request
-/// sets a line format. Any other range that touches an extension has a hole before it, so it is refused in
-/// any case. `frame`: without its CRC.
+/// sets a line format. A range that begins before an extension and reaches it includes a hole, so every
+/// module refuses it. `frame`: without its CRC.
 bool is_extension_function(const Bytes& frame);
 
 }  // namespace ex9000::reference

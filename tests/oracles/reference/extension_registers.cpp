@@ -32,7 +32,7 @@ ExtensionRow extension_row(const ModelRow& model, unsigned address) {
   return {Extension::None, "", 0, 0, false, false};
 }
 
-/// Returns the number of overruns and of lost frames as 0, because a session has none.
+/// Returns a line tally. The tallies of overruns and lost frames are 0, because a session has none.
 unsigned Module::tally(unsigned index) const {
   const unsigned tallies[] = {counts_.bus_messages, counts_.crc_errors,
                               counts_.exceptions,   counts_.server_messages,

@@ -28,7 +28,7 @@ struct ExtensionRow {
   const char* name;
   unsigned first;
   unsigned count;  ///< of 16-bit registers
-  bool written;    ///< the row can also be written
+  bool written;    ///< the registers can also be written
   bool wide;       ///< values of 32 bits, each in two registers
 };
 

@@ -83,9 +83,10 @@ Step next_step(const Module& module, Random& random) {
   if (what < 14) {
     return wait(module, random);
   }
-  // Inputs that a model does not have may be wired too; they have no effect.
+  // Some steps use inputs that the model does not have; these steps have no effect.
   if (what < (module.row().inputs != 0 ? 40U : 15U)) {
-    // Often an input whose filter is settling, or one of the first two, which have a filter more often.
+    // An input whose filter time is running is preferred, and so are the first two inputs, which have a
+    // filter more often.
     const std::optional<unsigned> settling = module.settling_input();
     const unsigned channel = settling && random.once_in(2) ? *settling
                              : random.once_in(2)           ? random.below(2)

@@ -1,6 +1,6 @@
 // Generates random steps for a session. They suit the current state of the reference module: its protocol,
-// address, checksum and model. For a module without extensions, they contain no request that only the
-// extensions have, except by chance.
+// address, checksum and model. For a module without extensions, they contain no request that requires an
+// extension, except by chance.
 #pragma once
 
 #include "tests/oracles/reference/random.hpp"
@@ -19,7 +19,8 @@ Step next_step(const Module& module, Random& random);
 /// mistake, or other bytes before them.
 Bytes dcon_request(const Module& module, Random& random);
 
-/// Returns a CC with this rate, in half of the cases with a random line format if the module has extensions.
+/// Returns a CC with this rate. If the module has extensions, half of the returned CCs have a random line
+/// format.
 unsigned baud_code_with(unsigned rate, const Module& module, Random& random);
 
 /// Returns the address of an extension register, or one at which this model has none.

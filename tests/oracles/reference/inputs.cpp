@@ -43,14 +43,14 @@ void Module::pulse_input(unsigned channel, std::uint32_t count, Time now) {
   }
 }
 
-/// Makes the raw level the level that counts.
+/// Accepts the raw level, which is an edge.
 void Module::take_level(unsigned channel) {
   levels_ ^= 1U << channel;
   edge(channel, (levels_ >> channel & 1U) != 0, 1);
 }
 
-/// A new filter time applies from the last edge at the terminal. If that time is already over, the level
-/// counts as soon as the setting is stored, which may have to wait for the store of a timeout.
+/// A new filter time applies from the last edge at the terminal. If that time is already over, the module
+/// accepts the level as soon as the setting is stored. This may have to wait for the store of a timeout.
 void Module::set_filter(unsigned channel, unsigned milliseconds) {
   if (settling_[channel] && milliseconds != stored_.filters[channel]) {
     const Time settled = last_edges_[channel] + std::chrono::milliseconds(milliseconds);
@@ -60,7 +60,7 @@ void Module::set_filter(unsigned channel, unsigned milliseconds) {
   stored_.filters[channel] = milliseconds;
 }
 
-/// Raw levels and the levels that count change together, so that there is no edge.
+/// The raw levels and the filtered levels change together, so there is no edge.
 void Module::set_inversion(unsigned inversion) {
   rule(inversion == stored_.inversion ? "inversion stays" : "inversion changes");
   levels_ ^= inversion ^ stored_.inversion;

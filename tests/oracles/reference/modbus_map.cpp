@@ -244,7 +244,7 @@ void Module::set_coils(unsigned first, const std::vector<bool>& values) {
         drive(1U << channel, values[i] ? 1U << channel : 0U);
         break;
       case Row::Safe:
-        // The outputs take the same values.
+        // A write of safe values also drives the outputs.
         put(stored_.safe);
         drive(1U << channel, values[i] ? 1U << channel : 0U);
         break;
@@ -266,7 +266,7 @@ void Module::set_coils(unsigned first, const std::vector<bool>& values) {
         clear_timeout_status();
         break;
       case Row::CountingEdge:
-        // In force at once, unlike FF of `%`.
+        // Takes effect immediately, unlike FF of `%`.
         stored_.format = values[i] ? stored_.format | 0x80U : stored_.format & 0x7FU;
         counts_rising_ = values[i];
         break;
@@ -380,7 +380,7 @@ void Module::set_registers(unsigned first, const std::vector<unsigned>& values) 
   }
 }
 
-/// Returns whether a write that begins at this register is ignored at address 0. The result is the same for
+/// Returns whether a write that begins at this register is ignored in a broadcast. The result is the same for
 /// all registers that one request can write.
 bool Module::broadcast_ignored(unsigned first) {
   if (first == 0x01E4 || first == 0x01E5) {

@@ -232,7 +232,7 @@ Bytes request(const Module& module, Random& random) {
 
 Bytes modbus_request(const Module& module, Random& random) {
   Bytes frame = request(module, random);
-  // Some frames are truncated or too long, with a correct CRC for the result.
+  // Some requests are truncated or extended before the CRC is appended.
   if (random.once_in(25)) {
     frame.resize(random.below(static_cast<unsigned>(frame.size()) + 1));
   } else if (random.once_in(25)) {

@@ -40,7 +40,7 @@ Bytes Module::diagnostics(const Bytes& frame) {
       count = counts_.no_response;
       break;
     case 0x12:
-      count = 0;  // this module never loses a complete frame to an overrun
+      count = 0;  // no session loses a frame to an overrun
       break;
     default:
       throw Exception{0x01, "FC08 01"};

@@ -1,5 +1,5 @@
-// The table of models of the reference: wire.md 1. It is independent of the firmware's table, so that a
-// mistake in one of them is found.
+// The table of models of the reference: wire.md 1. It is independent of the firmware's table, so that the
+// tests find a mistake in either table.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +9,8 @@ namespace ex9000::reference {
 /// Whether a module has the extensions of wire.md 12.
 enum class Extensions {
   Present,
-  /// The module has only what the manuals describe. The reply to a request that only the extensions have is
-  /// left open, because the firmware always has the extensions.
+  /// The module has only what the manuals describe. The reply to a request that requires an extension is left
+  /// open, because the firmware always has the extensions.
   Absent,
 };
 
@@ -25,7 +25,7 @@ struct ModelRow {
   unsigned longest_name;  ///< 7 on the -M models of the 9068, wire.md E5
   std::uint16_t code;     ///< Modbus module code; 0 without Modbus
   const char* in_words;   ///< object 04 of function 2B
-  /// Neither a model of the manuals nor named in their parameter tables; it came with the extensions.
+  /// An additional model: the manuals neither describe it nor name it in their parameter tables.
   bool extension = false;
 };
 

@@ -9,7 +9,7 @@ namespace ex9000::reference {
 namespace {
 
 constexpr std::chrono::milliseconds kTimeoutUnit{100};  // wire.md 6: VV x 0.1 s
-/// One tick, and the time until the module executes a received request.
+/// One tick and the time until the module executes a received request.
 constexpr std::chrono::milliseconds kTick{3};
 /// The silence that ends a frame, wire.md 7, at 1200 baud. A host OK stores nothing.
 constexpr std::chrono::milliseconds kLongestSilence{33};
@@ -171,8 +171,8 @@ void Module::restart_host_watchdog() {
 
 void Module::restart_host_watchdog_by_host_ok() {
   if (stored_.enabled) {
-    // A command that restarts the host watchdog may still be being stored. The restart then happens later
-    // than this.
+    // The module may still be storing a command that restarts the host watchdog. The restart by this command
+    // then happens later.
     const Time latest = now_ + kLongestSilence + stored_.timeout * kTimeoutUnit;
     expiry_ =
         Moment{now_ + stored_.timeout * kTimeoutUnit, expiry_ ? std::max(expiry_->latest, latest) : latest};
@@ -218,14 +218,14 @@ void Module::set_timed_output(unsigned channel, unsigned time) {
 /// Returns the time until a timed output ends, in 0.1 s, rounded up; 0 if none is running.
 unsigned Module::time_left(unsigned channel) {
   const std::optional<Moment>& timer = timers_[channel];
-  rule(timer ? "0x0280 reads what is left" : "0x0280 reads 0");
+  rule(timer ? "0x0280 reads the remaining time" : "0x0280 reads 0");
   if (!timer) {
     return 0;
   }
   const auto rounded_up = [](Time time) { return (time + kTimeoutUnit - Time(1)) / kTimeoutUnit; };
   const auto most = rounded_up(timer->latest + kTick - now_);
   if (most != rounded_up(timer->earliest - kTick - executed_by())) {
-    left_open_ = "the time of a timed output that is left is not known exactly";
+    left_open_ = "the remaining time of a timed output is not known exactly";
   }
   return static_cast<unsigned>(most);
 }
@@ -298,7 +298,7 @@ void Module::pass(Time now) {
   }
   for (unsigned channel = 0; channel < row_.inputs; ++channel) {
     if (settling_[channel] && now > settling_[channel]->latest) {
-      rule("level has stood for the time of the input filter");
+      rule("the input filter accepts the level");
       settling_[channel].reset();
       take_level(channel);
     }

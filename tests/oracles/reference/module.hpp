@@ -1,6 +1,6 @@
-// A second implementation of a module, written from the specification alone and as simply as possible: it
-// takes whole frames and returns whole frames, has no interrupts, and stores settings at once. It shares no
-// code with the firmware, except the names of the line formats. If both agree on a random session, two
+// A second implementation of a module, written from the specification alone and as simply as possible. It
+// processes all bytes of a request in one call, has no interrupts, and stores settings immediately. It shares
+// no code with the firmware, except the names of the line formats. If both agree on a random session, two
 // independent readings of the specification agree. Section, E and D numbers refer to wire.md.
 #pragma once
 
@@ -30,9 +30,9 @@ inline constexpr unsigned kLongestDelay = 0x1E;
 
 /// Returns the number of bits of a character: wire.md, extensions.
 constexpr unsigned character_bits(LineFormat format) { return format == LineFormat::k8N1 ? 10 : 11; }
-/// Returns whether CC exists: a rate and a line format.
+/// Returns whether `code` is a valid CC. A CC combines a rate and a line format.
 bool baud_code_exists(unsigned code);
-/// Returns the line format of a CC that exists.
+/// Returns the line format of a valid CC.
 LineFormat format_of(unsigned baud_code);
 /// Returns the line format as a transcript names it.
 const char* name_of(LineFormat format);
@@ -47,12 +47,12 @@ struct Stored {
   unsigned power_on = 0;    ///< bit n is channel n
   unsigned safe = 0;        ///< bit n is channel n
   bool enabled = false;     ///< host watchdog enabled
-  unsigned timeout = 0xFF;  ///< in 0.1 s
+  unsigned timeout = 0xFF;  ///< of the host watchdog, in 0.1 s
   bool timed_out = false;   ///< the timeout status
-  /// Any complete request for this module restarts the host watchdog.
+  /// Whether every complete request for this module restarts the host watchdog.
   bool restarted_by_requests = false;
   unsigned delay = 0;                  ///< the response delay in ms
-  std::array<unsigned, 16> filters{};  ///< of the inputs, in ms
+  std::array<unsigned, 16> filters{};  ///< the filter times of the inputs, in ms
   unsigned inversion = 0;              ///< bit n is input n
 };
 
@@ -89,8 +89,8 @@ class Module {
   void pulse_input(unsigned channel, std::uint32_t count, Time now);
   /// Processes all bytes that the master has sent. The last byte ended at `now`, and a silence follows.
   Answer on_request(const Bytes& bytes, Time now) { return on_bytes(bytes, format(), now); }
-  /// Like `on_request`, for a master that uses another line format. If the module has parity, `sent_in` must
-  /// not be 8N1: without a gap between them, such bytes have no defined end for the module.
+  /// Like `on_request`, for a master that uses another line format. If the module uses parity, `sent_in` must
+  /// not be 8N1, because the module cannot determine where such bytes end if there is no gap between them.
   Answer on_bytes(const Bytes& bytes, LineFormat sent_in, Time now);
   /// Call this when the first byte of the reply to the last request began at `now`. All effects of the
   /// request are complete by then.
@@ -135,15 +135,15 @@ class Module {
   /// Returns when the host watchdog expires, if it is running.
   [[nodiscard]] const std::optional<Moment>& expiry() const { return expiry_; }
   /// Returns all moments at which the module changes by itself: the expiry of the host watchdog, the ends of
-  /// the times for which a new input level must stand, and the ends of timed outputs.
+  /// the running filter times, and the ends of timed outputs.
   [[nodiscard]] std::vector<Moment> moments() const;
-  /// Returns the first input whose new level has not stood for the time of its filter yet, if there is one.
+  /// Returns the first input whose filter time is running, if there is one.
   [[nodiscard]] std::optional<unsigned> settling_input() const;
 
  private:
   void rule(const std::string& rule) { rules_.push_back(rule); }
-  /// Returns whether this module refuses the request because it does not have the extension that the request
-  /// requires, and leaves the reply open in this case. `needed`: whether the request requires an extension.
+  /// Returns whether the request requires an extension that this module does not have, and in this case
+  /// leaves the reply open. `needed`: whether the request requires an extension.
   bool refuses_extension(bool needed) {
     const bool refuses = needed && !has_extensions();
     left_open_ = refuses ? "only a module with extensions has this request" : left_open_;
@@ -228,7 +228,7 @@ class Module {
   Stored stored_;
   bool blank_memory_ = true;  ///< nothing has been stored yet
 
-  // State that lasts from one reset to the next.
+  // State that is not stored. A reset sets most of it anew.
   bool powered_ = false;
   bool init_asserted_ = false;
   bool init_mode_ = false;
@@ -242,8 +242,8 @@ class Module {
   std::array<std::optional<Moment>, 16> timers_;
   bool reset_status_ = false;
   unsigned terminals_ = 0;             ///< levels at the inputs; a reset does not change them
-  std::array<Time, 16> last_edges_{};  ///< of the terminals
-  /// The moments at which new levels have stood for the time of the input filter.
+  std::array<Time, 16> last_edges_{};  ///< the latest edges at the terminals
+  /// The moments at which the running filter times end.
   std::array<std::optional<Moment>, 16> settling_;
   unsigned levels_ = 0;  ///< levels after inversion and filter
   unsigned latch_high_ = 0;
@@ -276,7 +276,7 @@ class Module {
   Time stored_by_{0};               ///< the latest time at which the last command without reply is stored
   Time timeout_stored_{0};          ///< the latest time at which the last timeout is stored
 
-  // State during one call of `on_request`.
+  // State of the latest request.
   Time now_{0};
   bool restarted_ = false;
   unsigned timers_started_ = 0;  ///< bit n is channel n

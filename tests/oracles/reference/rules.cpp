@@ -355,7 +355,7 @@ const char* const kExtensionRules[] = {
     "FC10 0x0304",
     "FC10 several rows of extension registers",
     // wire.md 5, 6 and 12
-    "level has stood for the time of the input filter",
+    "the input filter accepts the level",
     "level too short for the input filter",
     "pulse too short for the input filter",
     "pulse restarts the time of the input filter",
@@ -369,7 +369,7 @@ const char* const kExtensionRules[] = {
     "command ends a timed output",
     "host watchdog ends a timed output",
     "reset ends a timed output",
-    "0x0280 reads what is left",
+    "0x0280 reads the remaining time",
     "0x0280 reads 0",
     "~AA5V stores a timed output as off",
     "ASCII request restarts the host watchdog",

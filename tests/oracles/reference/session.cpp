@@ -25,7 +25,7 @@ constexpr milliseconds kAnswersStoring{200};
 /// Longer than the time until the reply to a request that stores nothing begins, at any baud rate. The player
 /// of transcripts (sim/play/player.cpp) waits equally long, so a transcript has the same timing there.
 constexpr milliseconds kNoAnswer{65};
-/// The time before each next step. The rest of a reply, if any, arrives within it.
+/// The time before the next step. The rest of an incomplete reply arrives in this time.
 constexpr milliseconds kBetween{2};
 /// Longer than the debounce time of any switch; wire.md 2: INIT* is debounced.
 constexpr milliseconds kDebounced{100};
@@ -135,7 +135,7 @@ bool Session::changes_within(Time needed) {
   });
 }
 
-/// If the module might change by itself within `needed`, lets it change now.
+/// If the module might change by itself within `needed`, lets time pass until it has changed.
 bool Session::settle(Time needed) {
   while (changes_within(needed)) {
     if (!listen(std::chrono::duration_cast<milliseconds>(needed) + milliseconds(1))) {
@@ -145,7 +145,7 @@ bool Session::settle(Time needed) {
   return true;
 }
 
-/// Listens for `time`, or longer if the module might be changing by itself then.
+/// Listens for `time`, or longer if the module might change by itself at the end of `time`.
 bool Session::listen(milliseconds time) {
   const Time now = target_.now();
   const bool might_expire = reference_.expiry().has_value();
@@ -164,7 +164,8 @@ bool Session::listen(milliseconds time) {
   lines_.push_back("wait " + std::to_string(time.count()) + "ms");
   const play::Bytes heard = target_.listen(time);
   reference_.pass(target_.now());
-  // Outputs and timeout status change at once. The next request may arrive while the timeout is being stored.
+  // Outputs and timeout status change immediately. The next request may arrive while the timeout is being
+  // stored.
   storing_timeout_ = false;
   if (might_expire && !reference_.expiry()) {
     timeout_stored_ = expired + kStored;
@@ -204,8 +205,8 @@ Time Session::takes(std::size_t bytes, LineFormat format) const {
   return Time(bytes * character_bits(format) * 1'000'000'000ULL / rate_);
 }
 
-/// Returns the time from the first start bit of a reply until the master has received the reply: the end of
-/// the first stop bit of the last byte.
+/// Returns the time from the first start bit of a reply to the end of the first stop bit of its last byte. At
+/// that time the master has received the reply.
 Time Session::heard_in(std::size_t bytes) const {
   const unsigned second_stop_bit = format_ == LineFormat::k8N2 ? 1 : 0;
   return Time((bytes * character_bits(format_) - second_stop_bit) * 1'000'000'000ULL / rate_);
@@ -244,7 +245,7 @@ bool Session::play_step(const Send& send) {
     }
   }
 
-  // The player sends a `bytes` line at once, but any other request only when no more replies can arrive.
+  // The player sends a `bytes` line immediately, but any other request only when no more replies can arrive.
   behind_expiry_ += storing_timeout_ ? 1U : 0U;
   const bool behind_another = std::exchange(storing_, false) || storing_timeout_;
   storing_timeout_ = false;

@@ -54,9 +54,9 @@ struct Pulse {
 using Step = std::variant<Send, SendInAnotherFormat, Wait, WaitForExpiry, Reset, Power, Init, Input, Pulse>;
 
 /// Plays steps on a firmware module and on a reference module, from factory settings. `extensions`: those of
-/// the reference module; the firmware always has them. Sometimes a result could depend on the exact time at
-/// which the module changes by itself, for example because the host watchdog expires. The session then waits,
-/// because that time is specified to a tick, not to a nanosecond.
+/// the reference module; the firmware always has them. If a result could depend on the exact time at which
+/// the module changes by itself, for example because the host watchdog expires, the session waits. The
+/// specification defines that time to a tick, not to a nanosecond.
 class Session {
  public:
   explicit Session(const ModelRow& row, Extensions extensions = Extensions::Present);
@@ -73,9 +73,9 @@ class Session {
   [[nodiscard]] std::vector<std::string> rules() const;
   /// Returns the number of requests that were sent.
   [[nodiscard]] std::uint64_t transactions() const { return transactions_; }
-  /// Return the number of requests that ended less than 0.1 s before the host watchdog could expire, and the
-  /// number of those that arrived while its expiry was being stored.
+  /// Returns the number of requests that ended less than 0.1 s before the host watchdog could expire.
   [[nodiscard]] std::uint64_t before_expiry() const { return before_expiry_; }
+  /// Returns the number of requests that were sent while the module might be storing an expiry.
   [[nodiscard]] std::uint64_t behind_expiry() const { return behind_expiry_; }
   /// Returns the number of requests that were not sent because the specification leaves their reply open.
   [[nodiscard]] std::uint64_t left_open() const { return left_open_; }

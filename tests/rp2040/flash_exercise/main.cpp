@@ -35,7 +35,7 @@ using Watchdog = HardwareWatchdog<kClock.crystal / 1'000'000>;
 struct Results {
   std::uint32_t received;    ///< bytes
   std::uint32_t unexpected;  ///< bytes with an error, or out of sequence
-  std::uint32_t rounds;      ///< rounds: one erase, then records up to the end of the sector
+  std::uint32_t rounds;      ///< a round is one erase, and then records up to the end of the sector
   std::uint32_t wrong;       ///< bytes that differ from the expected ones when they are read
   std::uint32_t erasing;     ///< 1 during an erase
   std::uint32_t reason;      ///< ResetReason

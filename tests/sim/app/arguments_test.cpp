@@ -103,7 +103,7 @@ TEST(Arguments, WatchIsAcceptedExceptWithAJsonLog) {
 }
 
 /// `sim/run` passes both options, so a user of `sim/run` may repeat them.
-TEST(Arguments, TheLastPanelAndLogOptionWins) {
+TEST(Arguments, OnlyTheLastPanelAndLogOptionsApply) {
   EXPECT_EQ(all_accepted({"EX9042D", "--panel", "--log", "--panel", "8080"}).panel->port, 8080);
   EXPECT_EQ(all_accepted({"EX9042D", "--panel", "--log", "--log", "json"}).log, LogFormat::Json);
   const auto without = all_accepted({"EX9042D", "--panel", "--log", "--panel", "off", "--log", "off"});
@@ -164,7 +164,7 @@ TEST(Arguments, ModbusTcpTakesTheSameAddressesAndReplacesTheDefaultPseudoTermina
   expect_error({"EX9042D-M", "--modbus-tcp", "502", "--tcp", "localhost:502"}, "--modbus-tcp: 127.0.0.1:502",
                "two ports cannot share an address; name one for each");
   expect_error({"EX9042D-M", "--modbus-tcp", "502", "--speed", "max", "--for", "1s"}, "--speed: ",
-               "max cannot be combined with --modbus-tcp, whose masters keep the wall clock's time");
+               "max cannot be combined with --modbus-tcp, because its masters follow the wall clock");
 }
 
 TEST(Arguments, LineIsPacedOrInstantAndStrictGapsRequirePaced) {
@@ -188,8 +188,9 @@ TEST(Arguments, EchoRequiresASerialLineWhichCannotBeInstant) {
   EXPECT_FALSE(accepted({"EX9042D", "--serial", "/dev/ttyUSB0"}).echo);
   EXPECT_TRUE(accepted({"EX9042D", "--serial", "/dev/ttyUSB0", "--echo"}).echo);
   expect_error({"EX9042D", "--echo"}, "--echo: ", "requires --serial; add it");
-  expect_error({"EX9042D", "--serial", "/dev/ttyUSB0", "--line", "instant"}, "--line: instant",
-               "cannot be combined with --serial, where bytes take time; leave out one of them");
+  expect_error(
+      {"EX9042D", "--serial", "/dev/ttyUSB0", "--line", "instant"}, "--line: instant",
+      "cannot be combined with --serial, because bytes on a serial line take time; leave out one of them");
 }
 
 TEST(Arguments, TwoModulesCannotShareAnEepromFile) {
@@ -200,11 +201,11 @@ TEST(Arguments, TwoModulesCannotShareAnEepromFile) {
 
 TEST(Arguments, TwoOptionsCannotUseTheSamePath) {
   expect_error({"EX9042D,eeprom=a", "--pty", "b", "--control", "./b"},
-               "--pty: ", "b: has another use too; name another path");
+               "--pty: ", "b: is already used for something else; name another path");
   expect_error({"EX9042D,eeprom=a", "--control", "a"},
-               "eeprom=a: ", "has another use too; name another path");
+               "eeprom=a: ", "is already used for something else; name another path");
   expect_error({"EX9042D,eeprom=a", "--pty", "x/../a"},
-               "eeprom=a: ", "has another use too; name another path");
+               "eeprom=a: ", "is already used for something else; name another path");
 }
 
 TEST(Arguments, TheLineAcceptsEveryBaudRateOfTheModules) {

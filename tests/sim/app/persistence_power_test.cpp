@@ -99,8 +99,8 @@ class PowerFailureChecker {
     acknowledged_ = true;
   }
 
-  /// Sends up to two stores and waits for their replies. Then sends another store, to which the module may
-  /// not reply in time.
+  /// Sends up to two stores and waits for their replies. Then sends another store, but the module might not
+  /// reply to it in time.
   void begin_cut(Simulator& simulator) {
     for (unsigned i = stores_.below(3); i > 0; --i) {
       const Store store = begin(simulator);

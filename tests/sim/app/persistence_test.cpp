@@ -41,7 +41,8 @@ TEST(Persistence, AMissingFileIsCreatedFromThePresetsAndKeptAfterTheProgramEnds)
   }
 }
 
-// The files contain what earlier firmware has stored, in each layout, for each model that it had.
+// The files contain what earlier firmware has stored, in each layout, for each model that this firmware
+// supported.
 TEST(Persistence, AFileOfEarlierFirmwareGivesAllItsSettingsAndIsNotWritten) {
   for (const StoredBytes& stored : all_stored_bytes()) {
     const Directory directory;
@@ -74,7 +75,7 @@ TEST(Persistence, ANewFileWithoutPresetsHasFactorySettings) {
   }
 }
 
-TEST(Persistence, TheFileOverridesThePresetsAndTheGreetingSaysSo) {
+TEST(Persistence, TheFileOverridesThePresetsAndTheGreetingReportsIt) {
   const Directory directory;
   Simulator({"EX9042D@0A,name=FILED" + image_in(directory)});
   const std::string image = bytes_of_file(directory / "image");

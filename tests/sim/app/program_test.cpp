@@ -39,7 +39,7 @@ TEST(Program, EndsCleanlyAndRemovesItsLink) {
   }
 }
 
-TEST(Program, EndsCleanlyAfterTheReaderOfItsLogHasGone) {
+TEST(Program, EndsCleanlyAfterTheReaderOfItsLogClosesThePipe) {
   Directory directory;
   // A master that continues to send makes the log grow after `head` has ended.
   const Finished finished =
@@ -91,9 +91,8 @@ TEST(Program, AFullDiskForStandardOutputIsReported) {
   }
 }
 
-/// Waits until a pipe has no room for one more line. Returns false if nothing arrives for 60 s, which only
-/// detects a program that has ended. A page of a pipe may hold only whole lines, so that it is never quite
-/// full.
+/// Waits until at least 7/8 of a pipe is in use. A page of a pipe may contain only whole lines, so that the
+/// pipe never becomes completely full. Returns false after 60 s, which happens only if the program has ended.
 bool wait_until_full(int pipe) {
   constexpr std::chrono::seconds kHang{60};
   const int capacity = fcntl(pipe, F_GETPIPE_SZ);
@@ -299,7 +298,7 @@ TEST(Program, DescribesAModelInEveryFormat) {
   }
 }
 
-TEST(Program, AFileAtTheLinksPathIsLeftAlone) {
+TEST(Program, AFileAtTheLinksPathIsNotReplaced) {
   Directory directory;
   std::ofstream(directory.path() + "/ex9000.tty") << "precious";
   const Finished finished = simulator({"EX9042D"}, directory.path());

@@ -236,7 +236,7 @@ TEST_F(BusTest, AReceiverRecoversAfterTrafficAtAnotherRate) {
   EXPECT_EQ(listener.heard[1].byte, 0x32);
 }
 
-TEST_F(BusTest, IfTwoDriversSendAtOnceAZeroBitWins) {
+TEST_F(BusTest, IfTwoDriversSendSimultaneouslyAZeroBitOverridesAOne) {
   const auto first = master(9600);
   const auto second = master(9600);
   Listener listener(bus_, 9600);

@@ -77,7 +77,7 @@ TEST_F(ModuleWireTest, AReplyKeepsItsForcedRateToTheEnd) {
   EXPECT_EQ(wires.happened, (Happened{"5 on", "5 a 1200", "5 b 1200", "5 off", "5 on", "5 c 9600"}));
 }
 
-TEST_F(ModuleWireTest, EndingTheDelaySendsALateReplyAtOnce) {
+TEST_F(ModuleWireTest, EndingTheDelaySendsALateReplyImmediately) {
   watch();
   fate.late_by = 1h;
   reply(5ms, 'a');
@@ -119,7 +119,7 @@ TEST_F(ModuleWireTest, ReportsWhichReplyIsOnTheWiresOrDropped) {
   EXPECT_EQ(on_the_wires, (std::vector<std::string>{"1 on", "1 off", "2 off", "4 on", "4 off"}));
 }
 
-TEST_F(ModuleWireTest, ForwardsAReplyAtOnceWithoutAWatcher) {
+TEST_F(ModuleWireTest, ForwardsAReplyImmediatelyWithoutAWatcher) {
   reply(5ms, 'a');
   EXPECT_EQ(wires.happened, (Happened{"5 on", "5 a 9600", "6 off"}));
   EXPECT_EQ(wire.next(), kNever);

@@ -218,7 +218,7 @@ class SamplingReceiver {
  public:
   SamplingReceiver(const Waves& waves, hal::SerialMode mode) : waves_(waves), mode_(mode) {}
 
-  /// Returns what it receives if it listens from `begins` to `ends`.
+  /// Returns what the receiver gets if it listens from `begins` to `ends`.
   std::vector<Received> listen(VirtualTime begins, VirtualTime ends) {
     std::vector<Received> received;
     VirtualTime now = begins;
@@ -309,7 +309,7 @@ class SamplingReceiver {
 
 constexpr std::chrono::seconds kDuration{15};
 
-/// Returns what a receiver gets, sampling every bit from `begins` to `ends`.
+/// Returns what a receiver gets if it samples every bit from `begins` to `ends`.
 std::vector<Received> sampled(const Recorder& recorder, const Trouble& trouble, hal::SerialMode mode,
                               VirtualTime begins, VirtualTime ends) {
   return SamplingReceiver(recorder.waves, {mode.baud * trouble.times_faster, mode.format})
@@ -357,8 +357,8 @@ std::size_t compare(const Trouble& trouble, std::uint64_t seed) {
   return compared;
 }
 
-/// EX9000_RECEPTION_SEEDS sets how many seeds are played.
-TEST_P(Reception, IsThatOfReceiversThatSampleEveryBit) {
+/// EX9000_RECEPTION_SEEDS sets the number of seeds.
+TEST_P(Reception, EqualsThatOfReceiversThatSampleEveryBit) {
   const std::uint64_t seeds = number_in_environment("EX9000_RECEPTION_SEEDS", 1);
   for (std::uint64_t seed = 1; seed <= seeds && !HasFailure(); ++seed) {
     EXPECT_GT(compare(GetParam(), seed), 5'000U) << "seed " << seed;

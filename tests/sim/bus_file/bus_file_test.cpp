@@ -302,7 +302,8 @@ TEST(WrongModuleOfABusFile, IsRefusedWithFileLineKeyAndRemedy) {
 
 TEST(WrongModuleOfABusFile, AnAddressInvalidForItsProtocolIsRefused) {
   EXPECT_EQ(why_not(module_with("\"address\": \"00\"")),
-            "bus.json:1: lines[0].modules[0]: address 00: Modbus has 01 to F7; choose one of these, or the "
+            "bus.json:1: lines[0].modules[0]: address 00: a Modbus address is 01 to F7; choose one of these, "
+            "or the "
             "protocol ascii");
 }
 
@@ -315,7 +316,8 @@ TEST(WrongLineOfABusFile, InvalidOrConflictingKeysAreRefusedWithTheirPlace) {
             "line; leave out one of them"},
            {"\"pty\": \"a\", \"echo\": true", "echo: requires 'serial'; add it, or leave this out"},
            {"\"serial\": \"a\", \"line\": \"instant\"",
-            "line: instant cannot be combined with 'serial', where bytes take time; leave out one of them"},
+            "line: instant cannot be combined with 'serial', because bytes on a serial line take time; leave "
+            "out one of them"},
            {"\"pty\": \"a\", \"line\": \"instant\", \"strict-gaps\": true",
             "strict-gaps: cannot be combined with 'line' instant"},
            {"\"pty\": \"a\", \"name\": \"the hall\"",
@@ -345,7 +347,7 @@ TEST(WrongLinesOfABusFile, TwoLinesCannotShareAPortOrAName) {
             "bus.json:5: lines[1].modbus-tcp: 127.0.0.1:5020: two ports cannot share an address; name one "
             "for each");
   EXPECT_EQ(why_not(two_lines("\"tcp\": 0, \"name\": \"a\"", "\"tcp\": 0, \"name\": \"a\"")),
-            "bus.json:5: lines[1].name: a: two lines have this name; give each its own");
+            "bus.json:5: lines[1].name: a: two lines have this name; give each line a different name");
   EXPECT_EQ(parsed(two_lines("\"tcp\": 0", "\"tcp\": 0")).lines.size(), 2U);
 }
 
@@ -415,8 +417,9 @@ TEST(BusFile, AConflictFoundAfterParsingIsRefused) {
             "ex9000-sim: " + path +
                 ":2: watch: cannot be combined with --log json, because both write to standard output; leave "
                 "out one of them\n");
-  EXPECT_EQ(parse({path, "--speed", "step"}).error,
-            "ex9000-sim: --speed: step requires --control, because only the control socket moves the time\n");
+  EXPECT_EQ(
+      parse({path, "--speed", "step"}).error,
+      "ex9000-sim: --speed: step requires --control, because only the control socket advances the time\n");
 }
 
 TEST(BusFile, AnErrorNamesTheConflictingKeyOrOption) {
@@ -440,7 +443,7 @@ TEST(BusFile, AnErrorNamesTheConflictingKeyOrOption) {
             cannot + "'control' in " + path + "; leave out one of them\n");
   EXPECT_EQ(
       error("", "\"tcp\": 0, ", max),
-      cannot + "'tcp' in " + path + ", whose masters keep the wall clock's time; leave out one of them\n");
+      cannot + "'tcp' in " + path + ", because its masters follow the wall clock; leave out one of them\n");
   EXPECT_EQ(error("\"log\": \"json\", ", "", {"--watch"}),
             "ex9000-sim: --watch: cannot be combined with 'log' json in " + path +
                 ", because both write to standard output; leave out one of them\n");

@@ -71,7 +71,7 @@ TEST(CaptureFile, IsRemovedIfTheCaptureNeverBegan) {
   EXPECT_TRUE(fs::is_empty(directory.path()));
 }
 
-TEST(CaptureFile, IsKeptOnceTheCaptureHasBegun) {
+TEST(CaptureFile, IsKeptAfterTheCaptureHasBegun) {
   const Directory directory;
   { CaptureFile(directory / "a", kPlace).begin(); }
   EXPECT_TRUE(fs::exists(directory / "a"));

@@ -371,7 +371,8 @@ TEST(Capture, TimestampsAreTheStartTimePlusTheLineTime) {
   const double answered = std::stod(packets[1].at("frame.time_epoch"));
   EXPECT_GT(asked, before);
   EXPECT_LT(answered, after);
-  // The time of eight characters, a silence of 3.5 characters, and the module's delay.
+  // The reply begins after the eight characters of the request, a silence of 3.5 characters and the module's
+  // delay.
   EXPECT_NEAR(answered - asked, (8 + 3.5) * 10 / 9600, 0.001);
   EXPECT_EQ(packets[0].at("frame.interface_name").find("127.0.0.1:"), 0U);
 }

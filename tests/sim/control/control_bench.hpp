@@ -44,7 +44,7 @@ class ControlBench : public ModuleBench {
 
   bool status_has(const std::string& part) { return has(tell("1 status"), part); }
 
-  /// Runs the line until the module is being reset, but at most 2 s.
+  /// Runs the line until the module restarts, for at most 2 s.
   void run_to_reset() {
     const VirtualTime gives_up = now() + std::chrono::milliseconds(2000);
     while (!status_has("mode=starting") && now() < gives_up) {
@@ -52,7 +52,7 @@ class ControlBench : public ModuleBench {
     }
   }
 
-  /// Returns everything in the module that a command could have changed.
+  /// Returns the states of the module that a rejected command could have changed, as text.
   std::string snapshot() {
     std::string text = tell("1 status") + tell("1 inputs") + tell("1 outputs") + tell("1 led");
     if (module().powered()) {
@@ -66,7 +66,7 @@ class ControlBench : public ModuleBench {
     return text;
   }
 
-  /// Expects that the command is rejected and changes nothing, neither at once nor within 20 ms.
+  /// Expects that the command is rejected, and that `snapshot` returns the same text 20 ms later.
   void expect_refused(const std::string& command) {
     run(std::chrono::milliseconds(20));
     const std::string before = snapshot();

@@ -144,7 +144,7 @@ TEST(ControlSocket, CommandsInOneWriteAreAnsweredInTheirOrder) {
   EXPECT_EQ(client.line(), "ok 0002");
 }
 
-TEST(ControlSocket, ManyShortCommandsInOneWriteAreNotATooLongLine) {
+TEST(ControlSocket, ManyShortCommandsInOneWriteAreAccepted) {
   Simulator simulator({"EX9055D"});
   ControlClient client(simulator.socket());
   client.send(lines("1 pulse 3", 200) + lines("1 inputs", 1));
@@ -163,7 +163,7 @@ TEST(ControlSocket, ACommandMayArriveInPieces) {
   ControlClient client(simulator.socket());
   for (const char character : std::string("1 input 4 on")) {
     client.send(std::string(1, character));
-    EXPECT_EQ(other.ask("1 inputs"), "ok 0000");  // the piece has arrived before this
+    EXPECT_EQ(other.ask("1 inputs"), "ok 0000");  // the program has read the piece before it replies
   }
   client.send("\n");
   EXPECT_EQ(client.line(), "ok");
@@ -235,7 +235,7 @@ TEST(ControlSocket, AMissingFinalNewlineIsReportedToTheClient) {
   expect_undisturbed(simulator);
 }
 
-TEST(ControlSocket, CommandsOfAClientThatDisconnectsAtOnceAreExecuted) {
+TEST(ControlSocket, CommandsOfAClientThatDisconnectsImmediatelyAreExecuted) {
   Simulator simulator({"EX9055D"});
   ControlClient(simulator.socket()).send("1 input 0 on\n1 input 7 on\n");
   ControlClient other(simulator.socket());
@@ -246,7 +246,7 @@ TEST(ControlSocket, CommandsOfAClientThatDisconnectsAtOnceAreExecuted) {
   EXPECT_EQ(inputs, "ok 0081");
 }
 
-TEST(ControlSocket, AClientThatNeverReadsIsThrottledAndDisturbsNoOther) {
+TEST(ControlSocket, AClientThatNeverReadsIsThrottledAndDoesNotDelayOthers) {
   Simulator simulator({"EX9055D"});
   ControlClient other(simulator.socket());
   const std::string command = "1 status\n";
@@ -281,7 +281,7 @@ TEST(ControlSocket, AtMost64ClientsAreServedAndFurtherOnesAreDisconnected) {
   EXPECT_EQ(ControlClient(simulator.socket()).line(),
             "error: there are 64 clients already; close one of them");
   clients.resize(1);
-  ASSERT_TRUE(is_answered(*clients[0]));  // by then the program has noticed that the others have left
+  ASSERT_TRUE(is_answered(*clients[0]));  // the program has noticed the closed connections before it replies
   const auto heirs = connect(simulator.socket(), 100);
   EXPECT_EQ(answered(heirs), kMostClients - 1);
   EXPECT_TRUE(is_answered(*clients[0]));
@@ -364,13 +364,12 @@ TEST(ControlSocket, ASocketInUseIsRefusedAndContinuesToWork) {
   const Directory directory;
   expect_refused(simulator.socket(), directory);
   expect_undisturbed(simulator);
-  const auto clients =
-      connect(simulator.socket(), kMostClients);  // all connections are in use, and so is the path
+  const auto clients = connect(simulator.socket(), kMostClients);  // uses all connections
   expect_refused(simulator.socket(), directory);
   EXPECT_TRUE(is_answered(*clients[0]));
 }
 
-TEST(ControlSocket, AnyOtherFileAtThePathIsRefusedAndLeftAlone) {
+TEST(ControlSocket, AnyOtherFileAtThePathIsRefusedAndNotRemoved) {
   const Directory directory;
   write_file(directory / "file", "precious");
   write_file(directory / "empty", "");
@@ -384,7 +383,7 @@ TEST(ControlSocket, AnyOtherFileAtThePathIsRefusedAndLeftAlone) {
   expect_refused("/dev/null", directory);
 }
 
-TEST(ControlSocket, ADatagramSocketAtThePathIsRefusedAndLeftAlone) {
+TEST(ControlSocket, ADatagramSocketAtThePathIsRefusedAndNotRemoved) {
   const Directory directory;
   const int datagrams = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   sockaddr_un address{};
@@ -395,7 +394,7 @@ TEST(ControlSocket, ADatagramSocketAtThePathIsRefusedAndLeftAlone) {
   close(datagrams);
 }
 
-TEST(ControlSocket, APathThatCannotBeCreatedIsRefusedAndLeavesNothing) {
+TEST(ControlSocket, APathThatCannotBeCreatedIsRefusedAndNoFileRemains) {
   const Directory directory;
   for (const std::string& path : {std::string("missing/control"), std::string("/proc/control"),
                                   std::string(108, 'x'), std::string(300, 'x')}) {

@@ -6,7 +6,7 @@
 namespace ex9000::sim {
 namespace {
 
-TEST(ControlFault, StrikesAtOnceAndIsRemovedByItsNumber) {
+TEST(ControlFault, BeginsImmediatelyAndIsRemovedByItsNumber) {
   ControlBench bench("EX9042D");
   EXPECT_EQ(bench.tell("1 fault lost-reply"), "ok 1");
   EXPECT_EQ(bench.ask("$01M"), "");

@@ -84,7 +84,7 @@ TEST(ControlPulse, APulseMakesBothEdgesAndKeepsTheLevel) {
   }
 }
 
-TEST(ControlPulse, UpToAMillionPulsesAreCountedAtOnce) {
+TEST(ControlPulse, UpToAMillionPulsesOfOneCommandAreCounted) {
   struct Case {
     const char* count;
     const char* ascii;  ///< modulo 100000
@@ -119,7 +119,7 @@ TEST(ControlPulse, AnInvalidCountIsRefused) {
   }
 }
 
-TEST(ControlPulse, WithoutPowerNothingIsCounted) {
+TEST(ControlPulse, PulsesWithoutPowerAreNotCounted) {
   ControlBench bench("EX9052D");
   bench.tell("1 power off");
   EXPECT_EQ(bench.tell("1 pulse 0 5"), "ok");

@@ -138,10 +138,11 @@ TEST(ControlLine, FormatSetsTheLineFormatOfTheMaster) {
 TEST(ControlLine, RateAndFormatOfASerialPortCannotBeChanged) {
   ModuleBench bench("EX9052D");
   Control control({{"", bench.line(), nullptr, true}});
-  EXPECT_EQ(control.carry_out("format 8E1").text,
-            "error: the line's serial port keeps its line format; start the program with another one");
+  EXPECT_EQ(
+      control.carry_out("format 8E1").text,
+      "error: the line's serial port keeps its line format; start the program with another line format");
   EXPECT_EQ(control.carry_out("baud 19200").text,
-            "error: the line's serial port keeps its rate; start the program with another one");
+            "error: the line's serial port keeps its rate; start the program with another rate");
   EXPECT_EQ(bench.line().master().mode(), hal::SerialMode{9600});
 }
 
@@ -156,7 +157,7 @@ TEST(ControlLine, AdvanceRequiresSteppedTime) {
   ControlBench bench("EX9052D");
   const VirtualTime now = bench.now();
   EXPECT_EQ(bench.tell("advance 1s"),
-            "error: 'advance' requires --speed step; the lines' time moves by itself");
+            "error: 'advance' requires --speed step; without it, the lines' time advances by itself");
   EXPECT_EQ(bench.now(), now);
 }
 

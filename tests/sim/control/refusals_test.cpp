@@ -74,7 +74,7 @@ TEST(ControlRefusals, BinaryBytesAndOverlongCommandsAreRefusedInOneLine) {
   }
 }
 
-TEST(ControlForm, BlanksTabsAndACarriageReturnMakeNoDifference) {
+TEST(ControlForm, AdditionalBlanksTabsAndACarriageReturnAreIgnored) {
   ControlBench bench("EX9055D");
   for (const std::string& command :
        {std::string("1 input 2 on\r"), std::string("   1   input\t\t2   on   "),

@@ -10,7 +10,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-TEST(ControlPower, OffSilencesTheModuleAndDropsItsOutputs) {
+TEST(ControlPower, OffStopsRepliesAndSwitchesOutputsOff) {
   ControlBench bench("EX9042D");
   ASSERT_EQ(bench.ask("@011FFF"), ">");
   EXPECT_EQ(bench.number("1 outputs"), 0x1FFFU);
@@ -132,7 +132,7 @@ TEST(ControlHang, TheModuleWatchdogResetsAHungModuleWithin1600ms) {
   }
 }
 
-TEST(ControlHang, AHungModuleIsSilentAndKeepsItsOutputs) {
+TEST(ControlHang, AHungModuleDoesNotReplyAndKeepsItsOutputs) {
   ControlBench bench("EX9042D");
   bench.ask("@011FFF");
   bench.tell("1 hang");

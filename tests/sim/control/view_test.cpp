@@ -25,7 +25,7 @@ TEST(ControlOutputs, EveryOutputOfEveryModelHasItsOwnBit) {
   }
 }
 
-TEST(ControlLed, IsOnFlashesAfterATimeoutAndIsOffWithoutPower) {
+TEST(ControlLed, FlashesAfterATimeoutAndIsOffWithoutPower) {
   ControlBench bench("EX9042D");
   EXPECT_EQ(bench.tell("1 led"), "ok on");
   ASSERT_EQ(bench.ask("~013101"), "!01");
@@ -40,7 +40,7 @@ TEST(ControlLed, IsOnFlashesAfterATimeoutAndIsOffWithoutPower) {
   EXPECT_EQ(bench.tell("1 led"), "ok on");
 }
 
-TEST(ControlLed, ItFlashesWhileTheSettingsCannotBeRead) {
+TEST(ControlLed, FlashesWhileTheSettingsCannotBeRead) {
   ControlBench bench("EX9042D");
   std::fill(bench.module().memory().contents().begin(), bench.module().memory().contents().end(),
             std::uint8_t{0x5A});
@@ -70,7 +70,7 @@ TEST(ControlStatus, ReportsTheSettingsInForce) {
   }
 }
 
-TEST(ControlStatus, ItFollowsTheHostWatchdog) {
+TEST(ControlStatus, FollowsTheHostWatchdog) {
   ControlBench bench("EX9042D");
   ASSERT_EQ(bench.ask("~01310A"), "!01");
   EXPECT_TRUE(bench.status_has("host-watchdog=enabled timeout=1.0s"));
@@ -89,7 +89,7 @@ TEST(ControlStatus, ShowsTheExtensionsThatAreSet) {
   EXPECT_TRUE(bench.status_has("fed-by=requests response-delay=30ms inverted=00A1"));
 }
 
-TEST(ControlView, TimersReadsWhatIsLeftOfEachTimedOutput) {
+TEST(ControlView, TimersReadsTheRemainingTimeOfEachTimedOutput) {
   ControlBench bench("EX9063D");
   EXPECT_EQ(bench.tell("1 timers"), "ok 0 0 0");
   bench.send("~01X02810003\r");  // output 1 for 0.3 s; the request takes 14 ms

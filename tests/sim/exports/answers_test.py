@@ -73,7 +73,7 @@ class EveryMap(unittest.TestCase):
                 self.assertEqual(len(line.read(sensor["input_type"], sensor["address"])), 1)
             actions = re.findall(r"modbus\.write_coil .* address: (\d+), state: true", text)
             cleared = {address for address, _ in coils_to_write(model)} - set(range(CHANNELS[model][0]))
-            enable = 0x0104  # of the host watchdog, which polls can restart
+            enable = 0x0104  # enables the host watchdog, which polls can restart
             self.assertEqual({int(address) for address in actions}, cleared | {enable})
             self.assertEqual(re.findall(r"modbus\.write_register .* address: (\d+), value: 1", text), [str(0x0251)])
             for address in actions:

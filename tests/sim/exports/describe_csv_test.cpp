@@ -83,7 +83,7 @@ TEST(DescribeCsv, ACommandRowHasSyntaxReplyAccessAndMeaning) {
 TEST(DescribeCsv, EachChannelHasItsAddress) {
   EXPECT_EQ(row("EX9042D-M", "coil", "140"),  // 0x8C
             (Cells{"EX9042D-M", "coil", "140", "00141", "12", "01 05 0F", "", "", "read, write",
-                   "0 off, 1 on", "", "safe-value", "safe value; the outputs follow"}));
+                   "0 off, 1 on", "", "safe-value", "safe value; a write also drives the outputs"}));
   EXPECT_EQ(row("EX9042D-M", "coil", "141"), Cells());
   EXPECT_EQ(row("EX9052D-M", "discrete input", "7"),
             (Cells{"EX9052D-M", "discrete input", "7", "10008", "7", "02", "", "", "read", "", "", "inputs",

@@ -126,7 +126,7 @@ TEST(DescribeHomeAssistant, ClearCommandsAreListedAsActions) {
 }
 
 // wire.md section 7, Map: coils 0x0104 and 0x010D; firmware/extensions.md: register 0x0251.
-TEST(DescribeHomeAssistant, TellsHowPollingFeedsTheHostWatchdogAndWhatToDoAfterATimeout) {
+TEST(DescribeHomeAssistant, ExplainsHowPollsRestartTheHostWatchdogAndWhatClearsATimeout) {
   const std::string text = configuration_of("EX9042D-M", {{}, 0x02});
   const std::string to = " with hub: ex9042d_m_02, slave: 2, address: ";
   const std::size_t feed = text.find("#   modbus.write_register" + to +
@@ -134,7 +134,7 @@ TEST(DescribeHomeAssistant, TellsHowPollingFeedsTheHostWatchdogAndWhatToDoAfterA
   const std::size_t after = text.find("#   modbus.write_coil" + to +
                                       "269, state: true\n#   modbus.write_coil" + to + "260, state: true\n");
   EXPECT_NE(text.find("the outputs keep their safe values"), std::string::npos);
-  EXPECT_EQ(configuration_of("EX9052D-M").find("the outputs"), std::string::npos);  // it has none
+  EXPECT_EQ(configuration_of("EX9052D-M").find("the outputs"), std::string::npos);  // it has no outputs
   ASSERT_NE(feed, std::string::npos) << text;
   ASSERT_NE(after, std::string::npos) << text;
   EXPECT_LT(feed, after);

@@ -276,7 +276,7 @@ TEST(DescribeMarkdown, ListsEveryFunction) {
   EXPECT_EQ(row_beginning("02"),
             "| 02 | Read Discrete Inputs | ignored | EX9052D-M, EX9044D-M, EX9053D-M, EX9060D-M |");
   EXPECT_EQ(row_beginning("10"),
-            "| 10 | Write Multiple Registers | done by all modules, without answer | -M |");
+            "| 10 | Write Multiple Registers | all modules execute it without a reply | -M |");
 }
 
 // The rows that every -M model has.
@@ -320,8 +320,8 @@ std::vector<Extension> extensions(unsigned inputs, unsigned outputs) {
   return all;
 }
 
-/// Returns the rows of a map: `before`, the extensions and host OK as input registers, `general`, and the
-/// same as holding registers.
+/// Returns the rows of a map in this order: `before`, the extensions and host OK as input registers,
+/// `general`, the extensions and host OK as holding registers.
 std::vector<Lines> with_extensions(std::vector<Lines> before, unsigned inputs, unsigned outputs,
                                    const std::vector<Lines>& general) {
   const auto range = [](const Extension& extension, auto text) {

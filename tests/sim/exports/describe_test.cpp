@@ -18,11 +18,11 @@ std::string described(const char* model, const char* format) {
   return describe(texts);
 }
 
-/// Expects a one-line message that contains `wrong` and `mend`.
+/// Expects that the arguments are rejected with a one-line message that contains `wrong` and `mend`.
 void expect_refused(const DescribeTexts& texts, const std::string& wrong, const std::string& mend) {
   try {
     describe(texts);
-    ADD_FAILURE() << texts.format << " is of " << texts.model;
+    ADD_FAILURE() << texts.format << " is accepted for " << texts.model;
   } catch (const std::invalid_argument& error) {
     const std::string what = error.what();
     EXPECT_NE(what.find(wrong), std::string::npos) << what;

@@ -25,7 +25,7 @@ TEST(FaultsOfAModule, DoNotAffectOtherModules) {
   }
 }
 
-TEST(FaultsOfAllModules, TriggeredByAReplyStrikeOnlyItsSender) {
+TEST(FaultsOfAllModules, AffectOnlyTheSenderOfTheReplyThatTriggersThem) {
   FaultBench bench(two());
   bench.add("gone every reply for 10s");
   EXPECT_EQ(bench.ask("$01M"), "");
@@ -35,7 +35,7 @@ TEST(FaultsOfAllModules, TriggeredByAReplyStrikeOnlyItsSender) {
   bench.run(5s);
   EXPECT_EQ(bench.ask("$02M"), "");
   EXPECT_FALSE(bench.at(2).powered());
-  EXPECT_FALSE(bench.at(1).powered());  // the strike on module 2 does not end the one on module 1
+  EXPECT_FALSE(bench.at(1).powered());  // the occurrence on module 2 does not end the one on module 1
   bench.run_until(first + 10s);
   EXPECT_TRUE(bench.at(1).powered());
   EXPECT_FALSE(bench.at(2).powered());
@@ -43,7 +43,7 @@ TEST(FaultsOfAllModules, TriggeredByAReplyStrikeOnlyItsSender) {
   EXPECT_TRUE(bench.at(2).powered());
 }
 
-TEST(FaultsOfAllModules, AtAGivenTimeStrikeEveryModule) {
+TEST(FaultsOfAllModules, AffectEveryModuleAtAGivenTime) {
   FaultBench bench(two());
   bench.add("gone at 1s");
   bench.run_until(1s);
@@ -57,7 +57,7 @@ TEST(FaultsOfAModule, AreRefusedIfTheLineHasNoSuchModule) {
   EXPECT_TRUE(bench.faults().list().empty());
 }
 
-TEST(NoiseOfAReply, HitsThatReplyAndNothingElse) {
+TEST(NoiseOfAReply, AffectsOnlyThatReply) {
   FaultBench bench;
   bench.add("bit-errors 1 every 2nd reply");
   for (int i = 0; i < 6; ++i) {

@@ -49,7 +49,7 @@ TEST(Disturbance, OfADataBitChangesOnlyThatByte) {
   EXPECT_EQ(line.heard, (Heard{{0x51, ByteStatus::Good}, {0x12, ByteStatus::Good}}));
 }
 
-TEST(Disturbance, OfTheStopBitGivesAFramingErrorOrForAZeroByteABreak) {
+TEST(Disturbance, OfTheStopBitCausesAFramingErrorOrABreak) {
   for (const auto& [byte, status] : Heard{{0xF0, ByteStatus::FramingError}, {0x00, ByteStatus::Break}}) {
     TwoOnALine line;
     Flips flips(1U << 9U);
@@ -74,7 +74,7 @@ TEST(Noise, ThatLosesEveryCharacterLeavesTheLineIdle) {
   Noise noise(line.bus, rates, 1);
   line.send({0x00, 0x55, 0xFF});
   EXPECT_EQ(line.heard, Heard());
-  EXPECT_EQ(noise.strikes(), 3U);
+  EXPECT_EQ(noise.changes(), 3U);
 }
 
 TEST(Noise, AddsAStrayZeroAfterTheLastCharacter) {
@@ -115,7 +115,7 @@ TEST(Noise, IsReproducibleFromItsSeed) {
   EXPECT_NE(what_is_heard(1), what_is_heard(2));
 }
 
-TEST(Echo, RepeatsTheReceivedBytesOnceTheLineIsQuiet) {
+TEST(Echo, RepeatsTheReceivedBytesAfterTheDelay) {
   TwoOnALine line;
   Echo echo(line.bus, {9600});
   echo.switch_on(milliseconds(5));
@@ -132,7 +132,7 @@ TEST(Echo, RepeatsTheReceivedBytesOnceTheLineIsQuiet) {
   EXPECT_EQ(line.heard, (Heard{{4, ByteStatus::Good}}));
 }
 
-TEST(Module, ThatReleasesItsDriverLateHoldsTheLineForThatLong) {
+TEST(Module, ALateDriverHoldsTheLineForTheSetTime) {
   for (const VirtualTime late : {VirtualTime(0), VirtualTime(milliseconds(7))}) {
     Line line({parse_module_spec("EX9042D-M@01,protocol=ascii")}, kPaced, [](std::uint8_t, ByteStatus) {});
     BusRecorder recorder;

@@ -49,7 +49,7 @@ class FaultBench {
       line_.bus().run_until(line_.bus().next());
     }
   }
-  /// Sends a DCON command and returns everything that the master receives within `patience`, both without the
+  /// Sends `command` and a CR. Returns everything that the master receives within `patience`, without the
   /// last CR.
   std::string ask(const std::string& command, VirtualTime patience = std::chrono::milliseconds(50)) {
     forget();
@@ -99,7 +99,7 @@ inline std::vector<std::pair<VirtualTime, int>> of_others(FaultBench& bench) {
   return bytes;
 }
 
-/// Returns the times at which the module at `position` has begun to reply.
+/// Returns the times at which the module at `position` began to reply.
 inline std::vector<VirtualTime> answers_of(FaultBench& bench, std::size_t position) {
   std::vector<VirtualTime> begun;
   for (const BusRecorder::Driver& driver : bench.recorder().drivers) {

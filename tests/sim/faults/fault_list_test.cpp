@@ -45,7 +45,7 @@ TEST(FaultsList, FaultNumbersAreNeverReused) {
   EXPECT_EQ(bench.add("lost-reply"), 4U);
 }
 
-TEST(FaultsList, ReportsCurrentAndTotalStrikes) {
+TEST(FaultsList, ReportsHowManyOccurrencesAreInProgressAndTheirTotal) {
   FaultBench bench(two());
   bench.add("gone at 1s for 1s", 2);
   bench.add("lost-reply every reply", 1);
@@ -56,12 +56,12 @@ TEST(FaultsList, ReportsCurrentAndTotalStrikes) {
   EXPECT_EQ(infos[0].number, 1U);
   EXPECT_EQ(infos[0].text, "gone at 1s for 1s");
   EXPECT_EQ(infos[0].module, 1U);
-  EXPECT_EQ(infos[0].strikes, 1U);
-  EXPECT_EQ(infos[0].strikes_so_far, 1U);
-  EXPECT_EQ(infos[1].strikes, 0U);
-  EXPECT_EQ(infos[1].strikes_so_far, 1U);
+  EXPECT_EQ(infos[0].in_progress, 1U);
+  EXPECT_EQ(infos[0].occurrences_so_far, 1U);
+  EXPECT_EQ(infos[1].in_progress, 0U);
+  EXPECT_EQ(infos[1].occurrences_so_far, 1U);
   bench.run_until(2s);
-  EXPECT_EQ(bench.faults().list()[0].strikes, 0U);
+  EXPECT_EQ(bench.faults().list()[0].in_progress, 0U);
 }
 
 TEST(FaultsNotice, IsGivenOnlyForTimedFaults) {
@@ -74,11 +74,11 @@ TEST(FaultsNotice, IsGivenOnlyForTimedFaults) {
   EXPECT_EQ(bench.notices(), std::vector<std::string>());
   bench.run_until(10s);
   EXPECT_EQ(bench.notices(),
-            (std::vector<std::string>{"fault 3 strikes: gone at 1s for 1s",
-                                      "fault 3 is over: gone at 1s for 1s", "fault 4 strikes: hang at 5s"}));
+            (std::vector<std::string>{"fault 3 occurs: gone at 1s for 1s",
+                                      "fault 3 is over: gone at 1s for 1s", "fault 4 occurs: hang at 5s"}));
 }
 
-TEST(FaultsTogether, TheSameSeedAndLineGiveTheSameBytes) {
+TEST(FaultsTogether, TheSameSeedAndRequestsProduceTheSameBytes) {
   const auto all_heard = [](std::uint64_t seed) {
     FaultBench bench(two(), seed);
     for (const char* fault : {"bit-errors 1e-3", "stray-zeros 0.01", "inserted-bytes 0.01", "lost-bytes 0.01",

@@ -1,4 +1,4 @@
-// Tests the times at which faults strike.
+// Tests the times at which faults occur.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -13,7 +13,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-TEST(FaultsSchedule, AFaultWithoutATimeBeginsAtOnceAndLastsItsDuration) {
+TEST(FaultsSchedule, AFaultWithoutATimeBeginsImmediatelyAndLastsItsDuration) {
   FaultBench bench;
   bench.run_until(1s);
   bench.add("gone for 250ms");
@@ -73,17 +73,17 @@ TEST(FaultsSchedule, APeriodicFaultLastsItsDurationInEveryPeriod) {
     bench.run_until(1s + 5s * i + 1s);
     EXPECT_TRUE(bench.at(1).powered()) << i;
   }
-  EXPECT_EQ(bench.faults().list()[0].strikes_so_far, 4U);
+  EXPECT_EQ(bench.faults().list()[0].occurrences_so_far, 4U);
 }
 
-TEST(FaultsSchedule, AReplyFaultStrikesEveryReplyOrEveryNthReply) {
+TEST(FaultsSchedule, AReplyFaultOccursAtEveryReplyOrEveryNthReply) {
   FaultBench every;
   every.add("lost-reply every reply");
   EXPECT_EQ(answered(every, 5), ".....");
   FaultBench tenth;
   tenth.add("lost-reply every 10th reply");
   EXPECT_EQ(answered(tenth, 35), "xxxxxxxxx.xxxxxxxxx.xxxxxxxxx.xxxxx");
-  EXPECT_EQ(tenth.faults().list()[0].strikes_so_far, 3U);
+  EXPECT_EQ(tenth.faults().list()[0].occurrences_so_far, 3U);
 }
 
 TEST(FaultsSchedule, TheRepliesOfAllModulesAreCountedTogether) {
@@ -94,7 +94,7 @@ TEST(FaultsSchedule, TheRepliesOfAllModulesAreCountedTogether) {
   EXPECT_EQ(answered(bench, 2, "01"), "x.");
 }
 
-TEST(FaultsSchedule, OverlappingNoiseOfManyRepliesIsOneCurrentStrike) {
+TEST(FaultsSchedule, OverlappingNoiseOfManyRepliesIsOneOccurrenceInProgress) {
   FaultBench bench;
   bench.add("bit-errors 1e-12 every reply for 1h");
   bench.add("lost-bytes 1e-12 every reply for 1s");
@@ -102,9 +102,9 @@ TEST(FaultsSchedule, OverlappingNoiseOfManyRepliesIsOneCurrentStrike) {
     EXPECT_EQ(bench.ask("$01M"), kName);
   }
   bench.run(990ms);
-  EXPECT_EQ(bench.faults().list()[0].strikes, 1U);
-  EXPECT_EQ(bench.faults().list()[1].strikes, 0U);
-  EXPECT_EQ(bench.faults().list()[0].strikes_so_far, 20U);
+  EXPECT_EQ(bench.faults().list()[0].in_progress, 1U);
+  EXPECT_EQ(bench.faults().list()[1].in_progress, 0U);
+  EXPECT_EQ(bench.faults().list()[0].occurrences_so_far, 20U);
 }
 
 TEST(FaultsSchedule, AReplyFaultMayLastBeyondTheReply) {
@@ -128,7 +128,7 @@ TEST(FaultsSchedule, AReplyFaultHasItsProbabilityAndIsReproducibleFromTheSeed) {
   EXPECT_NEAR(lost, 0.25, 4 * std::sqrt(0.25 * 0.75 / 2000));
 }
 
-TEST(FaultsSchedule, APowerCutAfterWritesComesAfterTheWriteAndBeforeItsReply) {
+TEST(FaultsSchedule, APowerCutAfterWritesOccursAfterTheWriteAndBeforeItsReply) {
   FaultBench bench;
   bench.add("power-cut after 3 writes");
   EXPECT_EQ(bench.ask("~01OFIRST"), "!01");
@@ -138,10 +138,10 @@ TEST(FaultsSchedule, APowerCutAfterWritesComesAfterTheWriteAndBeforeItsReply) {
   EXPECT_FALSE(bench.at(1).powered());
   bench.run(1200ms);
   EXPECT_EQ(bench.ask("$01M"), "!01THIRD");
-  EXPECT_EQ(bench.ask("~01OFOURTH"), "!01");  // the fault strikes only once
+  EXPECT_EQ(bench.ask("~01OFOURTH"), "!01");  // the fault occurs only once
   EXPECT_EQ(bench.ask("~01OFIFTH"), "!01");
   EXPECT_EQ(bench.ask("~01OSIXTH"), "!01");
-  EXPECT_EQ(bench.faults().list()[0].strikes_so_far, 1U);
+  EXPECT_EQ(bench.faults().list()[0].occurrences_so_far, 1U);
 }
 
 TEST(FaultsSchedule, OnlyTheWritesOfTheFaultsModuleAreCounted) {

@@ -45,7 +45,7 @@ TEST(Fault, EveryKindHasANameAndAtMostOneValue) {
   EXPECT_EQ(parse_fault("hang").trouble, Trouble::Hang);
 }
 
-TEST(Fault, EveryKindConcernsEitherTheLineOrAModule) {
+TEST(Fault, EveryKindAffectsEitherTheLineOrAModule) {
   for (const Trouble trouble : {Trouble::BitErrors, Trouble::LostBytes, Trouble::InsertedBytes,
                                 Trouble::StrayZeros, Trouble::Echo, Trouble::ForeignTraffic}) {
     EXPECT_FALSE(concerns_a_module(trouble));
@@ -56,7 +56,7 @@ TEST(Fault, EveryKindConcernsEitherTheLineOrAModule) {
   }
 }
 
-TEST(Fault, ConcernsAllModulesPermanentlyByDefault) {
+TEST(Fault, AffectsAllModulesPermanentlyByDefault) {
   const Fault fault = parse_fault("lost-reply");
   EXPECT_FALSE(fault.module);
   EXPECT_EQ(fault.schedule.when, When::Always);
@@ -72,7 +72,7 @@ TEST(Fault, HelpContainsEachKindWithItsValue) {
   }
 }
 
-TEST(Fault, TheUsualFaultsAreOneOfEachKind) {
+TEST(Fault, UsualFaultsHasOneFaultOfEachKind) {
   std::vector<Trouble> kinds;
   for (const std::string& text : usual_faults()) {
     const Fault fault = parse_fault(text);
@@ -221,8 +221,8 @@ INSTANTIATE_TEST_SUITE_P(
                     Wrong{"power-cut every 1s", "lasts 1s, which is not shorter", "add 'for TIME'"},
                     Wrong{"gone every 10th reply", "has no end", "add 'for TIME'"},
                     Wrong{"wrong-rate 1200 with probability 0.5", "has no end", "add 'for TIME'"},
-                    Wrong{"hang for 1s", "'for': this fault takes no time", "leave it out"},
-                    Wrong{"foreign-traffic 00 for 1s", "'for': this fault takes no time", "leave it out"},
+                    Wrong{"hang for 1s", "'for': this fault has no duration", "leave it out"},
+                    Wrong{"foreign-traffic 00 for 1s", "'for': this fault has no duration", "leave it out"},
                     Wrong{"hang every 0s", "'every 0s'", "a period of at least 1ms"},
                     Wrong{"hang every 999us", "'every 999us': expected", "a period of at least 1ms"}));
 

@@ -96,7 +96,7 @@ TEST(StrayZeros, AtALowProbabilityLeaveMostRepliesIntact) {
   EXPECT_LT(std::count(which.begin(), which.end(), 'x'), 195);
 }
 
-TEST(EchoFault, RepeatsARequestAfterTheGivenSilence) {
+TEST(EchoFault, RepeatsARequestAfterTheGivenTime) {
   FaultBench bench;
   bench.add("echo 5ms");
   EXPECT_EQ(bench.ask("$05M"), "$05M");  // the line has no module 05
@@ -104,7 +104,7 @@ TEST(EchoFault, RepeatsARequestAfterTheGivenSilence) {
   EXPECT_EQ(of_others(bench)[0].first, request_over + 5ms);
 }
 
-TEST(EchoFault, WaitsForTheEndOfTheRequestEvenIfTheSilenceIsShort) {
+TEST(EchoFault, WaitsForTheEndOfTheRequestEvenIfTheDelayIsShort) {
   FaultBench bench;
   bench.add("echo 1ms");  // shorter than a character at 9600 baud, which takes 1.04 ms
   EXPECT_EQ(bench.ask("$05M"), "$05M");

@@ -87,7 +87,7 @@ TEST(PowerCut, LastsOneSecondByDefault) {
   }
 }
 
-TEST(Hang, SilencesAModuleUntilItsWatchdogResetsIt) {
+TEST(Hang, StopsRepliesUntilTheModuleWatchdogResetsTheModule) {
   FaultBench bench;
   bench.add("hang at 1s");
   bench.run_until(1s - 1ns);
@@ -102,7 +102,7 @@ TEST(Hang, SilencesAModuleUntilItsWatchdogResetsIt) {
   EXPECT_EQ(bench.at(1).watchdog_resets(), 1U);
 }
 
-TEST(Hang, TriggeredByAReplyBeginsAfterThatReply) {
+TEST(Hang, BeginsAfterTheReplyThatTriggersIt) {
   FaultBench bench;
   bench.add("hang every 2nd reply");
   EXPECT_EQ(bench.ask("$01M"), kName);
@@ -153,18 +153,18 @@ TEST(Faults, OfAModuleSurviveItsReset) {
       {"late-driver 20ms", its_driver_is_late},
       {"wrong-rate 19200", its_rate_is_wrong},
   };
-  for (const auto& [fault, strikes] : faults) {
+  for (const auto& [fault, affects] : faults) {
     for (const auto& [how, begin_anew] : kResets) {
       FaultBench bench;
-      EXPECT_FALSE(strikes(bench)) << fault;
+      EXPECT_FALSE(affects(bench)) << fault;
       const std::size_t number = bench.add(fault);
-      EXPECT_TRUE(strikes(bench)) << fault;
+      EXPECT_TRUE(affects(bench)) << fault;
       begin_anew(bench);
       bench.run(100ms);
-      EXPECT_TRUE(strikes(bench)) << fault << ", " << how;
-      EXPECT_EQ(bench.faults().list().at(0).strikes, 1U);
+      EXPECT_TRUE(affects(bench)) << fault << ", " << how;
+      EXPECT_EQ(bench.faults().list().at(0).in_progress, 1U);
       bench.faults().remove(number);
-      EXPECT_FALSE(strikes(bench)) << fault << ", " << how;
+      EXPECT_FALSE(affects(bench)) << fault << ", " << how;
     }
   }
 }

@@ -38,7 +38,7 @@ class NoisyLine {
 
   [[nodiscard]] VirtualTime now() { return clock_.virtual_now(); }
   void run(VirtualTime time) { bus_.run_for(time); }
-  /// Delivers a byte. It ends one byte time from now.
+  /// Delivers a byte that begins now, and advances the time to its end.
   void put(std::uint8_t byte, ByteStatus status) {
     run(kByte);
     onlooker_->hears(byte, status);
@@ -183,7 +183,7 @@ void an_hour_of_modbus(std::uint32_t seed) {
       line.put(byte, noise.status());
       ++bytes;
       if (noise.once_in(50)) {
-        line.run(std::chrono::microseconds(noise.below(2900)));  // together with the next byte less than T3.5
+        line.run(std::chrono::microseconds(noise.below(2900)));  // less than T3.5, even with the next byte
       }
     }
     line.run(milliseconds(5 + noise.below(20)));

@@ -50,7 +50,7 @@ TEST(LateReply, KeepsTheOrderOfTheReplies) {
   EXPECT_EQ(bench.heard(), kName + "\r!01400600\r>0000\r!01D01.00\r");
 }
 
-TEST(LateReply, ComesAtOnceWhenItsFaultIsRemovedAndTheNextIsOnTime) {
+TEST(LateReply, IsSentImmediatelyIfItsFaultIsRemovedAndTheNextReplyIsOnTime) {
   for (const bool all : {false, true}) {
     FaultBench bench;
     const std::size_t fault = bench.add("late-reply 1h");
@@ -66,7 +66,7 @@ TEST(LateReply, ComesAtOnceWhenItsFaultIsRemovedAndTheNextIsOnTime) {
   }
 }
 
-TEST(LateReply, IsNeverSentOnceTheSupplyHasFailed) {
+TEST(LateReply, IsNeverSentAfterTheSupplyHasFailed) {
   FaultBench bench;
   bench.add("late-reply 200ms");
   EXPECT_EQ(bench.ask("$01M"), "");
@@ -77,7 +77,7 @@ TEST(LateReply, IsNeverSentOnceTheSupplyHasFailed) {
   EXPECT_EQ(bench.heard(), "");
 }
 
-TEST(LateReply, IsDamagedByItsOwnNoiseWhichDamagesNothingElse) {
+TEST(LateReply, NoiseDamagesOnlyTheLateReply) {
   FaultBench bench;
   bench.add("late-reply 50ms every 2nd reply");
   bench.add("bit-errors 1 every 2nd reply");
@@ -99,7 +99,7 @@ TEST(LateReply, NoiseOfALostReplyDoesNotDamageTheNextReply) {
   EXPECT_EQ(bench.ask("$01M"), kName);
 }
 
-TEST(LateDriver, IsDisabledAtOnceWhenItsFaultIsRemoved) {
+TEST(LateDriver, IsDisabledImmediatelyIfItsFaultIsRemoved) {
   FaultBench bench;
   bench.add("late-driver 1h");
   EXPECT_EQ(bench.ask("$01M"), kName);

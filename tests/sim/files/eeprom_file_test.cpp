@@ -131,7 +131,7 @@ TEST(EepromFile, ANewFileHasThePermissionsThatTheUmaskAllows) {
   EXPECT_EQ(fs::status(directory / "a").permissions(), fs::perms(0640));
 }
 
-TEST(EepromFile, AFileBeyondTheSizeLimitIsRefusedWithTheReasonAndLeavesNothing) {
+TEST(EepromFile, AFileBeyondTheSizeLimitIsRefusedWithTheReasonAndNoFileRemains) {
   const Directory directory;
   for (const rlim_t limit : {0U, 4096U}) {
     EepromFile file(directory / "a");
@@ -191,7 +191,7 @@ TEST(EepromFile, NothingCanBeWrittenBeforeTheFileIsCreated) {
   EXPECT_TRUE(directory.contents().empty());
 }
 
-TEST(EepromFile, AFileOfTheWrongSizeIsRefusedAndLeftAlone) {
+TEST(EepromFile, AFileOfTheWrongSizeIsRefusedAndNotChanged) {
   for (const std::size_t size : {0U, 1U, 100U, 8191U, 8193U, 65536U}) {
     const Directory directory;
     write_file(directory / "a", std::string(size, 'x'));
@@ -227,7 +227,7 @@ TEST(EepromFile, DirectoriesPipesAndDevicesAreRefusedWithoutBlocking) {
   EXPECT_EQ(directory.contents(), before);
 }
 
-TEST(EepromFile, APathThatCannotBeCreatedIsRefusedAndLeavesNothing) {
+TEST(EepromFile, APathThatCannotBeCreatedIsRefusedAndNoFileRemains) {
   const Directory directory;
   fs::create_symlink(directory / "nowhere", directory / "dangling");
   const auto before = directory.contents();
@@ -238,7 +238,7 @@ TEST(EepromFile, APathThatCannotBeCreatedIsRefusedAndLeavesNothing) {
   }
 }
 
-TEST(EepromFile, AFileCreatedByAnotherInTheMeantimeIsNotReplaced) {
+TEST(EepromFile, AFileThatAnotherProgramHasCreatedIsNotReplaced) {
   const Directory directory;
   EepromFile file(directory / "a");
   write_file(directory / "a", "precious");
@@ -295,7 +295,7 @@ TEST(EepromFile, AFileInUseIsLockedForOtherProcessesUntilItIsReleased) {
   EXPECT_EQ(child_status(), 0);
 }
 
-TEST(EepromFile, AFullDiskDuringCreationLeavesNoFile) {
+TEST(EepromFile, AnIncompleteWriteDuringCreationLeavesNoFile) {
   const Directory directory;
   EepromFile file(directory / "a");
   {
@@ -305,7 +305,7 @@ TEST(EepromFile, AFullDiskDuringCreationLeavesNoFile) {
   EXPECT_TRUE(directory.contents().empty());
 }
 
-TEST(EepromFile, AFailedWriteIsAnErrorReplyAndKeepsTheOldSettings) {
+TEST(EepromFile, AFailedWriteCausesAnErrorReplyAndKeepsTheOldSettings) {
   const Directory directory;
   {
     ModuleBench bench("EX9042D,name=OLD");

@@ -24,7 +24,7 @@ bool has(const std::string& text, std::string_view part) { return text.find(part
 
 // --- detection of the protocol ---
 
-TEST(LooksLikeDcon, IsTrueForADelimiterOrLeadFollowedByPrintableCharacters) {
+TEST(LooksLikeDcon, IsTrueForADelimiterOrReplyCharacterBeforePrintableText) {
   for (const char* text :
        {"#**\r", "$01M\r", "%0102400640\r", "@01\r", "~**\r", "!01400640\r", ">\r", "?01\r"}) {
     EXPECT_TRUE(looks_like_dcon(dcon(text))) << text;
@@ -167,7 +167,7 @@ TEST(ModbusMeaning, ARangeIsShownWithItsQuantity) {
   EXPECT_TRUE(has(text, "safe value")) << text;
 }
 
-TEST(ModbusMeaning, EveryRowOfTheMapIsNamed) {
+TEST(ModbusMeaning, ARequestNamesTheRowOfTheMap) {
   EXPECT_TRUE(has(of_request(FrameBytes{1, 0x02, 0, 0, 0, 8}), "inputs"));
   EXPECT_TRUE(has(of_request(FrameBytes{1, 0x01, 0, 0x40, 0, 8}), "latch high"));
   EXPECT_TRUE(has(of_request(FrameBytes{1, 0x01, 0, 0x60, 0, 8}), "latch low"));
@@ -179,7 +179,7 @@ TEST(ModbusMeaning, EveryRowOfTheMapIsNamed) {
   EXPECT_TRUE(has(of_request(FrameBytes{1, 0x10, 1, 0xE5, 0, 1, 2, 0, 6}), "baud"));
 }
 
-TEST(ModbusMeaning, ABroadcastIsForAllModules) {
+TEST(ModbusMeaning, ABroadcastIsShownAsARequestToAllModules) {
   EXPECT_EQ(of_request(FrameBytes{0x00, 0x05, 0x00, 0x00, 0xFF, 0x00}).find("all modules: "), 0U);
 }
 
@@ -188,7 +188,7 @@ TEST(ModbusMeaning, AHostOkIsNamed) {
   EXPECT_TRUE(has(of_request(FrameBytes{0x01, 0x04, 0x30, 0x38, 0x00, 0x01}), "host OK"));
 }
 
-TEST(ModbusMeaning, ReadingRegister3038WithAnotherQuantityIsNoHostOk) {
+TEST(ModbusMeaning, ReadingRegister3038WithAnotherQuantityIsNotAHostOk) {
   EXPECT_FALSE(has(of_request(FrameBytes{0x01, 0x03, 0x30, 0x38, 0x00, 0x02}), "host OK"));
 }
 

@@ -61,7 +61,7 @@ TEST_F(FrameWatchTest, AFrameHasTheModesOfItsSenderAndOfTheLine) {
   EXPECT_EQ(frames[0].line_in, (SerialMode{1200, LineFormat::k8E1}));
 }
 
-TEST_F(FrameWatchTest, AModulesFrameEndsWhenItsDriverIsSwitchedOff) {
+TEST_F(FrameWatchTest, AModulesFrameEndsWhenItsDriverIsDisabled) {
   watch.driver(kModule, true, now);
   send(kModule, {1, 2, 3});
   EXPECT_TRUE(frames.empty());
@@ -205,7 +205,7 @@ TEST_F(FrameWatchTest, AByteWithoutItsStopBitIsAFramingErrorOrABreak) {
   EXPECT_EQ(brk.status(), ByteStatus::Break);
 }
 
-TEST_F(FrameWatchTest, AChangeOfTheLineFormatDuringAFrameIsNoNoise) {
+TEST_F(FrameWatchTest, AChangeOfTheLineFormatDuringAFrameIsNotReportedAsNoise) {
   for (const LineFormat format :
        {LineFormat::k8N1, LineFormat::k8N2, LineFormat::k8E1, LineFormat::k8O1, LineFormat::k8N1}) {
     line_mode.format = format;

@@ -18,7 +18,7 @@ using Kind = InputProgram::Kind;
 
 InputProgram parsed(const std::string& text) { return parse_input_program(text, model_called("EX9052D")); }
 
-/// The times at which an input has moved, and its new levels.
+/// The times at which an input has changed, and its new levels.
 using Moves = std::vector<std::pair<VirtualTime, bool>>;
 
 /// A module with a changing input. The line's time is 100 ms at first.
@@ -195,7 +195,7 @@ TEST(MovedInput, EqualSeedsBounceEquallyAndDifferentSeedsDoNot) {
   EXPECT_NE(moves(1), moves(2));
 }
 
-TEST(MovedInput, ChangesWithoutSupplyButIsNotCounted) {
+TEST(MovedInput, AnInputChangesWithoutSupplyButIsNotCounted) {
   InputBench bench("0 square 100ms");
   bench.run_until(1s);
   bench.module().power(false);

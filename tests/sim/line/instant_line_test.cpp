@@ -1,4 +1,4 @@
-// Tests a line on which bytes take no time: `--line instant`.
+// Tests a line on which bytes take almost no time: `--line instant`.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -45,12 +45,12 @@ class InstantLine : public testing::TestWithParam<std::uint32_t> {
              [this](std::uint8_t byte, ByteStatus /*status*/) { heard_.push_back(byte); }};
 };
 
-TEST_P(InstantLine, AModbusRequestIsAnsweredAtOnce) {
+TEST_P(InstantLine, AModbusRequestGetsItsReplyImmediately) {
   send(kReadOutputs);
   EXPECT_EQ(heard_within(kAtOnce), kOutputsOff);
 }
 
-TEST_P(InstantLine, ADconCommandIsAnsweredAtOnce) {
+TEST_P(InstantLine, ADconCommandGetsItsReplyImmediately) {
   send("$03M\r");
   const std::string reply = "!039042D\r";
   EXPECT_EQ(heard_within(kAtOnce), Frame(reply.begin(), reply.end()));

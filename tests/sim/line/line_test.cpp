@@ -11,7 +11,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-TEST(LineOfOneModule, IsPendingFromAFramePlannedByTheMasterToTheEndOfTheReply) {
+TEST(LineOfOneModule, IsPendingFromTheCallOfSendToTheEndOfTheReply) {
   bool replied = false;
   Line line({parse_module_spec("EX9042D@01")}, kPaced,
             [&replied](std::uint8_t byte, ByteStatus /*status*/) { replied = byte == '\r'; });

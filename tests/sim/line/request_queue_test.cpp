@@ -25,7 +25,7 @@ const Frame kRead2 = with_crc({0x02, 0x02, 0x00, 0x00, 0x00, 0x08});
 const Frame kOff2 = with_crc({0x02, 0x02, 0x01, 0x00});
 const Frame kToNobody = with_crc({0x09, 0x01, 0x00, 0x00, 0x00, 0x0D});
 
-/// Notes the master's frames with their times.
+/// Records the start of each frame of the master, and the end of the last byte from other stations.
 class MasterWatch : public BusObserver {
  public:
   std::vector<VirtualTime> began;
@@ -95,7 +95,7 @@ TEST_P(Queue, RequestsAreAnsweredInTheirOrder) {
   EXPECT_FALSE(line_.pending());
 }
 
-TEST_P(Queue, ARequestBeginsOnlyAfterTheSilenceOfTheReplyBefore) {
+TEST_P(Queue, ARequestBeginsOnlyAfterTheSilenceThatEndsThePreviousReply) {
   ask(kRead1, "a");
   ask(kRead2, "b");
   while (results_.empty()) {
@@ -107,7 +107,7 @@ TEST_P(Queue, ARequestBeginsOnlyAfterTheSilenceOfTheReplyBefore) {
   EXPECT_GE(watch_.began[1] - reply_ended, line_.rtu_silence());
 }
 
-TEST_P(Queue, NoReplyIsReportedAfterTheTimeoutAndTheNextRequestFollows) {
+TEST_P(Queue, AMissingReplyIsReportedAfterTheTimeoutAndTheNextRequestFollows) {
   ask(kToNobody, "nobody");
   ask(kRead1, "a");
   const VirtualTime asked = now();
@@ -118,7 +118,7 @@ TEST_P(Queue, NoReplyIsReportedAfterTheTimeoutAndTheNextRequestFollows) {
   EXPECT_LE(waited, RequestQueue::kReplyTimeout + line_.rtu_silence());
 }
 
-TEST_P(Queue, ARequestWithoutReplyGivesModulesTheTurnaroundTime) {
+TEST_P(Queue, ABroadcastDelaysTheNextRequestByTheTurnaroundTime) {
   const Frame broadcast = with_crc({0x00, 0x05, 0x00, 0x00, 0xFF, 0x00});
   line_.requests().ask(request(broadcast, "all", false));
   ask(kRead1, "a");
@@ -178,7 +178,7 @@ TEST_P(Queue, ARequestWhoseOwnerIsGoneIsNotSent) {
   EXPECT_EQ(watch_.began.size(), 2U);
 }
 
-TEST_P(Queue, RequestsOfOwnersThatAreGoneTakeNoRoom) {
+TEST_P(Queue, ANewRequestRemovesRequestsWhoseOwnersAreGone) {
   ask(kToNobody, "a");
   auto other = std::make_shared<int>();
   const std::weak_ptr<int> its_request = [&] {
@@ -209,7 +209,7 @@ TEST_P(Queue, ARequestThatCannotBeSentInTimeIsNotSentLater) {
   }
 }
 
-TEST_P(Queue, ARequestThatAReportCausesComesAfterThoseThatWait) {
+TEST_P(Queue, ARequestThatDoneAddsFollowsTheWaitingRequests) {
   RequestQueue::Request first = request(kRead1, "a");
   first.done = [this](const RequestQueue::Reply& /*reply*/) {
     results_.emplace_back("a", Frame());
@@ -230,7 +230,7 @@ TEST_P(Queue, ARequestWaitsForARequestOfAnotherMasterAndItsReply) {
   EXPECT_EQ(results_, (Results{{"a", kOff1}, {"a", kOff1}, {"a", kOff1}}));
 }
 
-TEST_P(Queue, ALineThatIsNeverSilentDoesNotHoldARequestForEver) {
+TEST_P(Queue, ALineThatIsNeverSilentDoesNotBlockARequestForEver) {
   const Frame endless(60000, 0x55);
   line_.master().send(endless.data(), endless.size());
   ask(kRead1, "a");
@@ -238,7 +238,7 @@ TEST_P(Queue, ALineThatIsNeverSilentDoesNotHoldARequestForEver) {
   EXPECT_EQ(results_.size(), 1U);
 }
 
-/// Sends a byte each `period` from now on.
+/// Sends a byte in each `period`, from the construction on.
 class Babbler final : public Station {
  public:
   Babbler(Bus& bus, VirtualTime period) : bus_(bus), end_(bus.attach(*this)), period_(period) { run(); }
@@ -255,10 +255,10 @@ class Babbler final : public Station {
   VirtualTime period_;
 };
 
-/// Only a paced line: on an instant line, a station without a silence sends millions of bytes.
+/// Runs only on a paced line: on an instant line, a station that never stops sends millions of bytes.
 using PacedQueue = Queue;
 
-TEST_P(PacedQueue, AStationThatNeverStopsSendingDoesNotHoldARequestForEver) {
+TEST_P(PacedQueue, AStationThatNeverStopsSendingDoesNotBlockARequestForEver) {
   RequestQueue::Request checked = request(kToNobody, "checked");
   checked.is_reply = [](Bytes /*frame*/) { return true; };
   line_.requests().ask(std::move(checked));
@@ -273,7 +273,7 @@ TEST_P(PacedQueue, AStationThatNeverStopsSendingDoesNotHoldARequestForEver) {
   EXPECT_LE(last_.bytes.size(), 256U);
 }
 
-TEST_P(Queue, TheDelayOfAReplyIsFromTheRequestToTheFirstByte) {
+TEST_P(Queue, TheDelayOfAReplyEndsWithItsFirstByte) {
   ask(kRead1, "a");
   run(milliseconds(200));
   const VirtualTime whole = times_[0] - watch_.began[0];

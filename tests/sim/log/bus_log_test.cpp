@@ -40,7 +40,7 @@ std::string json_line_of(const Frame& frame) {
 }
 nlohmann::json json_of(const Frame& frame) { return nlohmann::json::parse(json_line_of(frame)); }
 
-TEST(BusLog, ReportsRateAndFormatOfAFrameIfStationsOfTheLineDoNotHearIt) {
+TEST(BusLog, ReportsRateAndFormatOfAFrameThatStationsOfTheLineCannotReceive) {
   Frame frame = frame_of(1, {1, 2, 3});
   frame.sent_in = {115200, LineFormat::k8N1};
   frame.line_in = {9600, LineFormat::k8N1};
@@ -150,7 +150,7 @@ TEST(LineError, ListsEachChangedByteWithItsPosition) {
             "byte 10: framing error, 61 instead of 41; byte 11: break instead of 41");
 }
 
-TEST(LineError, AValidFrameHasNone) {
+TEST(LineError, AValidFrameHasNoError) {
   EXPECT_EQ(errors(frame_of(0, with_crc({1, 5, 0, 2, 0xFF, 0}))), "");
   EXPECT_EQ(errors(dcon(0, "$012B7\r")), "");
   EXPECT_EQ(errors(frame_of(0, {0x0A})), "");

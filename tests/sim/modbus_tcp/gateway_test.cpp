@@ -135,7 +135,7 @@ TEST(Gateway, AModuleWithoutSupplyGetsException0B) {
   EXPECT_EQ(bench.reply(0x01, kReadOutputs), (Pdu{0x81, kNoReply}));
 }
 
-TEST(Gateway, ALostReplyGetsException0BAndTheNextRequestItsReply) {
+TEST(Gateway, ALostReplyCausesException0BAndTheNextRequestGetsItsReply) {
   GatewayLine bench({"EX9042D-M@01"});
   bench.line.faults().add(parse_fault("lost-reply every 2nd reply"));
   EXPECT_EQ(bench.reply(0x01, kReadOutputs), kOutputsOff);
@@ -180,8 +180,8 @@ TEST(RtuReply, HasTheAddressTheFunctionAndTheValuesOfItsRequest) {
   EXPECT_TRUE(is_reply({0x46, 0x00, 0x00, 0x90, 0x42, 0x00}, {0x46, 0x00}));
 }
 
-/// Returns the answers to a request for each of the coils 0 to 5. All are asked at once, and each reply of
-/// the module is 600 ms late.
+/// Returns the answers to a request for each of the coils 0 to 5. The gateway gets all requests at the same
+/// time, and each reply of the module is 600 ms late.
 template <class RequestFor>
 std::vector<Pdu> answers_if_replies_are_late(GatewayLine& bench, RequestFor request_for) {
   bench.line.faults().add(parse_fault("late-reply 600ms"));
@@ -224,7 +224,7 @@ TEST(Gateway, TheReplyToAnotherMasterIsNotTheReplyToTheClient) {
   EXPECT_EQ(reply, (Pdu{0x81, kNoReply}));
 }
 
-TEST(Gateway, AModuleThatStartsUpIsNotTakenForOneThatSpeaksAscii) {
+TEST(Gateway, AModuleThatStartsUpIsNotTreatedAsAnAsciiModule) {
   GatewayLine bench({"EX9042D-M@01"});
   bench.line.module(0).power(false);
   bench.line.module(0).power(true);

@@ -30,7 +30,7 @@ class PollingClient {
     static constexpr std::uint8_t kUnits[] = {1, 2, 9, 250};
     const std::uint8_t unit = kUnits[random_() % 100 < 96 ? random_() % 2 : 2 + random_() % 2];
     const auto transaction = static_cast<std::uint16_t>(random_());
-    // The quantity tells the replies of a module apart.
+    // The random quantity distinguishes the replies of a module.
     const auto quantity = static_cast<std::uint8_t>(1 + random_() % 8);
     expected_.push_back({transaction, unit, quantity});
     Buffer bytes = mbap_bytes({transaction, unit, {0x01, 0x00, 0x00, 0x00, quantity}});
@@ -162,7 +162,7 @@ TEST(MbapSession, AClientThatReadsNoRepliesSendsNoMoreRequestsToTheLine) {
   EXPECT_EQ(session.unread(), 0U);
 }
 
-TEST(MbapSession, AClientWithManyRequestsLetsTheOthersTakeTurns) {
+TEST(MbapSession, ClientsTakeTurnsAlthoughOneHasManyRequests) {
   Line line({parse_module_spec("EX9042D-M@01")}, kPaced, [](std::uint8_t /*byte*/, ByteStatus /*status*/) {});
   line.come_up();
   Gateway gateway(line);

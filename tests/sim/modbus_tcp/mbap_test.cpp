@@ -90,7 +90,7 @@ TEST(MbapReader, OnlyProtocol0IsModbus) {
   }
 }
 
-TEST(MbapReader, FramesBeforeAWrongHeaderAreValidAndNothingAfterIt) {
+TEST(MbapReader, OnlyFramesBeforeAWrongHeaderAreValid) {
   MbapReader reader;
   add(reader, kRequest);
   add(reader, header(1, 2));
@@ -102,7 +102,7 @@ TEST(MbapReader, FramesBeforeAWrongHeaderAreValidAndNothingAfterIt) {
   EXPECT_FALSE(reader.next());
 }
 
-TEST(MbapBytes, AreTheBytesOfTheFrame) {
+TEST(MbapBytes, AFrameIsWrittenWithItsHeader) {
   EXPECT_EQ(mbap_bytes({0x1234, 0x11, {0x03, 0x01, 0xE8, 0x00, 0x01}}), kRequest);
   const Buffer longest = mbap_bytes({1, 1, Buffer(253, 0x2A)});
   EXPECT_EQ(longest.size(), 260U);

@@ -52,7 +52,7 @@ TEST(ModbusTcpProgram, TheGreetingNamesThePortAndCommandsThatReadAModule) {
       << simulator.output();
 }
 
-TEST(ModbusTcpProgram, InSteppedTimeTheRequestsOfOneAdvanceAreAnsweredInIt) {
+TEST(ModbusTcpProgram, InSteppedTimeAnAdvanceEndsAfterTheRepliesToItsRequests) {
   SimulatorProcess simulator({"EX9042D-M@01", "--modbus-tcp", "0", "--speed", "step", "--control", "ctl"});
   ControlClient control(simulator.directory() + "/ctl");
   SocketClient master(simulator.tcp_port());
@@ -64,7 +64,7 @@ TEST(ModbusTcpProgram, InSteppedTimeTheRequestsOfOneAdvanceAreAnsweredInIt) {
   EXPECT_EQ(master.receive(31), kFirstReply + kNoReply + kSecondReply);
 }
 
-TEST(ModbusTcpProgram, InSteppedTimeAnAdvanceFindsItsBytesBehindRequestsThatWait) {
+TEST(ModbusTcpProgram, InSteppedTimeAnAdvanceCountsBytesThatArriveAfterWaitingRequests) {
   SimulatorProcess simulator({"EX9042D-M@01", "--modbus-tcp", "0", "--speed", "step", "--control", "ctl"});
   ControlClient control(simulator.directory() + "/ctl");
   SocketClient master(simulator.tcp_port());

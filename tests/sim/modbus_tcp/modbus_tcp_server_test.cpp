@@ -51,8 +51,8 @@ class ModbusTcpServerTest : public testing::Test {
     boost::asio::write(client, boost::asio::buffer(bytes));
   }
 
-  /// Lets the server read until `bytes` bytes have arrived in total. A server that has nothing to do for 60 s
-  /// hangs.
+  /// Lets the server read until `bytes` bytes have arrived in total. Fails if the server does nothing for 60
+  /// s, because only a server that hangs takes so long.
   void wait_for_arrival(std::size_t bytes) {
     while (arrived_ < bytes) {
       ASSERT_EQ(io_.run_one_for(std::chrono::seconds(60)), 1U) << arrived_;
@@ -150,7 +150,7 @@ TEST_F(ModbusTcpServerTest, AClientThatHasClosedItsSendingSideGetsItsReplies) {
   EXPECT_TRUE(closed(client));
 }
 
-TEST_F(ModbusTcpServerTest, AClientThatDisappearsHarmsNoOther) {
+TEST_F(ModbusTcpServerTest, AClientThatDisappearsDoesNotAffectAnotherClient) {
   tcp::socket other = connect();
   {
     tcp::socket client = connect();
@@ -166,7 +166,7 @@ TEST_F(ModbusTcpServerTest, AClientThatDisappearsHarmsNoOther) {
   EXPECT_EQ(receive(other, 11), reply(3));
 }
 
-TEST_F(ModbusTcpServerTest, TheClientAfterTheLastOneIsDisconnected) {
+TEST_F(ModbusTcpServerTest, AClientBeyondTheLimitIsDisconnected) {
   std::vector<tcp::socket> clients;
   for (std::size_t i = 0; i < kMostClients; ++i) {
     clients.push_back(connect());
@@ -186,7 +186,7 @@ TEST_F(ModbusTcpServerTest, TheClientAfterTheLastOneIsDisconnected) {
   EXPECT_EQ(receive(clients.back(), 11), reply(1));
 }
 
-TEST_F(ModbusTcpServerTest, WhileTheLineTakesNoMoreTheServerDoesNotRead) {
+TEST_F(ModbusTcpServerTest, TheServerDoesNotReadWhileTheLineAcceptsNoMoreBytes) {
   tcp::socket client = connect();
   full_ = true;
   send(client, request(1));
@@ -213,7 +213,7 @@ TEST_F(ModbusTcpServerTest, WaitingBytesAreReadWithoutTheIoContext) {
 }
 
 TEST_F(ModbusTcpServerTest, AClientThatDoesNotReadGetsAllRepliesWhenItReads) {
-  constexpr std::uint8_t kNoUnit = 250;  // exception 0A follows at once
+  constexpr std::uint8_t kNoUnit = 250;  // the gateway answers immediately with exception 0A
   constexpr std::size_t kRequest = 12;
   constexpr std::size_t kFarTooMuch = 50'000'000;
   tcp::socket client = connect(8192);
@@ -222,7 +222,7 @@ TEST_F(ModbusTcpServerTest, AClientThatDoesNotReadGetsAllRepliesWhenItReads) {
   std::size_t arrived_before = 0;
   boost::system::error_code error;
   do {
-    ASSERT_LT(sent, kFarTooMuch) << "the server reads on, whatever it has to store";
+    ASSERT_LT(sent, kFarTooMuch) << "the server continues to read although the client does not";
     arrived_before = arrived_;
     Buffer requests;
     for (std::size_t i = sent / kRequest; i < sent / kRequest + 300; ++i) {

@@ -45,7 +45,7 @@ TEST(Face, ShowsOutputsInputsCountersAndLatches) {
   EXPECT_EQ(face.gathered.counters[1], 0U);
 }
 
-TEST(Face, ShowsWhatIsLeftOfATimedOutput) {
+TEST(Face, ShowsTheRemainingTimeOfATimedOutput) {
   ModuleBench bench("EX9055D");
   ASSERT_EQ(bench.ask("~01X02820064"), "!01");  // output 2 for 10 s
   const unsigned left = face_of(bench).plate.timers[2];
@@ -57,7 +57,7 @@ TEST(Face, ShowsWhatIsLeftOfATimedOutput) {
   EXPECT_EQ(face_of(bench).plate.timers[2], 0);
 }
 
-TEST(Face, WithoutPowerShowsOnlySwitchesInputsAndStoredSettings) {
+TEST(Face, ShowsOnlySwitchesInputsAndStoredSettingsWithoutPower) {
   ModuleBench bench("EX9055D@07");
   ASSERT_EQ(bench.ask("@0705"), ">");
   bench.module().set_input(0, true);

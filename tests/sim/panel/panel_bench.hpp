@@ -43,7 +43,7 @@ class PanelBench : public ModuleBench {
   void end_frames() { frames_.finish(); }
   PanelViewer& viewer() { return *viewer_; }
   Panel& panel() { return panel_; }
-  /// Advances the wall clock, which otherwise stands still.
+  /// Advances the wall clock, which does not advance otherwise.
   void pass_wall_time(std::chrono::nanoseconds time) { wall_clock_ += time; }
 
  private:

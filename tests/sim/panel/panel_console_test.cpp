@@ -79,7 +79,7 @@ TEST(PanelConsole, ATextThatIsNoRequestIsRefusedWithAReason) {
 
 TEST(PanelConsole, AFrameThatIsNotAReplyToTheRequestIsMarked) {
   PanelBench bench("EX9052D-M@01");
-  bench.line().faults().add(parse_fault("foreign-traffic 0105000AFF00AC38"));  // strikes once
+  bench.line().faults().add(parse_fault("foreign-traffic 0105000AFF00AC38"));  // takes effect once
   const Message request{{"id", 9}, {"line", 0}, {"address", 2}, {"ask", "02 0000 0008"}};
   ASSERT_TRUE(bench.viewer().ask(request.dump()));
   bench.run(milliseconds(50));

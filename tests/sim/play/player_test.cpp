@@ -54,7 +54,7 @@ TEST(Player, PassesACorrectTranscript) {
   EXPECT_TRUE(passes(kModbusHeader + "=> 01 01 00 00 00 0D\n<= 01 01 02 00 00\n"));
 }
 
-TEST(Player, FailsAWrongOrMissingReply) {
+TEST(Player, ReportsAWrongOrMissingReply) {
   EXPECT_FALSE(passes(kHeader + "> $01M\n< !019042\n"));
   EXPECT_FALSE(passes(kHeader + "> $01M\n< !019042MM\n"));
   EXPECT_FALSE(passes(kHeader + "> $02M\n< !029042M\n"));
@@ -62,7 +62,7 @@ TEST(Player, FailsAWrongOrMissingReply) {
   EXPECT_FALSE(passes(kHeader + "led flashing\n"));
 }
 
-TEST(Player, FailsAnUnexpectedReplyAtAnyStep) {
+TEST(Player, ReportsAnUnexpectedReplyAtAnyStep) {
   EXPECT_FALSE(passes(kHeader + "> $01M\n> $02M\nsilence\n"));
   EXPECT_FALSE(passes(kHeader + "> $01M\nsilence\n"));
   EXPECT_FALSE(passes(kHeader + "> $01M\nwait 100ms\n"));

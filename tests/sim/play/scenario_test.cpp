@@ -101,7 +101,7 @@ TEST(Scenario, AFailureNamesTheFileLineStepAndReceivedBytes) {
       << failure;
 }
 
-TEST(Scenario, FailsAtTheSameStepEachTime) {
+TEST(Scenario, ARandomFaultFailsTheSameStepInEachRun) {
   std::string steps = "fault lost-reply with probability 0.2\n";
   for (int i = 0; i < 50; ++i) {
     steps += "> $01M\n< !019042D\n";

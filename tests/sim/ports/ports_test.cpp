@@ -35,7 +35,7 @@ void expect_refused(const Finished& finished, const std::string& names, const st
 
 class Tcp : public testing::TestWithParam<const char*> {};
 
-TEST_P(Tcp, AloneThereIsNoPseudoTerminal) {
+TEST_P(Tcp, WithoutPtyThereIsNoPseudoTerminal) {
   SimulatorProcess simulator({"EX9042D@05", "--tcp", "0", "--line", GetParam()});
   SocketClient client(simulator.tcp_port());
   client.send("$05M\r");
@@ -43,7 +43,7 @@ TEST_P(Tcp, AloneThereIsNoPseudoTerminal) {
   EXPECT_FALSE(fs::is_symlink(simulator.tty()));
 }
 
-TEST_P(Tcp, AndThePseudoTerminalReachTheSameLine) {
+TEST_P(Tcp, ATcpPortAndAPseudoTerminalReachTheSameLine) {
   SimulatorProcess simulator({"EX9042D@05", "--tcp", ":0", "--pty", "ex9000.tty", "--line", GetParam()});
   SocketClient client(simulator.tcp_port());
   client.send("$05M\r");
@@ -99,7 +99,7 @@ std::string heard_by_asking_again(SocketClient& client, const std::string& reque
   return heard;
 }
 
-TEST_P(Tcp, AClientThatResetsItsConnectionDoesNoHarm) {
+TEST_P(Tcp, AClientThatResetsItsConnectionDoesNotAffectOthers) {
   SimulatorProcess simulator({"EX9042D@05", "--tcp", "0", "--line", GetParam()});
   SocketClient other(simulator.tcp_port());
   for (int visit = 0; visit < 20; ++visit) {
@@ -135,7 +135,7 @@ TEST(TcpPort, ServesManyClientsOneAfterTheOther) {
   }
 }
 
-TEST(TcpPort, Serves64ClientsAtOnceAndReusesAFreePlace) {
+TEST(TcpPort, Serves64ClientsAtTheSameTimeAndReusesAFreePlace) {
   SimulatorProcess simulator({"EX9042D@05", "--tcp", "0", "--line", "instant"});
   std::vector<std::unique_ptr<SocketClient>> clients;
   for (int i = 0; i < 64; ++i) {
@@ -168,8 +168,8 @@ TEST(TcpPort, ListensOnAnAddressOfIpv6) {
   EXPECT_NE(simulator.output().find("  TCP " + host + ":"), std::string::npos) << simulator.output();
 }
 
-// A full line must not use processor time: the program does not poll clients that have to wait.
-TEST(TcpPort, AWaitingClientUsesNoProcessorTime) {
+// The program must not poll clients that have to wait for a full line.
+TEST(TcpPort, AWaitingClientUsesLittleProcessorTime) {
   SimulatorProcess simulator({"EX9042D@05,baud=1200", "--tcp", "0"});
   SocketClient flooder(simulator.tcp_port());
   flooder.send(std::vector<std::uint8_t>(20'000, 'x'));  // takes almost three minutes at 1200 baud
@@ -196,7 +196,7 @@ TEST(TcpPort, AWaitingClientUsesNoProcessorTime) {
   EXPECT_LT(static_cast<double>(used), passed.count() * static_cast<double>(sysconf(_SC_CLK_TCK)) / 4);
 }
 
-TEST(TcpPort, IsRefusedIfInUseAndReusableAfterItsProcessWasKilled) {
+TEST(TcpPort, APortInUseIsRefusedAndCanBeReusedAfterItsProcessIsKilled) {
   SimulatorProcess first({"EX9042D@05", "--tcp", "0"});
   const std::string address = "127.0.0.1:" + std::to_string(first.tcp_port());
   expect_refused(run({simulator_path(), "EX9042D", "--tcp", address}, first.directory()), "--tcp " + address,
@@ -257,8 +257,8 @@ class Cable {
     tcgetattr(far_, &settings);
     return settings;
   }
-  /// Sets the port as another program may have left it. No setting suits a line of modules, except the 8 data
-  /// bits that a pseudo-terminal always has.
+  /// Gives the port settings that another program may have left. All are unsuitable for a line of modules,
+  /// except the 8 data bits that a pseudo-terminal always has.
   void leave_set_for_something_else() const {
     termios settings{};
     tcgetattr(far_, &settings);

@@ -16,7 +16,8 @@ using boost::asio::ip::tcp;
 
 constexpr std::size_t kMostMasters = 64;
 
-/// Runs one handler. A port that has nothing to do for 60 s hangs.
+/// Runs one handler. Returns false if the port does nothing for 60 s, because only a port that hangs takes so
+/// long.
 bool run_one(boost::asio::io_context& io) { return io.run_one_for(std::chrono::seconds(60)) == 1; }
 
 class TcpPortClients : public testing::Test {

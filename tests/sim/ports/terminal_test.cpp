@@ -33,7 +33,7 @@ TEST(Dcon, TheNextMasterDoesNotReceiveAnUnreadReply) {
   }
   ASSERT_TRUE(simulator.wait_for("!05FIRST")) << simulator.output();
   ControlClient(simulator.directory() + "/control")
-      .ok("list");  // by then the program has written the last byte too
+      .ok("list");  // replies after the last byte has been written too
   Terminal terminal(simulator.tty(), 9600);
   terminal.type("$052\r");
   EXPECT_EQ(terminal.read_line(), "!05400600\r");
@@ -62,7 +62,8 @@ TEST(Dcon, TheLineTakesTheMastersBaudRateAndReportsAMismatch) {
   terminal.type("$052\r");
   EXPECT_TRUE(simulator.wait_for("the line is at 1200 baud 8N1, EX9042D at 05 listens at 19200 baud 8N1"))
       << simulator.output();
-  EXPECT_EQ(terminal.read_line(std::chrono::milliseconds(500)), "");  // a busy machine can only hide an error
+  // On a busy machine this check can miss an error, but it cannot fail without one.
+  EXPECT_EQ(terminal.read_line(std::chrono::milliseconds(500)), "");
 }
 
 }  // namespace

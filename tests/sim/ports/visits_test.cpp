@@ -28,7 +28,7 @@ class VisitsTest : public testing::Test {
   int of_b_ = 0;
 };
 
-TEST_F(VisitsTest, ReportsOnlyWhatWasVisited) {
+TEST_F(VisitsTest, ReportsOnlyTheDevicesThatWereVisited) {
   visit("b");
   visits_.take();
   EXPECT_EQ(of_a_, 0);

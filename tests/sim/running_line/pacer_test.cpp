@@ -23,7 +23,7 @@ using FrameBytes = std::vector<std::uint8_t>;
 const FrameBytes kInputs2 = with_crc({0x02, 0x02, 0x00, 0x00, 0x00, 0x08});
 const FrameBytes kAllFirstOn = with_crc({0x00, 0x05, 0x00, 0x00, 0xFF, 0x00});
 
-/// A port that delivers bytes at once and discards the replies.
+/// A port that delivers bytes immediately and discards the replies.
 class ImmediatePort final : public Port {
  public:
   explicit ImmediatePort(Received& received) : received_(received) {}

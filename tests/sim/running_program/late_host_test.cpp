@@ -49,12 +49,12 @@ hal::doubles::VirtualTime longest_delay(const std::string& log) {
   return longest;
 }
 
-TEST(LateHost, IsReportedWithItsDelay) {
+TEST(LateHost, ALateHostIsReportedWithItsDelay) {
   // With a changing input, the next event is always due soon.
   SimulatorProcess simulator({"EX9052D@01", "--tcp", "0", "--input", "1 0 square 10ms"});
   SocketClient client(simulator.tcp_port());
   client.send("$01M\r");
-  ASSERT_EQ(client.receive_text(8), "!019052\r");  // the line's time has begun
+  ASSERT_EQ(client.receive_text(8), "!019052\r");  // the line has started
   suspend(simulator.pid(), std::chrono::milliseconds(300));
   // An event is due every 5 ms, so the program is late by at least 295 ms when it continues. It reports a
   // delay only if that delay is at least twice the longest delay that it has reported before. If a busy host

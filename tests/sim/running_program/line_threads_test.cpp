@@ -75,7 +75,7 @@ TEST(LineThreads, NoHandlerOfALineRunsDuringAPause) {
   EXPECT_EQ(counts[0], after);
 }
 
-/// Starts threads as a user who may not have more processes, and prints why that fails.
+/// Starts threads as a user who may have no more processes, and prints why the start fails.
 void start_without_permission() {
   constexpr uid_t kNobody = 65534;
   const rlimit none{0, 0};

@@ -110,7 +110,7 @@ std::string ask(Terminal& terminal, const std::string& command) {
 
 // --- several lines ---
 
-TEST(Lines, DoNotReceiveEachOthersBytes) {
+TEST(Lines, ALineDoesNotReceiveTheBytesOfAnotherLine) {
   Lines lines(kHallAndYard);
   Terminal hall(lines / "hall.tty", 9600);
   Terminal yard(lines / "yard.tty", 9600);
@@ -129,7 +129,7 @@ TEST(Lines, DoNotReceiveEachOthersBytes) {
           .empty());  // on a busy machine this check can miss an error, but it cannot fail without one
 }
 
-TEST(Lines, EachHasItsOwnBaudRateAndIsNamedInTheLog) {
+TEST(Lines, EachLineHasItsOwnBaudRateAndItsNameInTheLog) {
   Lines lines(R"({"lines": [
     {"name": "hall", "pty": "hall.tty", "modules": [{"model": "EX9042D", "baud": 9600}]},
     {"pty": "yard.tty", "modules": [{"model": "EX9052D", "baud": 115200}]}], "log": true})");
@@ -227,11 +227,11 @@ TEST(Lines, RunOnAnyNumberOfThreadsWithLogCaptureAndCommands) {
   }
 }
 
-TEST(Lines, OfTheExampleBusFileStartAndTheirModulesReply) {
+TEST(Lines, TheLinesOfTheExampleBusFileStartAndTheirModulesReply) {
   std::string example = run({simulator_path(), "--example"}).output;
   const std::string port = "127.0.0.1:5020";
   ASSERT_TRUE(has(example, port));
-  example.replace(example.find(port), port.size(), "127.0.0.1:0");  // it may be in use here
+  example.replace(example.find(port), port.size(), "127.0.0.1:0");  // another program may use the port 5020
   Lines lines(example);
   EXPECT_EQ(lines.control().ask("list"),
             "ok 4 modules: 1 EX9042D-M at 01 on hall, 2 EX9052D-M at 02 on hall, 3 EX9068D-M at 0A on yard, "
@@ -261,7 +261,7 @@ TEST(Lines, NoFilesAreCreatedIfOneLineFails) {
   }
 }
 
-TEST(Lines, PortErrorNamesItsPlaceInTheBusFile) {
+TEST(Lines, APortErrorNamesItsPlaceInTheBusFile) {
   const BusFile file(
       "{\"lines\": [\n"
       "{\"tcp\": 0, \"modules\": [{\"model\": \"EX9042D\"}]},\n"
@@ -353,30 +353,30 @@ TEST(LineOfTheCommandLine, RunsTheFaultsAndInputProgramsOfItsOptions) {
   EXPECT_GT(std::stoul(some.substr(3)), 5U);
 }
 
-/// Returns how often a fault has struck after each of 30 commands.
-std::string strikes(const std::string& seed) {
+/// Returns how often a fault has taken effect after each of 30 commands.
+std::string occurrences(const std::string& seed) {
   SimulatorProcess simulator({"EX9042D@01", "--line", "instant", "--control", "control", "--fault",
                               "lost-reply with probability 0.5", "--seed", seed});
   ControlClient control(simulator.directory() + "/control");
   Terminal terminal(simulator.tty(), 9600);
-  std::string struck;
+  std::string counts;
   for (const char digit : std::string("123456789ABCDEF123456789ABCDEF")) {
     terminal.type("@01000" + std::string(1, digit) + "\r");
     while (control.ok("1 outputs") != "000" + std::string(1, digit)) {
     }
     std::string faults = control.ok("faults");
-    while (has(faults, "*")) {  // the reply is not over
+    while (has(faults, "*")) {  // the reply has not ended
       faults = control.ok("faults");
     }
-    struck += faults.substr(faults.find(" x"), 4) + ",";
+    counts += faults.substr(faults.find(" x"), 4) + ",";
   }
-  return struck;
+  return counts;
 }
 
-TEST(LineOfTheCommandLine, WithEqualSeedsAFaultStrikesTheSameReplies) {
-  const std::string of_seed = strikes("7");
-  EXPECT_EQ(strikes("7"), of_seed);
-  EXPECT_NE(strikes("8"), of_seed);
+TEST(LineOfTheCommandLine, WithEqualSeedsAFaultAffectsTheSameReplies) {
+  const std::string of_seed = occurrences("7");
+  EXPECT_EQ(occurrences("7"), of_seed);
+  EXPECT_NE(occurrences("8"), of_seed);
 }
 
 // Stations of faults are attached after the modules, and the log has no names for them.
@@ -403,9 +403,9 @@ TEST(LineOfTheCommandLine, BytesThatNoModuleHasSentAreReceivedAndLogged) {
 
 TEST(LineOfTheCommandLine, TheLogReportsTheBeginningAndEndOfFaults) {
   SimulatorProcess simulator({"EX9042D", "--fault", "gone at 300ms for 100ms"});
-  EXPECT_TRUE(simulator.wait_for("fault 1 strikes: gone at 300ms for 100ms")) << simulator.output();
+  EXPECT_TRUE(simulator.wait_for("fault 1 occurs: gone at 300ms for 100ms")) << simulator.output();
   EXPECT_TRUE(simulator.wait_for("fault 1 is over: gone at 300ms for 100ms")) << simulator.output();
-  EXPECT_TRUE(has(simulator.output(), "    0.300000  - fault 1 strikes")) << simulator.output();
+  EXPECT_TRUE(has(simulator.output(), "    0.300000  - fault 1 occurs")) << simulator.output();
   EXPECT_TRUE(has(simulator.output(), "    0.400000  - fault 1 is over")) << simulator.output();
 }
 

@@ -13,7 +13,7 @@
 namespace ex9000::system {
 namespace {
 
-/// A simulator whose time stands still, with its control socket.
+/// A simulator in stepped time, with its control socket.
 class Stepped {
  public:
   explicit Stepped(std::vector<std::string> arguments)
@@ -44,7 +44,7 @@ TEST(SteppedProgram, TheHostWatchdogExpiresWhenOneCommandAdvancesADay) {
   EXPECT_EQ(master.read_line(), "!0184\r");
 }
 
-TEST(SteppedProgram, ItWaitsForAMasterThatWritesLater) {
+TEST(SteppedProgram, AnAdvanceWaitsForAMasterThatWritesLater) {
   Stepped stepped({"EX9042D", "--tcp", "0"});
   SocketClient master(stepped.simulator.tcp_port());
   stepped.control.send("advance 1s after 5 quiet\n");
@@ -63,7 +63,7 @@ TEST(SteppedProgram, AHalfClosedMasterGetsItsReply) {
   EXPECT_EQ(master.receive_text(9), "!019042D\r");
 }
 
-TEST(SteppedProgram, AMasterThatCrashesDuringItsReplyDoesNoHarm) {
+TEST(SteppedProgram, AMasterThatCrashesDuringItsReplyDoesNotStopTheProgram) {
   for (int round = 0; round < 5; ++round) {
     Stepped stepped({"EX9042D", "--tcp", "0"});
     SocketClient crashing(stepped.simulator.tcp_port());
@@ -100,7 +100,7 @@ TEST(SteppedProgram, TheSameCommandsProduceTheSameBytesAtTheSameTimes) {
   EXPECT_NE(first.find("> master  @01"), std::string::npos) << first;
 }
 
-TEST(SteppedProgram, ASignalEndsItDuringALongAdvance) {
+TEST(SteppedProgram, ASignalEndsTheProgramDuringALongAdvance) {
   Stepped stepped({"EX9042D", "--log"});
   stepped.control.ok("fault foreign-traffic 2430314D0D at 1min");
   stepped.control.send("advance 8760h\n");
@@ -113,7 +113,7 @@ TEST(SteppedProgram, AFullPortIsReported) {
   const Terminal silent(stepped.simulator.tty(), 9600);
   // Foreign traffic reaches the port like a reply; a pseudo-terminal holds some kilobytes.
   stepped.control.ok("fault foreign-traffic 2430314D0D every 10ms");
-  // `send` does not wait for the reply: wait_for has to read the log meanwhile, which grows with each strike.
+  // `send` does not wait for the reply, because `wait_for` has to read the log while time passes.
   stepped.control.send("advance 60s\n");
   EXPECT_TRUE(stepped.simulator.wait_for("a port is full: ")) << stepped.simulator.output();
 }

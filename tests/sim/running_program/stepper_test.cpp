@@ -59,7 +59,7 @@ class FakePort final : public Port {
   std::string read_;
 };
 
-/// A line with a port, whose time stands still.
+/// A line with a port, in stepped time.
 struct StillLine {
   explicit StillLine(const std::vector<std::string>& modules) {
     std::vector<ModuleSpec> specs;

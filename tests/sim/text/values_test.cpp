@@ -55,7 +55,7 @@ TEST(WholeNumber, IsWithinItsBounds) {
       "a whole number from 3 to 15");
 }
 
-TEST(WholeNumber, WithoutAnUpperBoundMayHave64Bits) {
+TEST(WholeNumber, ANumberWithoutAnUpperBoundMayHave64Bits) {
   EXPECT_EQ(parse_whole_number("18446744073709551615", 1, kMost), kMost);
   EXPECT_EQ(parse_whole_number("1", 1, kMost), 1U);
   const auto parse = [](const std::string& text) { return parse_whole_number(text, 1, kMost); };

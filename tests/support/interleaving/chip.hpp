@@ -24,8 +24,8 @@ struct Sent {
   std::string bytes;
 };
 
-/// Simulates only the hardware. It stores the time of each next interrupt; its owner must call the interrupt
-/// handlers at those times.
+/// Simulates only the hardware. For each source of interrupts, stores the time of the next interrupt. The
+/// owner must call the interrupt handlers at these times.
 class Chip final : public hal::bus::Peripherals {
  public:
   static constexpr std::uint32_t kNever = 0xFFFF'FFFF;
@@ -211,7 +211,7 @@ class Memory {
     source_ = {};
     begin();
   }
-  /// Starts a write. `poll` reads the bytes of `source` later, so they must not change before.
+  /// Starts a write. `poll` reads the bytes of `source` later, so they must not change before that.
   void start_write(std::uint16_t address, Bytes source, Time /*now*/) {
     Points::pass();
     address_ = address;

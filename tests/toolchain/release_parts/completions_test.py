@@ -34,18 +34,18 @@ class Bash(unittest.TestCase):
             command = ["bash", "-c", _COMPLETE, "bash", folder, script.name, "ex9000-sim", *words]
             return subprocess.run(command, capture_output=True, text=True, check=True).stdout.split()
 
-    def test_options_of_the_program_and_of_a_subcommand(self) -> None:
+    def test_options_of_the_program_and_of_a_subcommand_are_completed(self) -> None:
         self.assertEqual(self.complete("--c"), ["--control", "--capture"])
         self.assertEqual(self.complete("describe", "EX9042D-M", "--f"), ["--format"])
 
-    def test_models_subcommands_and_bus_files(self) -> None:
+    def test_models_subcommands_and_bus_files_are_completed(self) -> None:
         models = [line.split()[0] for line in printed("--models").splitlines()]
         self.assertEqual(self.complete(""), ["play", "describe", *models])
         self.assertEqual(self.complete("describe", "EX9042"), ["EX9042D", "EX9042D-M"])
         self.assertEqual(self.complete("bus"), ["bus.json"])
         self.assertEqual(self.complete("play", "b"), ["bus.json"])
 
-    def test_values_of_options(self) -> None:
+    def test_values_of_options_are_completed(self) -> None:
         self.assertEqual(self.complete("EX9042D", "--line", ""), ["paced", "instant"])
         self.assertEqual(self.complete("EX9042D", "--log", "j"), ["json"])
         self.assertEqual(self.complete("EX9042D", "--log", "EX9052"), ["EX9052D", "EX9052D-M"])
@@ -54,7 +54,7 @@ class Bash(unittest.TestCase):
         self.assertIn("home-assistant", self.complete("describe", "EX9042D-M", "--format", ""))
 
     @unittest.skipUnless(shutil.which("shellcheck"), "shellcheck is not installed")
-    def test_shellcheck_has_no_complaint(self) -> None:
+    def test_shellcheck_reports_no_problem(self) -> None:
         command = ["shellcheck", "-s", "bash", "-"]
         done = subprocess.run(command, input=self.script, capture_output=True, text=True, check=False)
         self.assertEqual(done.stdout, "")
@@ -67,7 +67,7 @@ class Zsh(unittest.TestCase):
         self.assertIn("--tcp[", script)
 
     @unittest.skipUnless(shutil.which("zsh"), "zsh is not installed")
-    def test_zsh_accepts_it(self) -> None:
+    def test_zsh_accepts_the_function(self) -> None:
         script = written("zsh-completion", str(PROGRAM))
         done = subprocess.run(["zsh", "-n", "/dev/stdin"], input=script, capture_output=True, text=True, check=False)
         self.assertEqual((done.stderr, done.returncode), ("", 0))

@@ -1,4 +1,4 @@
-"""Tests the archive of the container image against the two formats that it has to meet."""
+"""Tests the archive of the container image against the two formats that it must have."""
 
 from __future__ import annotations
 

@@ -58,7 +58,7 @@ class HelpText(unittest.TestCase):
         self.assertEqual(text.subcommands, ["play", "show"])
         self.assertEqual(text.notes, ["Notes begin here", "  entry   text"])
 
-    def test_placeholders_are_no_choices(self) -> None:
+    def test_placeholders_are_not_choices(self) -> None:
         choices = [option.choices() for option in read(TEXT).options]
         self.assertEqual(choices, [[], ["fast", "slow"], [], ["a", "very-long", "list-of-formats"], ["on", "off"]])
 

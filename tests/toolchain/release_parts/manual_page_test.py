@@ -29,7 +29,7 @@ class ManualPage(unittest.TestCase):
         self.assertTrue(self.page.startswith(".Dd September 21, 2026\n"))
 
     @unittest.skipUnless(shutil.which("mandoc"), "mandoc is not installed")
-    def test_mandoc_has_no_complaint(self) -> None:
+    def test_mandoc_reports_no_problem(self) -> None:
         done = subprocess.run(["mandoc", "-Tlint"], input=self.page, capture_output=True, text=True, check=False)
         self.assertEqual((done.stdout, done.stderr, done.returncode), ("", "", 0))
 

@@ -45,14 +45,14 @@ class Refusals(unittest.TestCase):
         self.assertEqual(done.stdout, "")
         return done.stderr
 
-    def test_another_version_than_that_of_the_tree(self) -> None:
+    def test_a_version_other_than_that_of_the_tree_is_refused(self) -> None:
         self.assertEqual(
             self.refused("1.08"),
             "toolchain/release: 1.08 is not the version of this tree, 1.07; change kFirmwareVersion in "
             "firmware/model/model.hpp, or release 1.07\n",
         )
 
-    def test_changes_that_are_not_committed(self) -> None:
+    def test_a_tree_with_uncommitted_changes_is_refused(self) -> None:
         self.write("new", "")
         self.assertEqual(
             self.refused("1.07"),
@@ -60,13 +60,13 @@ class Refusals(unittest.TestCase):
             "lists\n",
         )
 
-    def test_a_folder_that_exists(self) -> None:
+    def test_an_existing_folder_is_refused(self) -> None:
         self.assertEqual(
             self.refused("1.07", str(self.tree)),
             f"toolchain/release: {self.tree} already exists; remove it, or name another folder\n",
         )
 
-    def test_a_version_without_a_section_in_the_changelog(self) -> None:
+    def test_a_version_without_a_section_in_the_changelog_is_refused(self) -> None:
         self.assertEqual(
             self.refused("1.07"),
             ".github/CHANGELOG.md: has no section for this release; add the heading '## 1.07 - YYYY-MM-DD'\n",
@@ -78,7 +78,7 @@ class Refusals(unittest.TestCase):
             ".github/CHANGELOG.md: has no section for this release; add the heading '## Unreleased'\n",
         )
 
-    def test_wrong_arguments(self) -> None:
+    def test_wrong_arguments_are_refused(self) -> None:
         for words in ((), ("--help",), ("1.07", "a", "b")):
             self.assertTrue(self.refused(*words).startswith("Usage: toolchain/release"))
 
