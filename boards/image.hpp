@@ -9,9 +9,10 @@
 namespace ex9000::board {
 
 #ifdef EX9000_IMAGES
-static_assert(kModels.size() == EX9000_IMAGES,
-              "a row of the model table has no image; begin the row with {\"EX9..., inputs, outputs, so that "
-              "boards/CMakeLists.txt reads it");
+static_assert(
+    kModels.size() == EX9000_IMAGES,
+    "a row of the model table has no image; begin the row with a brace, the quoted name, and the numbers of "
+    "inputs and outputs, because boards/CMakeLists.txt finds rows by this pattern");
 #endif
 
 #ifdef EX9000_PRESET

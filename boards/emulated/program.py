@@ -29,8 +29,8 @@ class Machine(Protocol):
         """Returns the time in seconds within which `carry` must be called."""
 
     def carry(self, requests: bytes, ready: list[int]) -> bytes:
-        """Takes bytes of the master and returns bytes of the module. `ready`: the descriptors of `watched` that are
-        readable.
+        """Takes the bytes from the master and returns the bytes from the module. `ready`: the descriptors of `watched`
+        that are readable.
 
         Does not wait. Raises Ended if the emulator has ended.
         """
@@ -102,5 +102,5 @@ def _carry_bytes(machine: Machine, terminal: PseudoTerminal, signal_descriptor: 
             return
         if terminal.open_events in ready:
             terminal.process_open_events()
-        # The terminal is always read, because a master may have written and closed it.
+        # The terminal is always read, because a master may have written bytes and then closed it.
         terminal.write(machine.carry(terminal.read(), ready))

@@ -1,4 +1,5 @@
-// The Raspberry Pi Pico W. Its LED is connected to the radio chip, so the status LED is a part of the module.
+// The Raspberry Pi Pico W. Its LED is connected to the radio chip, so the module requires an external status
+// LED.
 #pragma once
 
 #include "boards/pico/module.hpp"

@@ -22,7 +22,8 @@ class InputEdges {
 
   /// Counts one edge on `channel`, or two edges if `level`, the present level of the channel, is the same as
   /// before. The edge interrupt calls this when the hardware has flagged an edge. Ignores the call if
-  /// `channel` is kMaxInputs or greater. `now` has an effect only if `needs_times()`.
+  /// `channel` is kMaxInputs or greater. `now` must be the current time if `needs_times()`; otherwise it has
+  /// no effect.
   void on_edge(unsigned channel, bool level, Time now);
 
   /// Sets whether filters need the times of edges from now on. Without filters, an interrupt need not read
@@ -50,7 +51,7 @@ class InputEdges {
 /// Levels, latches and counters as the protocols read them. The order is: inversion, filter, everything else.
 /// For the main loop only.
 ///
-/// A channel without filter counts every edge. With a filter, a level counts as one edge when it has been
+/// A channel without a filter counts every edge. With a filter, a level counts as one edge when it has been
 /// stable for the filter time since the last edge.
 class Inputs {
  public:

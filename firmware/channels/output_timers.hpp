@@ -13,12 +13,13 @@ namespace ex9000 {
 /// than a Deadline permits (time.hpp). For the main loop only.
 class OutputTimers {
  public:
-  /// Starts the timer of `channel` with `units` x 0.1 s, 1 to 65535. A running timer starts again.
+  /// Starts the timer of `channel` with a time of `units` x 0.1 s. `units`: 1 to 65535. A running timer
+  /// starts again.
   void start(unsigned channel, std::uint16_t units, Time now);
   /// Stops the timers of `channels`, bit n for channel n.
   void stop(std::uint16_t channels) { running_ = static_cast<std::uint16_t>(running_ & ~channels); }
-  /// Stops the timers that have expired and returns their channels, bit n for channel n. Call this in every
-  /// pass of the main loop, at least every 30 minutes.
+  /// Stops the timers that have expired and returns their channels, bit n for channel n. The main
+  /// loop calls this in every pass. Two calls must be at most 30 minutes apart.
   std::uint16_t expire(Time now);
 
   /// Returns the channels whose timer is running; bit n is channel n.

@@ -321,8 +321,7 @@ Parsed parse_arguments(int argc, const char* const* argv) {
       ->type_name("[HOST:]PORT");
   app.add_option("--serial", texts.line.serial, "connect the modules to a real line through this serial port")
       ->type_name("DEVICE");
-  app.add_flag("--echo", texts.line.echo,
-               "expect that the adapter of the serial port receives what it sends");
+  app.add_flag("--echo", texts.line.echo, "ignore the echo of a serial adapter that receives what it sends");
   app.add_option("--baud", texts.line.baud,
                  "set the line's rate until a master sets one (default: the first module's)")
       ->type_name("RATE");

@@ -17,10 +17,10 @@ ADDR is the address in hex, as in `$AA2` (default: 01). The keys:
   edge=falling|rising      sets the edge that the counters count
   name=TEXT                sets the name that `$AAM` reads
   init=on|off              ties INIT* to GND: ASCII at address 00, 9600 baud
-  eeprom=FILE              keeps the settings in this file; the file wins over the other keys
+  eeprom=FILE              keeps the settings in this file; the file overrides the other keys
 
-BUS.json in place of modules describes any number of lines. --example prints one, --schema its JSON Schema. The
-command line cannot repeat what a bus file says about ports, rates and modules.
+A bus file, BUS.json, takes the place of the modules and describes any number of lines. --example prints an example,
+--schema prints the JSON Schema. Options for ports, rates and modules cannot be combined with a bus file.
 
 Commands of the control socket: one on each line, with the reply `ok ...` or `error: ...`. N is a module's position
 on the command line, or in the bus file through all lines, from 1:
@@ -37,13 +37,14 @@ them it is a scenario for the modules or the bus file on the command line. A sce
 )";
 
 constexpr const char* kFaultHelp = R"(
-A fault is TROUBLE [VALUE] [WHEN], for --fault, for bus files and for the control socket. --fault takes N before it
-for a fault of one module. The troubles:
+A fault is TROUBLE [VALUE] [WHEN], for --fault, for bus files and for the control socket. For --fault, write
+N before a fault of one module. The troubles:
 )";
 
 constexpr const char* kScheduleHelp = R"(
   WHEN is one of: at 12.5s | every 5s | every 10th reply | with probability 0.01 (of each reply) |
-  after 3 writes (to the EEPROM). Without WHEN the fault is always on. `for 2s` limits how long it lasts.
+  after 3 writes (to the EEPROM). Without WHEN the fault begins immediately and stays active;
+  power-cut, foreign-traffic and hang then occur once. `for 2s` limits how long the fault lasts.
   Times are those of the log, in us, ms, s, min or h.
 
 An input that changes by itself is C square PERIOD [for TIME] or C key at TIME|every TIME for TIME [bounce TIME], for

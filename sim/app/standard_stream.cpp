@@ -40,7 +40,8 @@ bool StandardStream::write(const std::string& text) {
 
 /// Waits until the stream accepts output. Returns false if `gives_up` has returned true.
 bool StandardStream::wait_for_room() const {
-  // A signal interrupts poll() only if this thread receives the signal. The limit is in milliseconds.
+  // Another thread may receive the signal, which then does not interrupt poll(). Therefore poll() has a time
+  // limit, in milliseconds.
   constexpr int kAskEvery = 100;
   pollfd stream{file_, POLLOUT, 0};
   while (poll(&stream, 1, 0) == 0) {

@@ -171,7 +171,8 @@ void Bus::begin_sampling() {
     if (!receiver.samples && has_to_sample(receiver)) {
       receiver.samples = true;
       ++sampling_;
-      // Before the first of these bytes began, the line was idle, or the receiver got the bytes unchanged.
+      // The sampler begins at the first byte that has not ended: until then, the line was idle or the
+      // receiver got each byte unchanged.
       receiver.sampler.skip_to(std::max(receiver.sampler.position(), first->start));
       next_sample_ = std::min(next_sample_, receiver.sampler.next(receiver.mode, clock_.virtual_now()));
     }

@@ -106,9 +106,10 @@ class Bus {
   /// Adds a station, which does not listen yet. `station` must live as long as the bus is used; the returned
   /// end of the wires is valid for the same time.
   BusEnd& attach(Station& station);
-  /// `observer` must live as long as the bus is used.
+  /// Adds an observer. `observer` must live as long as the bus is used.
   void observe(BusObserver& observer) { observers_.push_back(&observer); }
-  /// From now on `disturbance` may change each byte that is sent. It must live as long as the bus is used.
+  /// Lets `disturbance` change the bytes that are sent from now on, in place of an earlier one. `disturbance`
+  /// must live as long as the bus is used.
   void disturb(Disturbance& disturbance) { disturbance_ = &disturbance; }
 
   /// Returns the time of the next event of the bus or of a station.

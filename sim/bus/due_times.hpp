@@ -12,9 +12,10 @@ namespace ex9000::sim {
 using hal::doubles::kNever;
 using hal::doubles::VirtualTime;
 
-/// Each station has one due time. Blocks of stations have an earliest due time. After a change of due times,
-/// `next` searches only the blocks that have changed. Often all stations set their times between two calls of
-/// `next`, for example receivers after a byte, so a change of a due time must cost little.
+/// Stores one due time for each station, and the earliest due time of each block of stations. After a change
+/// of due times, `next` searches only the blocks that have changed. Often all stations set their times
+/// between two calls of `next`, for example receivers after a byte, so a change of a due time must cost
+/// little.
 class DueTimes {
  public:
   /// Adds a station without a due time. Returns its number, counted from 0.
@@ -65,8 +66,8 @@ class DueTimes {
   VirtualTime running_ = kNoTime;   ///< the argument of `run_due` while it runs
   std::size_t next_to_run_ = 0;     ///< no station before this one is due at `running_`
   // Results of the last search.
-  mutable std::vector<VirtualTime> earliest_of_;  ///< of each block
-  mutable std::vector<unsigned char> changed_;    ///< for each block: 1 if a due time has changed since then
+  mutable std::vector<VirtualTime> earliest_of_;  ///< the earliest due time of each block
+  mutable std::vector<unsigned char> changed_;    ///< for each block: 1 if a due time has changed since
   mutable VirtualTime earliest_ = kNever;
   mutable bool any_changed_ = false;
 };

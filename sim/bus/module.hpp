@@ -51,7 +51,7 @@ class SimulatedModule final : public Station {
   /// Connects INIT* to GND or releases it.
   void set_init(bool asserted);
   [[nodiscard]] bool init_asserted() const { return init_switch_.asserted(); }
-  /// Sets the level of an input channel, counted from 0. Has no effect on channels that the model lacks.
+  /// Sets the level of an input channel, counted from 0. The firmware ignores channels that the model lacks.
   void set_input(unsigned channel, bool level);
   /// Applies `count` full pulses at this instant. Each pulse changes the level and changes it back.
   void pulse_input(unsigned channel, std::uint32_t count);
@@ -129,8 +129,8 @@ class SimulatedModule final : public Station {
   void run_memory();
   void run_timers();
   [[gnu::noinline]] void receive_after_silence(std::uint8_t byte, ByteStatus status);
-  /// Returns whether the main loop has work to do. A host OK could wait until the next turn, but viewers show
-  /// the remaining time of the host watchdog.
+  /// Returns whether the main loop has work to do. A waiting host OK counts as work: viewers show the
+  /// remaining time of the host watchdog, which would otherwise be outdated.
   [[nodiscard]] bool has_work() const {
     return mcu_->device.has_work() || mcu_->device.module().host_ok_waits();
   }

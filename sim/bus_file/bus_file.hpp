@@ -11,7 +11,8 @@ namespace ex9000::sim {
 bool is_bus_file(const std::string& argument);
 
 /// Reads and checks a bus file. Throws std::invalid_argument with a one-line message, `PATH:LINE: KEY: what
-/// is wrong; what would be right`.
+/// is wrong; what would be right`. The message has no LINE if the file cannot be read, and no KEY if the
+/// error does not concern a key.
 Setup read_bus_file(const std::string& path);
 /// Parses `text` as the content of `path`. Throws like read_bus_file.
 Setup parse_bus_file(const std::string& path, const std::string& text);

@@ -124,7 +124,7 @@ const std::array<BusFileKey<LineSetup>, 12> line_keys{{
     {"baud", kRate, "the line's rate until a master sets one (default: the first module's)",
      [](LineSetup& line, const Node& value) { line.baud = parse_baud_rate(value.number_or_text()); }},
     {"format", kFormat,
-     "the line's format, because a pseudo-terminal and TCP carry none (default: the first module's)",
+     "the line's format; a pseudo-terminal and TCP do not carry one (default: the first module's)",
      [](LineSetup& line, const Node& value) { line.format = parse_line_format(value.text()); }},
     {"line", R"({"enum": ["paced", "instant"]})",
      "paced: bytes take as long as on a real line; instant: bytes take no time (default: paced)",

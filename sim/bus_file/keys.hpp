@@ -1,5 +1,5 @@
-// The keys of a bus file, one row for each key. The reader, its messages, the JSON Schema and the
-// documentation are made from these tables.
+// The keys of a bus file, one row for each key. The reader and its messages use these tables. The JSON Schema
+// and the table of keys in the documentation are generated from them.
 #pragma once
 
 #include <array>

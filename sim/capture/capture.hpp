@@ -32,7 +32,7 @@ class Capture {
   /// (since 1970-01-01 00:00:00 UTC) that corresponds to time 0 of the line. Returns the line's number for
   /// `write`.
   std::size_t add_line(const std::string& name, std::size_t modules, std::chrono::nanoseconds began);
-  /// Writes a frame of a line. Any thread may call this.
+  /// Writes a frame of a line. Several threads may call this at the same time, but not during `add_line`.
   void write(std::size_t line, const Frame& frame);
 
  private:

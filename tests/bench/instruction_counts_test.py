@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Tests how tests/bench/instructions evaluates a log and counts."""
+"""Tests how tests/bench/instructions evaluates an execution log and computes results from instruction counts."""
 
 import sys
 import unittest
@@ -60,7 +60,7 @@ def count(log):
 class Passes(unittest.TestCase):
     BYTE = interrupt(NUMBERS.line, 0x2000, received(1), 0x2002)
 
-    def test_a_pass_is_all_interrupts_and_all_turns_that_they_wake(self):
+    def test_a_pass_is_all_interrupts_and_all_turns_that_they_start(self):
         log = ASLEEP + turn(self.BYTE) + turn(interrupt(NUMBERS.silence, 0x3000), *TURN)
         log += turn(interrupt(NUMBERS.line, 0x2000, SENT)) + turn(interrupt(NUMBERS.line_end, 0x4000), 0x500)
         its, found = count(log)
@@ -68,20 +68,20 @@ class Passes(unittest.TestCase):
         self.assertEqual((its.received_byte.count, its.sent_byte.count), (2, 1))
         self.assertTrue(its.answered)
 
-    def test_a_pass_excludes_the_tick_and_the_turn_that_the_tick_wakes(self):
+    def test_a_pass_excludes_the_tick_and_the_turn_that_the_tick_starts(self):
         its, found = count(ASLEEP + turn(self.BYTE) + turn(TICK, *TURN) + turn(self.BYTE))
         self.assertEqual(found, 2 * (2 + 2))
         self.assertEqual(its.ticks_turn.count, 2 + 32)
 
-    def test_at_rest_all_interrupts_and_their_turns_count(self):
+    def test_at_rest_all_interrupts_and_turns_count_except_those_of_the_alarm_of_the_tool(self):
         log = ASLEEP + turn(TICK, *TURN) + turn(interrupt(execution.ALARM, 0x5000))
         log += turn(interrupt(NUMBERS.wake, 0x6000), 0x500)
         self.assertEqual(count(log)[0].idling.count, (2 + 2 + 32) + (1 + 2 + 1))
 
-    def test_a_turn_of_a_byte_and_a_tick_excludes_the_work_of_the_tick(self):
+    def test_a_pass_excludes_the_work_of_the_tick_in_a_turn_that_also_handles_a_byte(self):
         self.assertEqual(count(ASLEEP + turn(self.BYTE + TICK, TICKS_OWN, *TURN))[1], 2 + 2 + 32)
 
-    def test_a_pass_excludes_a_turn_that_the_alarm_of_the_tool_wakes(self):
+    def test_a_pass_excludes_a_turn_that_the_alarm_of_the_tool_starts(self):
         log = ASLEEP + turn(interrupt(execution.ALARM, 0x5000)) + turn(self.BYTE)
         self.assertEqual(count(log)[1], 2 + 2)
 
@@ -90,7 +90,7 @@ class Passes(unittest.TestCase):
         log = ASLEEP + executed(0x102) + byte + executed(0x400) + [STOPPED] + executed(0x400, SLEEP)
         self.assertEqual(count(log)[1], 2 + 3)
 
-    def test_the_module_is_at_rest_from_the_sleep_of_the_main_loop_to_the_next_interrupt(self):
+    def test_the_module_is_at_rest_from_the_sleep_of_the_main_loop_to_the_next_interrupt_other_than_the_tick(self):
         self.assertTrue(count(ASLEEP + turn(self.BYTE) + turn(TICK))[0].at_rest)
         self.assertFalse(count(ASLEEP + executed(0x102) + self.BYTE)[0].at_rest)
 
@@ -103,7 +103,7 @@ class Passes(unittest.TestCase):
 
 
 class Capacity(unittest.TestCase):
-    def test_the_count_of_edges_is_interpolated_linearly(self):
+    def test_the_instruction_count_for_more_edges_is_extrapolated_linearly(self):
         found = capacity.Found()
         found.edges = {1: 80, 3: 120, 5: 160}
         self.assertEqual(found.edges_at_once(6), 180)

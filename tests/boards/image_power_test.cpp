@@ -58,6 +58,9 @@ Settings settings_before(const Model& model, const StoringCommand& command) {
   return settings;
 }
 
+/// Includes the time of a timeout, and 2 ms for each store at which the module stops.
+constexpr milliseconds kStoresWithin{3000};
+
 /// A module whose emulator is killed after a number of stores to the registers of the I2C master.
 class CutModule {
  public:
@@ -93,7 +96,7 @@ class CutModule {
     module_.watch_stores(kI2c, kRegisters);
     bool stopped = true;
     for (unsigned i = 0; i < stores && stopped; ++i) {
-      stopped = module_.run_to_store(milliseconds(700));
+      stopped = module_.run_to_store(kStoresWithin);
     }
     answered_ = !module_.hear(module_.mode()).empty();
     module_.kill();

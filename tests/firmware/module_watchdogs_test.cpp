@@ -1,4 +1,4 @@
-// Tests a module's host watchdog and its hardware watchdog, with a resolution of a microsecond and while the
+// Tests a module's host watchdog and its module watchdog, with a resolution of a microsecond and while the
 // memory is busy.
 #include <gtest/gtest.h>
 
@@ -21,7 +21,7 @@ using std::chrono::seconds;
 
 // --- wire.md 6: host watchdog ---
 
-TEST(HostWatchdog, HostOksMoreFrequentThanTheTimeoutPreventExpiryAtAnyBaudRate) {
+TEST(HostWatchdog, HostOksAtIntervalsShorterThanTheTimeoutPreventExpiryAtAnyBaudRate) {
   for (const std::uint32_t baud : kBaudRates) {
     ModuleBench bench("EX9068D-M,baud=" + std::to_string(baud));
     const Bytes host_ok = with_crc({1, 0x03, 0x30, 0x38, 0x00, 0x00});
@@ -68,7 +68,7 @@ TEST(HostWatchdog, RunsEvenIfTheInitSwitchBouncesContinuously) {
   EXPECT_EQ(bench.ask("~010"), "!0104");  // the module has started, and treats INIT* as released
 }
 
-TEST(HostWatchdog, ExpiresAfterEveryTimeoutNeverEarlyAndAtMostAMillisecondLate) {
+TEST(HostWatchdog, ExpiresNeverEarlyAndAtMostAMillisecondLateForEveryTimeoutValue) {
   for (unsigned timeout = 1; timeout <= 255; ++timeout) {
     ModuleBench bench("EX9043D");
     ASSERT_EQ(bench.ask("@010001"), ">");
@@ -98,7 +98,7 @@ TEST(HostWatchdog, ReportsItsExpiryTime) {
   EXPECT_TRUE(bench.module().module().state().settings.timeout_status);
 }
 
-TEST(HostWatchdog, EnablingStartsItWhenItIsStored) {
+TEST(HostWatchdog, StartsWhenTheEnableCommandHasBeenStored) {
   ModuleBench bench("EX9043D");
   ASSERT_EQ(bench.ask("@010001"), ">");
   std::vector<OutputChange> changes;

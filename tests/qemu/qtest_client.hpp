@@ -24,7 +24,7 @@ class QtestClient {
   void write(std::uint32_t address, const std::vector<std::uint8_t>& bytes);
   /// Returns a command that writes a word, for `carry_out`.
   static std::string write_command(std::uint32_t address, std::uint32_t value);
-  /// Sends all commands in one piece and waits until the emulator has executed them.
+  /// Sends all commands in one write and waits until the emulator has executed them.
   void carry_out(const std::string& commands);
   /// Fills memory.
   void fill(std::uint32_t address, std::uint32_t size, std::uint8_t byte);

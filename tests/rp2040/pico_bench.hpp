@@ -67,7 +67,7 @@ class PicoBench {
   /// Lets time pass until the LED changes, at most `patience`. Returns whether it has changed.
   bool led_changes(std::chrono::nanoseconds patience);
 
-  /// Returns the numbers that the emulator has counted since `begin_anew`, by name; see emulator.js.
+  /// Returns the emulator's event counts since `begin_anew`, by name; see emulator.js.
   std::map<std::string, long> counts();
   std::string execute(const std::string& command) { return emulator_.execute(command); }
 

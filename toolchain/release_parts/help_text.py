@@ -42,7 +42,7 @@ class Help:
 
 
 def read(text: str) -> Help:
-    """Returns the parts of a help text. Raises UnknownHelp."""
+    """Returns the parts of a help text. Raises UnknownHelp if the text does not have the expected form."""
     lines = text.rstrip().splitlines()
     if len(lines) < 2 or not lines[1].startswith("Usage: "):
         raise UnknownHelp("the help text does not begin with a description and 'Usage:'")

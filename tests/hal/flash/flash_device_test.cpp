@@ -26,7 +26,7 @@ constexpr std::uint32_t kBaud = 115'200;
 constexpr std::uint8_t kBaudCode = 0x0A;
 constexpr std::uint64_t kReplyLimit = 200'000;  ///< us after the request, wire.md section 7
 
-/// The board interface is described in hal/board.hpp. The clock is the time of the chip.
+/// A board (hal/board.hpp) that has only a flash, timers and a line. Its clock returns the time of the chip.
 struct FlashBoard {
   struct Clock {
     const FlashChip* chip;
@@ -176,7 +176,7 @@ class ModuleOnFlash {
     unsigned turns = 0;
     while (device_.turn() || device_.has_work()) {
       chip_.run(kTurn);
-      ASSERT_LT(++turns, kMostTurns) << "the main loop does not come to rest";
+      ASSERT_LT(++turns, kMostTurns) << "the main loop still has work after 1000 turns";
     }
   }
 
@@ -214,7 +214,7 @@ TEST(FlashDevice, AnIdleModuleErasesAllFreeSectorsInAdvance) {
   EXPECT_LE(module.latency, 10'000U);
 }
 
-TEST(FlashDevice, StoresHalfASecondApartGetRepliesInTimeWithErasesOf400Milliseconds) {
+TEST(FlashDevice, StoresWithShortPausesGetRepliesInTimeWithErasesOf400Milliseconds) {
   FlashChip chip = flash_at_115200();
   chip.times = FlashChip::kLongest;
   ModuleOnFlash module(chip);
@@ -223,7 +223,7 @@ TEST(FlashDevice, StoresHalfASecondApartGetRepliesInTimeWithErasesOf400Milliseco
     module.run(500'000 - i % 50 * 7'333);
   }
   EXPECT_LE(module.longest, kReplyLimit);
-  std::printf("stores half a second apart, erase 400 ms: longest reply after %.1f ms\n",
+  std::printf("stores 140 to 500 ms apart, erase 400 ms: longest reply after %.1f ms\n",
               static_cast<double>(module.longest) / 1e3);
 }
 

@@ -106,9 +106,9 @@ class PageStoreCuts : public testing::Test {
     }
   }
 
-  /// Cuts the power at each operation of `write`. For each operation, tries all states in which a cut may
-  /// leave the bytes; if `in_every_way` is false, tries only some of them. Then carries out the write without
-  /// a cut.
+  /// Cuts the power at each operation of `write`. For each operation, tries the tears that
+  /// `tears_of` returns; if `in_every_way` is false, tries only some of them. Then carries out the write
+  /// without a cut.
   void cut_everywhere(State& state, const Write& write, bool in_every_way = true) {
     State whole = state;
     bool reported = false;
@@ -214,8 +214,7 @@ TEST_F(PageStoreCuts, ACutWithTheLongestTimesOfTheFlashLeavesTheOldOrTheNewPage)
   }
 }
 
-// The number of pairs grows with the square of the number of cuts, so this is a random sample with a fixed
-// seed.
+// There are too many sequences of cuts to test them all, so this is a random sample with a fixed seed.
 TEST_F(PageStoreCuts, SeveralCutsInARowLeaveTheOldOrTheNewPage) {
   constexpr int kRounds = 100;
   constexpr int kCutsInARow = 6;

@@ -101,7 +101,8 @@ std::string extension(const Module& module, Random& random) {
   return hex(address, 4) + (random.once_in(3) ? hex(extension_content(module, address, random), 4) : "");
 }
 
-/// Returns the number of one of the cases in `command`. A module without extensions does not get theirs.
+/// Returns the number of one of the cases in `command`. For a module without extensions,
+/// never returns a case of an extension.
 unsigned kind_of_command(const Module& module, Random& random) {
   constexpr unsigned kAll = 39;
   constexpr unsigned kFirstExtension = 29;

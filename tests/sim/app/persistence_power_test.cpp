@@ -99,8 +99,8 @@ class PowerFailureChecker {
     acknowledged_ = true;
   }
 
-  /// Sends up to two stores and waits for their replies. Then sends another store, but the module might not
-  /// reply to it in time.
+  /// Sends up to two stores and waits for their replies. Then sends another store and waits for its reply,
+  /// but only for a random time that may be too short.
   void begin_cut(Simulator& simulator) {
     for (unsigned i = stores_.below(3); i > 0; --i) {
       const Store store = begin(simulator);

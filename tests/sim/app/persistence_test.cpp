@@ -41,8 +41,7 @@ TEST(Persistence, AMissingFileIsCreatedFromThePresetsAndKeptAfterTheProgramEnds)
   }
 }
 
-// The files contain what earlier firmware has stored, in each layout, for each model that this firmware
-// supported.
+// Each image contains what this firmware or an earlier version of it has stored.
 TEST(Persistence, AFileOfEarlierFirmwareGivesAllItsSettingsAndIsNotWritten) {
   for (const StoredBytes& stored : all_stored_bytes()) {
     const Directory directory;
@@ -164,8 +163,8 @@ TEST(Persistence, AHostWatchdogTimeoutSurvivesARestart) {
     EXPECT_EQ(simulator.ask("@011001"), ">");
     EXPECT_EQ(simulator.ask("~015S"), "!01");
     EXPECT_EQ(simulator.ask("~013101"), "!01");
-    // Polls instead of waiting for text in the log: this test does not read the log meanwhile, and a full
-    // pipe would stop the program.
+    // Polls through the control socket, because commands on the line would be logged. This test does not read
+    // the log meanwhile, and a full pipe would stop the program.
     while (simulator.tell("1 led") != "flashing") {
     }
     EXPECT_EQ(simulator.ask("~010"), "!0184");

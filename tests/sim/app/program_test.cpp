@@ -91,8 +91,8 @@ TEST(Program, AFullDiskForStandardOutputIsReported) {
   }
 }
 
-/// Waits until at least 7/8 of a pipe is in use. A page of a pipe may contain only whole lines, so that the
-/// pipe never becomes completely full. Returns false after 60 s, which happens only if the program has ended.
+/// Waits until at least 7/8 of a pipe is in use. A page of a pipe may contain only whole lines, so the
+/// pipe may never be full. Returns false after 60 s, which happens only if the program has ended.
 bool wait_until_full(int pipe) {
   constexpr std::chrono::seconds kHang{60};
   const int capacity = fcntl(pipe, F_GETPIPE_SZ);
@@ -244,8 +244,8 @@ TEST(Program, WrongArgumentsGiveAOneLineErrorAndStatus2AndCreateNoFiles) {
 }
 
 TEST(Program, WaitingForAnEventInTheFarFutureUsesNoProcessorTime) {
-  // A year at the lowest speed takes a thousand years, which is more than a clock can count. Without power
-  // there is no earlier event.
+  // A year at the lowest speed takes a thousand years, which is more than a clock can count. In the first
+  // run, the fault "gone" switches off the module's power, so the module causes no earlier event.
   for (const std::vector<std::string>& far :
        {std::vector<std::string>{"--fault", "gone", "--fault", "gone at 8760h"}, {"--for", "8760h"}}) {
     std::vector<std::string> arguments{"EX9042D", "--speed", "0.001"};
@@ -263,7 +263,7 @@ TEST(Program, WaitingForAnEventInTheFarFutureUsesNoProcessorTime) {
     const unsigned long before = ticks();
     // The period in which the processor time is measured. A program that polls would use most of it.
     std::this_thread::sleep_for(std::chrono::milliseconds(500));
-    EXPECT_LT(ticks() - before, 5U) << "hundredths of a second, of 50";
+    EXPECT_LT(ticks() - before, 5U) << "processor time, in units of 10 ms, within 500 ms";
     EXPECT_EQ(process.end(SIGTERM), 0);
   }
 }

@@ -75,7 +75,7 @@ TEST_F(BusTest, AByteTakesTenBitsAtItsSendersRate) {
   }
 }
 
-TEST_F(BusTest, AByteThatWasCutOffStaysOffWhenItsStationCutsOffAnotherByte) {
+TEST_F(BusTest, AByteThatWasCutOffStaysCutOffWhenItsStationCutsOffAnotherByte) {
   struct Sender final : Station {
     void run() override {}
   } sender;
@@ -88,11 +88,11 @@ TEST_F(BusTest, AByteThatWasCutOffStaysOffWhenItsStationCutsOffAnotherByte) {
   bus_.run_for(milliseconds(4));
   end.drive(true);
   end.put(0xFF, {9600});
-  bus_.run_for(microseconds(370));  // just after the middle of the data bit 2
+  bus_.run_for(microseconds(370));  // just after the middle of data bit 2
   end.drive(false);
   bus_.run_for(milliseconds(10));
   ASSERT_EQ(listener.heard.size(), 2U);
-  EXPECT_EQ(listener.heard[0].byte, 0xFE);  // 0.2 ms are the start bit and a data bit
+  EXPECT_EQ(listener.heard[0].byte, 0xFE);  // for 0.2 ms, the level is 0: start bit, data bit 0
   EXPECT_EQ(listener.heard[1].byte, 0xFF);
 }
 
@@ -170,7 +170,8 @@ TEST_F(BusTest, ADamagedByteOfTheMasterArrivesWithAParityErrorAndTheOthersAreGoo
   }
 }
 
-// The parity bit of 0x30 is 0, and a receiver without parity reads it as the stop bit. That of 0x31 is 1.
+// The parity bit of 0x30 is 0, so the receiver reads no stop bit there. The parity bit of 0x31 is 1, so the
+// receiver reads a stop bit.
 TEST_F(BusTest, AReceiverWithoutParityReadsTheParityBitAsTheStopBit) {
   const auto sender = master(9600, LineFormat::k8E1);
   Listener plain(bus_, 9600);

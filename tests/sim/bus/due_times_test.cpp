@@ -25,7 +25,7 @@ TEST(DueTimes, WithoutStationsNothingIsEverDue) {
   EXPECT_EQ(due(times, VirtualTime(1)), Stations());
 }
 
-TEST(DueTimes, RunInTheOrderOfTheStations) {
+TEST(DueTimes, DueStationsRunInTheOrderOfTheirNumbers) {
   DueTimes times;
   for (const int when : {30, 10, 20, 10, 40}) {
     times.set(times.add(), VirtualTime(when));
@@ -37,7 +37,7 @@ TEST(DueTimes, RunInTheOrderOfTheStations) {
   EXPECT_EQ(due(times, VirtualTime(30)), Stations());
 }
 
-TEST(DueTimes, EqualThoseOfASearchThroughAllStations) {
+TEST(DueTimes, ResultsEqualThoseOfASearchThroughAllStations) {
   std::mt19937_64 random(1);
   DueTimes times;
   std::vector<VirtualTime> expected;

@@ -1,4 +1,4 @@
-// Tests a module's connection to the wires without a module.
+// Tests ModuleWire, which connects a module to the wires. The tests use no module.
 #include "sim/bus/module_wire.hpp"
 
 #include <gtest/gtest.h>
@@ -103,7 +103,7 @@ TEST_F(ModuleWireTest, LimitsTheNumberOfStoredLateReplies) {
   EXPECT_GT(wires.happened.size(), 65'000U);
 }
 
-TEST_F(ModuleWireTest, ReportsWhichReplyIsOnTheWiresOrDropped) {
+TEST_F(ModuleWireTest, ReportsTheStartAndEndOfEachReplyOnTheWiresAndEachAbortedReply) {
   watch();
   fate.late_by = 20ms;
   reply(5ms, 'a');
@@ -189,7 +189,7 @@ TEST_F(ModuleWireTest, AbortStopsALateReplyAndDropsAWaitingOne) {
   EXPECT_EQ(wire.next(), kNever);
   EXPECT_FALSE(wire.sends_late());
   reply(60ms, 'b');
-  wire.abort();  // before it has begun
+  wire.abort();  // before the reply begins on the wires
   run_until(200ms);
   EXPECT_EQ(wires.happened.size(), 3U);
 }

@@ -358,7 +358,7 @@ std::size_t compare(const Trouble& trouble, std::uint64_t seed) {
 }
 
 /// EX9000_RECEPTION_SEEDS sets the number of seeds.
-TEST_P(Reception, EqualsThatOfReceiversThatSampleEveryBit) {
+TEST_P(Reception, StationsReceiveTheSameAsReceiversThatSampleEveryBit) {
   const std::uint64_t seeds = number_in_environment("EX9000_RECEPTION_SEEDS", 1);
   for (std::uint64_t seed = 1; seed <= seeds && !HasFailure(); ++seed) {
     EXPECT_GT(compare(GetParam(), seed), 5'000U) << "seed " << seed;

@@ -40,7 +40,7 @@ std::string refusal(const std::string& path) {
   return "";
 }
 
-TEST(CaptureFile, BeginCreatesItAndEachBlockIsAppended) {
+TEST(CaptureFile, EachBlockIsInTheFileWhenAppendReturns) {
   const Directory directory;
   CaptureFile file(directory / "a", kPlace);
   file.begin();
@@ -101,7 +101,7 @@ TEST(CaptureFile, AFullDiskIsReported) {
   file.begin();
   try {
     file.append(block("one"));
-    FAIL() << "it was written";
+    FAIL() << "the write to a full device succeeded";
   } catch (const std::runtime_error& error) {
     EXPECT_EQ(std::string(error.what()), kPlace + "/dev/full: cannot be written: No space left on device");
   }

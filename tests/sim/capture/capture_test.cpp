@@ -26,7 +26,7 @@ using Bytes = std::vector<std::uint8_t>;
 const std::string kSent = "0";  // frame.p2p_dir
 const std::string kReceived = "1";
 
-/// A simulator in stepped time. It is killed before the test reads its capture.
+/// A simulator in stepped time. `decoded` kills the simulator before it reads the capture.
 class Captured {
  public:
   explicit Captured(std::vector<std::string> arguments) : simulator_(with_capture(std::move(arguments))) {}
@@ -250,7 +250,7 @@ TEST(Capture, ForeignTrafficIsNotShownAsAReply) {
   EXPECT_EQ(packets[0].at("_ws.col.Info"), "   Query: Unit:   5, Func:   1: Read Coils");
 }
 
-TEST(Capture, OfARunInVirtualTimeIsReproducible) {
+TEST(Capture, ARunInVirtualTimeGivesAReproducibleCapture) {
   const Directory directory;
   for (const char* name : {"a", "b"}) {
     const Finished finished =
@@ -300,7 +300,7 @@ TEST(Capture, IsTheSameAtEverySpeed) {
   }
 }
 
-TEST(Capture, OfAPlayHasOneInterfacePerRun) {
+TEST(Capture, APlayGivesOneInterfacePerRun) {
   const Directory directory;
   write_file(directory / "a.txt",
              "source: manual\nmodel: EX9042D-M\nmodel: EX9043D-M\npreset: protocol=modbus\n\n"
@@ -327,7 +327,7 @@ TEST(Capture, OfAPlayHasOneInterfacePerRun) {
   }
 }
 
-TEST(Capture, TheLimitsOfWiresharksDecodingMatchTheReadme) {
+TEST(Capture, TheLimitsOfWiresharksDecodingMatchTheDocumentation) {
   Captured line({"EX9042D-M@01"});
   line.tell(with_crc({1, 0x46, 0}));
   line.tell(with_crc({1, 0x11}));
@@ -435,7 +435,8 @@ TEST(Capture, NeverOverwritesAFileThatTheRunUses) {
       command.insert(command.end(), named.begin(), named.end());
       const Finished finished = run(command, directory.path());
       EXPECT_EQ(finished.status, 2) << finished.error;
-      // While the target of the link does not exist, the program cannot detect that both are the same file.
+      // While the target of the link does not exist, the program cannot detect that the link leads to the
+      // EEPROM file.
       if (path != "n.bin" || !named.empty()) {
         EXPECT_NE(finished.error.find(": is " + what + ", "), std::string::npos) << finished.error;
       }

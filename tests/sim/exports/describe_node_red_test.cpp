@@ -1,4 +1,4 @@
-// Tests the requests in the flow for Node-RED against wire.md. node_red_test.py checks its form.
+// Tests the requests in the flow for Node-RED against wire.md. node_red_test.py checks the form of the flow.
 #include "sim/exports/formats.hpp"
 
 #include <gtest/gtest.h>
@@ -56,13 +56,13 @@ TEST(DescribeNodeRed, OverModbusTcpOnlyTheTypeOfTheClientDiffers) {
   EXPECT_EQ(flow, flow_of("EX9042D-M", {{"gateway", 502}, 0x0A}));
 }
 
-TEST(DescribeNodeRed, ReadsTheRegistersOfAModelWithOutputs) {
+TEST(DescribeNodeRed, ReadsTheCoilsAndRegistersOfAModelWithOutputs) {
   EXPECT_EQ(asked(flow_of("EX9042D-M"), "modbus-read"),
             (std::vector<std::string>{"Coil 0 13", "Coil 128 13", "Coil 160 13", "Coil 260 1", "Coil 269 1",
                                       "HoldingRegister 488 1"}));
 }
 
-TEST(DescribeNodeRed, ReadsTheRegistersOfAModelWithInputs) {
+TEST(DescribeNodeRed, ReadsTheCoilsAndRegistersOfAModelWithInputs) {
   EXPECT_EQ(asked(flow_of("EX9052D-M"), "modbus-read"),
             (std::vector<std::string>{"Coil 64 8", "Coil 96 8", "Coil 260 1", "Coil 269 1", "Input 0 8",
                                       "InputRegister 0 8", "HoldingRegister 488 1"}));

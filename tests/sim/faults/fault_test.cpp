@@ -88,14 +88,14 @@ TEST(Fault, UsualFaultsHasOneFaultOfEachKind) {
 
 // --- schedules ---
 
-TEST(FaultSchedule, AtIsReadWithItsTimeAndNoDuration) {
+TEST(FaultSchedule, AScheduleWithAtHasATimeAndNoDuration) {
   const Schedule schedule = parse_fault("gone at 12.5s").schedule;
   EXPECT_EQ(schedule.when, When::At);
   EXPECT_EQ(schedule.time, 12'500ms);
   EXPECT_FALSE(schedule.lasts);
 }
 
-TEST(FaultSchedule, EveryIsReadWithItsPeriodAndDuration) {
+TEST(FaultSchedule, AScheduleWithEveryHasAPeriodAndAnOptionalDuration) {
   const Schedule schedule = parse_fault("foreign-traffic 00 every 5s").schedule;
   EXPECT_EQ(schedule.when, When::EveryTime);
   EXPECT_EQ(schedule.time, 5s);
@@ -118,7 +118,7 @@ TEST(FaultSchedule, EveryNthReplyAndAProbabilityAreReadAsSchedulesOfReplies) {
   EXPECT_TRUE(probable.of_replies());
 }
 
-TEST(FaultSchedule, AfterWritesIsReadWithItsNumber) {
+TEST(FaultSchedule, AScheduleWithAfterWritesHasACount) {
   EXPECT_EQ(parse_fault("power-cut after 3 writes").schedule.when, When::AfterWrites);
   EXPECT_EQ(parse_fault("power-cut after 3 writes").schedule.count, 3U);
   EXPECT_EQ(parse_fault("power-cut after 1 write").schedule.count, 1U);

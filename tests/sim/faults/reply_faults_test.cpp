@@ -50,7 +50,7 @@ TEST(LateReply, KeepsTheOrderOfTheReplies) {
   EXPECT_EQ(bench.heard(), kName + "\r!01400600\r>0000\r!01D01.00\r");
 }
 
-TEST(LateReply, IsSentImmediatelyIfItsFaultIsRemovedAndTheNextReplyIsOnTime) {
+TEST(LateReply, IsSentImmediatelyIfItsFaultIsRemovedAndDoesNotDelayTheNextReply) {
   for (const bool all : {false, true}) {
     FaultBench bench;
     const std::size_t fault = bench.add("late-reply 1h");
@@ -90,7 +90,7 @@ TEST(LateReply, NoiseDamagesOnlyTheLateReply) {
   EXPECT_TRUE(bench.garbled());
 }
 
-TEST(LateReply, NoiseOfALostReplyDoesNotDamageTheNextReply) {
+TEST(LostReply, ItsNoiseDoesNotDamageTheNextReply) {
   FaultBench bench;
   bench.add("lost-reply every 2nd reply");
   bench.add("bit-errors 1 every 2nd reply");
@@ -109,7 +109,7 @@ TEST(LateDriver, IsDisabledImmediatelyIfItsFaultIsRemoved) {
   EXPECT_FALSE(bench.garbled());
 }
 
-TEST(LateDriver, HoldsTheLineAndBlocksARequestInThatTime) {
+TEST(LateDriver, HoldsTheLineForTheGivenTimeAndBlocksARequestDuringIt) {
   FaultBench bench;
   bench.add("late-driver 20ms");
   EXPECT_EQ(bench.ask("$01M", 15ms), kName);

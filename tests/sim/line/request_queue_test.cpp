@@ -84,7 +84,7 @@ class Queue : public testing::TestWithParam<bool> {
       [](std::uint8_t /*byte*/, ByteStatus /*status*/) {}};
 };
 
-TEST_P(Queue, RequestsAreAnsweredInTheirOrder) {
+TEST_P(Queue, RequestsAreAnsweredInOrder) {
   ask(kRead1, "a");
   ask(kRead2, "b");
   ask(kRead1, "c");
@@ -209,7 +209,7 @@ TEST_P(Queue, ARequestThatCannotBeSentInTimeIsNotSentLater) {
   }
 }
 
-TEST_P(Queue, ARequestThatDoneAddsFollowsTheWaitingRequests) {
+TEST_P(Queue, ARequestThatIsAddedByDoneFollowsTheWaitingRequests) {
   RequestQueue::Request first = request(kRead1, "a");
   first.done = [this](const RequestQueue::Reply& /*reply*/) {
     results_.emplace_back("a", Frame());
@@ -238,7 +238,7 @@ TEST_P(Queue, ALineThatIsNeverSilentDoesNotBlockARequestForEver) {
   EXPECT_EQ(results_.size(), 1U);
 }
 
-/// Sends a byte in each `period`, from the construction on.
+/// Sends a byte every `period`, from its construction on.
 class Babbler final : public Station {
  public:
   Babbler(Bus& bus, VirtualTime period) : bus_(bus), end_(bus.attach(*this)), period_(period) { run(); }
