@@ -400,6 +400,17 @@ TEST_F(PicoWithEeprom, APowerFailureDuringAStoreLeavesTheOldOrTheNewName) {
   EXPECT_EQ(names.size(), 2U);
 }
 
+/// The bytes on the bus and the programming of the page take 11 ms. Without the interrupt of the I2C master,
+/// each step would wait up to 1 ms longer, until the main loop polls the memory.
+TEST_F(PicoWithEeprom, AReplyToAStoreBeginsWithoutWaitingForThePollOfTheMemory) {
+  begin("EX9043D-M", 115200);
+  const nanoseconds bit(1'000'000'000 / 115200);
+  for (int i = 0; i < 10; ++i) {
+    const nanoseconds waited = turn_around(bench_, text(i % 2 == 0 ? "~01OVALVE\r" : "~01OPUMP\r"), bit);
+    EXPECT_LE(waited, milliseconds(12)) << i;
+  }
+}
+
 TEST_F(PicoWithEeprom, AnEepromThatBlocksTheBusDoesNotStopTheModule) {
   begin();
   bench_.execute("pin " + std::to_string(board::kI2cPins.first_pin) + " low");

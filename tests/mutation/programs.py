@@ -307,6 +307,7 @@ PICO_TESTS = """
     PicoImage.AReplyToAStoreBeginsWithoutWaitingForTheTick
     PicoImage.TheModuleCountsEveryPulseOfEightInputsDuringContinuousRequests
     HangingPicoImage.IsResetByTheWatchdogIfTheMainLoopHangs
+    PicoWithEeprom.AReplyToAStoreBeginsWithoutWaitingForThePollOfTheMemory
     PicoWithEeprom.APowerFailureDuringAStoreLeavesTheOldOrTheNewName
     PicoWithEeprom.AnEepromThatBlocksTheBusDoesNotStopTheModule
     PicoWithEeprom.AModuleThatStartsFreesABusThatTheEepromHolds

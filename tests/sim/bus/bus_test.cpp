@@ -75,6 +75,19 @@ TEST_F(BusTest, AByteTakesTenBitsAtItsSendersRate) {
   }
 }
 
+TEST_F(BusTest, IsBusyWhileADriverIsEnabledEvenWithoutAByte) {
+  struct Sender final : Station {
+    void run() override {}
+  } sender;
+  BusEnd& end = bus_.attach(sender);
+  EXPECT_FALSE(bus_.busy());
+  end.drive(true);
+  EXPECT_TRUE(bus_.busy());
+  EXPECT_FALSE(bus_.carries());
+  end.drive(false);
+  EXPECT_FALSE(bus_.busy());
+}
+
 TEST_F(BusTest, AByteThatWasCutOffStaysCutOffWhenItsStationCutsOffAnotherByte) {
   struct Sender final : Station {
     void run() override {}

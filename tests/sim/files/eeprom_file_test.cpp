@@ -227,6 +227,15 @@ TEST(EepromFile, DirectoriesPipesAndDevicesAreRefusedWithoutBlocking) {
   EXPECT_EQ(directory.contents(), before);
 }
 
+TEST(EepromFile, OnlyAMissingFileIsReadAsNoImage) {
+  const Directory directory;
+  write_file(directory / "a", text_of(some_image()));
+  EXPECT_TRUE(read_eeprom_file(directory / "a"));
+  EXPECT_FALSE(read_eeprom_file(directory / "missing"));
+  const std::string through_a_file = directory / "a/b";
+  expect_refused(refusal([&] { read_eeprom_file(through_a_file); }), through_a_file);
+}
+
 TEST(EepromFile, APathThatCannotBeCreatedIsRefusedAndNoFileRemains) {
   const Directory directory;
   fs::create_symlink(directory / "nowhere", directory / "dangling");
