@@ -89,7 +89,7 @@ inline constexpr auto kCommands = table<Command>({
      "set address, baud rate, line format, checksum and counter edge",
      "NN: the new address 00-FF (01-F7 while Modbus is stored); TT: 40, or 24; CC: 03-0A, plus 40, 80 or "
      "C0 for the line formats 8N2, 8E1 and 8O1; FF: 00, 40, 80 or "
-     "C0, both from the next reset on; (I) only to change CC or the checksum",
+     "C0; a new CC or FF is in force from the next reset on; (I) only to change CC or the checksum",
      Access::Store,
      Init::Required,
      {'%', kNoKey, 8, 8, Needs::Nothing, set_configuration}},

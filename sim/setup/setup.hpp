@@ -27,7 +27,7 @@ std::string place_of(const Places& places, const std::string& key);
 
 struct LineSetup {
   Places places;
-  std::string name;                      ///< name in the logs; empty for the line of a command line
+  std::string name;                      ///< name in the logs; empty if the command line describes the line
   std::vector<ModuleSpec> modules;       ///< at least one
   std::optional<std::string> pty;        ///< path of the link to a pseudo-terminal
   std::optional<TcpAddress> tcp;         ///< address on which the TCP port listens

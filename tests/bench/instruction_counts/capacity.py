@@ -1,4 +1,5 @@
-"""Calculates from instruction counts how many input edges a TM4C123 can process. Nothing here is measured."""
+"""Calculates from instruction counts how many input edges a TM4C123 can process per second. Nothing is measured on a
+board."""
 
 import math
 
@@ -68,14 +69,14 @@ def capacity(found):
     return "\n".join(
         [
             f"computed, not measured, for a TM4C123 at {HERTZ // 1_000_000} MHz with {CYCLES_AN_INSTRUCTION} cycles "
-            f"an instruction and {CYCLES_AROUND_AN_INTERRUPT} around an interrupt:",
+            f"per instruction and {CYCLES_AROUND_AN_INTERRUPT} around an interrupt:",
             f"  eight edges at once take {sum(ports) / HERTZ * 1e6:.1f} us, a received byte {byte / HERTZ * 1e6:.1f} "
             f"us of the {BITS_A_CHARACTER / BAUD * 1e6:.1f} us that it takes on the line at {BAUD} baud",
-            f"  all eight inputs at once, both edges counted, the line saturated at {BAUD} baud, "
+            f"  all eight inputs at the same time, both edges counted, the line saturated at {BAUD} baud, "
             f"{LEFT_TO_THE_MAIN_LOOP:.0%} left to the main loop: {math.floor(pulses / 100) * 100} pulses a second "
             "on each input",
-            f"  an edge is served within {math.ceil(wait * 1e6)} us whatever other interrupts wait: each edge of a "
-            "pulse of that length is detected; a shorter pulse is still counted if the pulse and the following gap "
+            f"  an edge is served within {math.ceil(wait * 1e6)} us, even if all other interrupts are pending: each "
+            "edge of a pulse of that length is detected; a shorter pulse is still counted if the pulse and the following gap "
             "together have that length",
         ]
     )

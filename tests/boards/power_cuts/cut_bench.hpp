@@ -61,7 +61,8 @@ struct Attempt {
   unsigned spoiled = 0;    ///< bytes that the memory has stored incorrectly
   unsigned tries = 0;      ///< number of pages that were programmed with at least 20 bytes
   std::vector<Contents> meanwhile;  ///< at each event before the reply; without a reply, at each event
-  std::vector<Contents> behind;     ///< at each event after that for more than a second, and at the end
+  std::vector<Contents>
+      behind;  ///< at each event from the reply until more than a second later, and at the end
   std::uint16_t outputs_before = 0;
   std::uint16_t outputs = 0;  ///< at the end
 };

@@ -19,7 +19,8 @@ std::optional<StoredSettings> read(const Model& model, const std::vector<std::ui
   return read_old_layout(model, {memory.data() + place, kOldCopySize});
 }
 
-/// Compares the settings with which a module starts, read by the firmware and by an independent reader.
+/// Reads each file with the firmware and with an independent reader, and compares both results with the
+/// settings that were stored.
 TEST(StoredBytes, AreTheSettingsThatWereStored) {
   for (const StoredBytes& stored : all_stored_bytes()) {
     FakeMemory memory;
@@ -32,7 +33,7 @@ TEST(StoredBytes, AreTheSettingsThatWereStored) {
   }
 }
 
-TEST(StoredBytes, KeepTheirAddressWhenOtherSettingsAreStored) {
+TEST(StoredBytes, TheModulesAddressIsKeptWhenAnotherSettingIsStored) {
   for (const StoredBytes& stored : all_stored_bytes()) {
     FakeMemory memory;
     memory.cells = stored.memory;
@@ -56,7 +57,7 @@ TEST(StoredBytes, SettingsOfAnotherModelAreNotRead) {
 }
 
 /// Corrupts every byte of the files' copies, in both older layouts.
-TEST(OldLayouts, EverySingleCorruptedByteIsDetected) {
+TEST(OldLayouts, AnyCorruptionOfASingleByteIsDetected) {
   for (const StoredBytes& stored : all_stored_bytes()) {
     for (const std::size_t place : {0x00U, 0x20U}) {
       const std::optional<StoredSettings> good = read(*stored.model, stored.memory, place);

@@ -153,7 +153,7 @@ TEST(Record, RecordsThatDifferInUpToFourAdjacentBytesHaveDifferentChecks) {
 
 // --- errors and torn writes ---
 
-TEST(Record, EverySingleCorruptedByteIsDetected) {
+TEST(Record, AnyCorruptionOfASingleByteIsDetected) {
   for (const Stored& stored : {factory(), changed_settings()}) {
     const Record good = record_of(stored);
     for (std::size_t at = 0; at < kRecordSize; ++at) {

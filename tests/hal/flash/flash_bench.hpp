@@ -40,7 +40,8 @@ inline Page numbered(unsigned number) {
   return page;
 }
 
-/// A page store from a reset on. Each function runs the main loop until its result is available.
+/// A page store from a reset on. `read`, `write` and `page` run the main loop until their result is
+/// available.
 class Session {
  public:
   explicit Session(FlashChip& chip) : chip_(chip) { store_.flash().chip = &chip; }
@@ -95,7 +96,7 @@ class Session {
       }
     }
   }
-  /// Runs a turn of the main loop, and the time until the next one.
+  /// Runs one turn of the main loop, and then advances the time to the next turn.
   void turn() {
     constexpr std::uint64_t kTurn = 10;  // us
     while (store_.poll(chip_.time())) {

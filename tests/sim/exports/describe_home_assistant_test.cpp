@@ -140,7 +140,7 @@ TEST(DescribeHomeAssistant, ExplainsHowPollsRestartTheHostWatchdogAndWhatClearsA
   EXPECT_LT(feed, after);
 }
 
-TEST(DescribeHomeAssistant, DoesNotPollHostOkCommunicationSettingsOrClearRegisters) {
+TEST(DescribeHomeAssistant, DoesNotPollHostOkCommunicationSettingsOrCoilsThatClearCounters) {
   for (const char* model : {"EX9043D-M", "EX9052D-M"}) {
     for (const char* address :
          {"12344", "256", "484", "485", "512"}) {  // host OK, protocol, address, rate, clear

@@ -168,7 +168,7 @@ TEST(Face, ReadingItDoesNotChangeTheModule) {
   EXPECT_EQ(looked.line().faults_so_far(), nullptr);
 }
 
-TEST(Terminals, RelaysAreCountedFromOneAndOpenCollectorsFromZero) {
+TEST(Terminals, RelaysAreNumberedFromOneAndOpenCollectorsFromZero) {
   for (const Model& model : kModels) {
     const bool relays = model.description.find("relay") != std::string_view::npos ||
                         model.description.find("PhotoMOS") != std::string_view::npos;

@@ -1,4 +1,4 @@
-// Tests values as people write them.
+// Tests the parsing of values that people write, and the text of values that the program writes.
 #include "sim/text/values.hpp"
 
 #include <gtest/gtest.h>
@@ -98,7 +98,7 @@ TEST(BaudRate, IsABaudRateThatModulesSupport) {
                  "a baud rate: 1200, 2400, 4800, 9600, 19200, 38400, 57600 or 115200");
 }
 
-TEST(BaudRate, AWrongRateIsRejectedWithAllRates) {
+TEST(BaudRate, TheMessageAboutAWrongRateListsAllRates) {
   std::string rates;
   for (const std::uint32_t rate : kBaudRates) {
     rates += (rates.empty() ? "" : rate == kBaudRates.back() ? " or " : ", ") + std::to_string(rate);

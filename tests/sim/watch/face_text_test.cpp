@@ -53,7 +53,7 @@ TEST(FaceText, ShowsAModuleWithOutputsAndInputs) {
   EXPECT_EQ(lines[4], "   DI      0  1  2  3  4  5  6  7");
 }
 
-TEST(FaceText, RelaysAreCountedFromOne) {
+TEST(FaceText, RelaysAreNumberedFromOne) {
   ModuleBench bench("EX9068AD-M");
   EXPECT_EQ(shown(bench)[1], "   RL      1  2  3  4  5  6  7  8");
 }
