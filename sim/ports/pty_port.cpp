@@ -2,7 +2,6 @@
 
 #include <unistd.h>
 
-#include <array>
 #include <cerrno>
 #include <utility>
 
@@ -62,10 +61,9 @@ void PtyPort::read_waiting() {
 /// Returns the number of bytes read; 0 if there are none, negative if no master has the pseudo-terminal open.
 ssize_t PtyPort::take() {
   visits_.take();  // a new master must be detected before the program replies to its bytes
-  std::array<std::uint8_t, 4096> bytes{};
-  const ssize_t size = ::read(pty_.master_fd(), bytes.data(), bytes.size());
+  const ssize_t size = ::read(pty_.master_fd(), bytes_.data(), bytes_.size());
   if (size > 0) {
-    paused_ = !received_(bytes.data(), static_cast<std::size_t>(size), {});
+    paused_ = !received_(bytes_.data(), static_cast<std::size_t>(size), {});
     return size;
   }
   return size < 0 && errno == EAGAIN ? 0 : -1;

@@ -3,8 +3,10 @@
 
 #include <sys/types.h>
 
+#include <array>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/posix/stream_descriptor.hpp>
+#include <cstdint>
 #include <string>
 
 #include "sim/ports/port.hpp"
@@ -40,6 +42,7 @@ class PtyPort final : public Port {
   Received received_;
   bool reading_ = false;
   bool paused_ = false;
+  std::array<std::uint8_t, 4096> bytes_{};  ///< a member, because clearing it for each read takes long
 };
 
 }  // namespace ex9000::sim

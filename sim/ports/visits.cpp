@@ -3,7 +3,6 @@
 #include <sys/inotify.h>
 #include <unistd.h>
 
-#include <array>
 #include <cstring>
 #include <set>
 #include <stdexcept>
@@ -64,11 +63,10 @@ void Visits::wait() {
 /// devices.
 void Visits::take() {
   std::set<int> visited;
-  alignas(inotify_event) std::array<char, 4096> events{};
-  for (ssize_t size = 0; (size = read(inotify_.native_handle(), events.data(), events.size())) > 0;) {
+  for (ssize_t size = 0; (size = read(inotify_.native_handle(), events_.data(), events_.size())) > 0;) {
     for (std::size_t at = 0; at < static_cast<std::size_t>(size);) {
       inotify_event event{};
-      std::memcpy(&event, events.data() + at, sizeof event);
+      std::memcpy(&event, events_.data() + at, sizeof event);
       at += sizeof event + event.len;
       if ((event.mask & IN_Q_OVERFLOW) != 0) {
         for (const auto& each : watches_) {

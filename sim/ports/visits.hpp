@@ -1,6 +1,7 @@
 // Reports when masters open or close pseudo-terminals.
 #pragma once
 
+#include <array>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/posix/stream_descriptor.hpp>
 #include <functional>
@@ -37,6 +38,7 @@ class Visits final : public boost::asio::io_context::service {
 
   boost::asio::posix::stream_descriptor inotify_;  ///< opened for the first watch
   std::map<int, std::function<void()>> watches_;
+  std::array<char, 4096> events_{};  ///< a member, because clearing it for each read takes long
 };
 
 }  // namespace ex9000::sim
