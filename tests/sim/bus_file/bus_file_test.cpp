@@ -362,6 +362,16 @@ TEST(WrongLinesOfABusFile, TwoModulesCannotShareAnEeprom) {
   EXPECT_EQ(parsed(with("y")).lines.size(), 2U);
 }
 
+TEST(WrongLinesOfABusFile, AnEepromCannotBeThePortOfAnyLine) {
+  for (const std::string port : {"a", "b"}) {
+    EXPECT_EQ(why_not("{\"lines\": [{\"pty\": \"a\", \"modules\": [{\"model\": \"EX9042D\"}]},\n"
+                      "{\"pty\": \"b\", \"modules\": [{\"model\": \"EX9042D\", \"eeprom\": \"" +
+                      port + "\"}]}]}"),
+              "bus.json:2: lines[1].modules[0].eeprom: " + port +
+                  ": is already used for something else; name another path");
+  }
+}
+
 // --- reading from disk ---
 
 TEST(BusFile, IsRecognizedByTheExtensionJson) {
