@@ -24,7 +24,7 @@ namespace ex9000 {
 /// edges, levels and the time as arguments, and reads the outputs, the LED, the reply and the memory job. An
 /// object exists from one reset to the next.
 ///
-/// Interrupts call `request_waits`, `edges_need_times` and the functions named `on_...`. `on_byte`,
+/// Interrupts call `frame_waits`, `edges_need_times` and the functions named `on_...`. `on_byte`,
 /// `on_silence` and `on_own_driver_off` must not interrupt each other, so they share one interrupt priority;
 /// if several are pending, `on_silence` must run first (hal/one_shot_timer.hpp). `on_edge` and `on_tick` may
 /// have other priorities. The main loop calls all other functions. No function blocks.
@@ -58,10 +58,11 @@ class Module {
   /// Returns whether a complete request is waiting. The turn-around time of an ASCII request may still be
   /// running. The main loop may call this too.
   [[nodiscard]] bool request_waits() const { return receiver_.queue().has_frame(); }
-  /// Returns whether a host OK, or a request that counts like one, is waiting for `step`. `step` may be
-  /// called late, because the host watchdog restarts from the time at which the host OK was received. For the
-  /// main loop.
+  /// Returns whether a host OK, or a request that counts like one, is waiting for `step`. The host watchdog
+  /// restarts from the time at which the host OK was received. The main loop may call this too.
   [[nodiscard]] bool host_ok_waits() const { return receiver_.host_oks().waiting(); }
+  /// Returns whether a frame is waiting for `step`, which must then be called: see HostOks.
+  [[nodiscard]] bool frame_waits() const { return request_waits() || host_ok_waits(); }
 
   // --- main loop ---
 

@@ -43,7 +43,7 @@ class Device {
     const Duration silence = module_.on_byte(byte, status, board_.clock.now_in_interrupt());
     if (!(silence == Duration())) {
       board_.silence_timer.restart(silence);
-    } else if (module_.request_waits()) {
+    } else if (module_.frame_waits()) {
       wake();  // if bytes take no time on this line, the turn-around time is already over
     }
   }
@@ -53,7 +53,7 @@ class Device {
     if (!(more == Duration()) && !board_.line.sending()) {
       board_.silence_timer.restart(more);
     }
-    if (module_.request_waits()) {
+    if (module_.frame_waits()) {
       wake();
     }
   }

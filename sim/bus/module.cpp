@@ -203,7 +203,7 @@ void SimulatedModule::run() {
     mcu_->device.on_silence();
   }
   run_timers();
-  if (has_work()) {
+  if (mcu_->device.has_work()) {
     turn();
   }
   settle();

@@ -129,14 +129,9 @@ class SimulatedModule final : public Station {
   void run_memory();
   void run_timers();
   [[gnu::noinline]] void receive_after_silence(std::uint8_t byte, ByteStatus status);
-  /// Returns whether the main loop has work to do. A waiting host OK counts as work: viewers show the
-  /// remaining time of the host watchdog, which would otherwise be outdated.
-  [[nodiscard]] bool has_work() const {
-    return mcu_->device.has_work() || mcu_->device.module().host_ok_waits();
-  }
   [[gnu::noinline]] void work();
   void work_or_wait() {
-    if (has_work()) {
+    if (mcu_->device.has_work()) {
       work();
     } else {
       wait();
