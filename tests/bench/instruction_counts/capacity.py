@@ -76,7 +76,7 @@ def capacity(found):
             f"{LEFT_TO_THE_MAIN_LOOP:.0%} left to the main loop: {math.floor(pulses / 100) * 100} pulses a second "
             "on each input",
             f"  an edge is served within {math.ceil(wait * 1e6)} us, even if all other interrupts are pending: each "
-            "edge of a pulse of that length is detected; a shorter pulse is still counted if the pulse and the following gap "
-            "together have that length",
+            "edge of a pulse of that length is detected; a shorter pulse is still counted if the pulse and the "
+            "following gap together have that length",
         ]
     )
