@@ -44,7 +44,7 @@ class Device {
     if (!(silence == Duration())) {
       board_.silence_timer.restart(silence);
     } else if (module_.frame_waits()) {
-      wake();  // if bytes take no time on this line, the turn-around time is already over
+      wake();  // the turn-around time may be over already, if bytes take no time on this line
     }
   }
   void on_silence() {

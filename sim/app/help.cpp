@@ -37,8 +37,8 @@ them it is a scenario for the modules or the bus file on the command line. A sce
 )";
 
 constexpr const char* kFaultHelp = R"(
-A fault is TROUBLE [VALUE] [WHEN], for --fault, for bus files and for the control socket. For --fault, write
-N before a fault of one module. The troubles:
+A fault is TROUBLE [VALUE] [WHEN], for --fault, for bus files and for the control socket. For --fault, write N
+before a fault of one module. The troubles:
 )";
 
 constexpr const char* kScheduleHelp = R"(

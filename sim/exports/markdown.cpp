@@ -128,8 +128,7 @@ std::string dcon_notes(const Models& models) {
   const bool inputs = any_has(models, [](const Model& model) { return model.has_inputs(); });
   std::string text =
       "- `AA` is the module's address in hex, `**` addresses all modules, which do not reply. CR ends every "
-      "request "
-      "and reply. With the checksum enabled, two hex digits precede CR: the sum of all characters "
+      "request and reply. With the checksum enabled, two hex digits precede CR: the sum of all characters "
       "before them, modulo 256.\n"
       "- `(First)` and `(Second)` are two hex digits each; the table above lists their channels (relay RL1 "
       "is DO0); bit 0 is the lowest channel.";

@@ -117,7 +117,7 @@ std::vector<Faults::Info> Faults::list() const {
   std::vector<Info> all;
   for (const Armed& armed : armed_) {
     all.push_back(
-        {armed.number, armed.fault.text, armed.fault.module, armed.occurring(), armed.occurrences_so_far});
+        {armed.number, armed.fault.text, armed.fault.module, armed.in_progress(), armed.occurrences_so_far});
   }
   return all;
 }
@@ -220,7 +220,7 @@ void Faults::end_occurrences(Armed& armed, Over over) {
   }
 }
 
-std::size_t Faults::Armed::occurring() const {
+std::size_t Faults::Armed::in_progress() const {
   return static_cast<std::size_t>(
       std::count_if(occurrences.begin(), occurrences.end(),
                     [](const Occurrence& occurrence) { return !occurrence.waits; }));
@@ -340,7 +340,7 @@ const Fault* Faults::active(Trouble trouble, std::size_t module) const {
 
 const Fault* Faults::active_on_the_line(Trouble trouble) const {
   for (const Armed& armed : armed_) {
-    if (armed.occurring() != 0 && armed.fault.trouble == trouble) {
+    if (armed.in_progress() != 0 && armed.fault.trouble == trouble) {
       return &armed.fault;
     }
   }
@@ -381,7 +381,7 @@ void Faults::set_late_drivers() {
 double Faults::rate_of(Trouble trouble) const {
   double rate = 0;
   for (const Armed& armed : armed_) {
-    if (armed.occurring() != 0 && armed.fault.trouble == trouble) {
+    if (armed.in_progress() != 0 && armed.fault.trouble == trouble) {
       rate = std::max(rate, armed.fault.probability);
     }
   }

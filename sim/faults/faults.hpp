@@ -79,7 +79,7 @@ class Faults final : public Station {
     std::uint64_t occurrences_so_far = 0;
 
     /// Returns the number of occurrences in progress. Does not count occurrences that wait for their reply.
-    [[nodiscard]] std::size_t occurring() const;
+    [[nodiscard]] std::size_t in_progress() const;
     [[nodiscard]] bool occurs_at(std::size_t module) const;
   };
 

@@ -46,6 +46,12 @@ class Listener final : public Station {
   BusEnd& wire_;
 };
 
+/// A station whose end of the wires the test controls. It does not listen.
+class Sender final : public Station {
+ public:
+  void run() override {}
+};
+
 class BusTest : public testing::Test {
  protected:
   std::unique_ptr<Master> master(std::uint32_t baud, LineFormat format = LineFormat::k8N1) {
@@ -76,9 +82,7 @@ TEST_F(BusTest, AByteTakesTenBitsAtItsSendersRate) {
 }
 
 TEST_F(BusTest, IsBusyWhileADriverIsEnabledEvenWithoutAByte) {
-  struct Sender final : Station {
-    void run() override {}
-  } sender;
+  Sender sender;
   BusEnd& end = bus_.attach(sender);
   EXPECT_FALSE(bus_.busy());
   end.drive(true);
@@ -89,9 +93,7 @@ TEST_F(BusTest, IsBusyWhileADriverIsEnabledEvenWithoutAByte) {
 }
 
 TEST_F(BusTest, AByteThatWasCutOffStaysCutOffWhenItsStationCutsOffAnotherByte) {
-  struct Sender final : Station {
-    void run() override {}
-  } sender;
+  Sender sender;
   BusEnd& end = bus_.attach(sender);
   Listener listener(bus_, 9600);
   end.drive(true);
