@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/setup/setup.hpp"
+#include "sim/run_setup/setup.hpp"
 
 namespace ex9000::sim {
 

@@ -9,8 +9,8 @@
 #include "sim/capture/capture.hpp"
 #include "sim/files/new_file.hpp"
 #include "sim/play/play_observer.hpp"
+#include "sim/run_setup/setup.hpp"
 #include "sim/running_line/line_record.hpp"
-#include "sim/setup/setup.hpp"
 
 namespace ex9000::sim {
 

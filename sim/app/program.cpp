@@ -17,7 +17,7 @@
 #include "sim/play/play.hpp"
 #include "sim/running_program/running_program.hpp"
 #include "sim/running_program/stop_signals.hpp"
-#include "sim/watch/terminal_output.hpp"
+#include "sim/terminal_view/terminal_output.hpp"
 
 namespace ex9000::sim {
 

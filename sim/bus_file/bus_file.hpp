@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "sim/setup/setup.hpp"
+#include "sim/run_setup/setup.hpp"
 
 namespace ex9000::sim {
 

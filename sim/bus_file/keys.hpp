@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "sim/bus_file/node.hpp"
-#include "sim/setup/setup.hpp"
+#include "sim/run_setup/setup.hpp"
 
 namespace ex9000::sim {
 

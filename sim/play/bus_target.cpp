@@ -5,7 +5,7 @@
 
 #include "sim/control/control.hpp"
 #include "sim/files/eeprom_file.hpp"
-#include "sim/setup/line_factory.hpp"
+#include "sim/run_setup/line_factory.hpp"
 #include "sim/text/fail.hpp"
 #include "sim/text/words.hpp"
 

@@ -9,7 +9,7 @@
 #include "sim/line/line.hpp"
 #include "sim/play/play_observer.hpp"
 #include "sim/play/target.hpp"
-#include "sim/setup/setup.hpp"
+#include "sim/run_setup/setup.hpp"
 
 namespace ex9000::play {
 

@@ -7,7 +7,7 @@
 #include "sim/play/player.hpp"
 #include "sim/play/rehearsal.hpp"
 #include "sim/play/transcript.hpp"
-#include "sim/setup/paths_in_use.hpp"
+#include "sim/run_setup/paths_in_use.hpp"
 #include "sim/text/fail.hpp"
 
 namespace ex9000::play {

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "sim/play/play_observer.hpp"
-#include "sim/setup/setup.hpp"
+#include "sim/run_setup/setup.hpp"
 
 namespace ex9000::play {
 

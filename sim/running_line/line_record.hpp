@@ -8,7 +8,7 @@
 #include "sim/frames/frame_watch.hpp"
 #include "sim/line/line.hpp"
 #include "sim/log/bus_log.hpp"
-#include "sim/setup/setup.hpp"
+#include "sim/run_setup/setup.hpp"
 
 namespace ex9000::sim {
 

@@ -7,7 +7,7 @@
 #include "sim/ports/pty_port.hpp"
 #include "sim/ports/serial_port.hpp"
 #include "sim/ports/tcp_port.hpp"
-#include "sim/setup/line_factory.hpp"
+#include "sim/run_setup/line_factory.hpp"
 #include "sim/text/fail.hpp"
 #include "sim/text/system_error.hpp"
 

@@ -13,10 +13,10 @@
 #include "sim/line/line.hpp"
 #include "sim/log/banner.hpp"
 #include "sim/modbus_tcp/modbus_tcp_server.hpp"
+#include "sim/run_setup/setup.hpp"
 #include "sim/running_line/line_record.hpp"
 #include "sim/running_line/pacer.hpp"
 #include "sim/running_line/stepped_line.hpp"
-#include "sim/setup/setup.hpp"
 
 namespace ex9000::sim {
 

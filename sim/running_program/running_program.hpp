@@ -17,12 +17,12 @@
 #include "sim/log/banner.hpp"
 #include "sim/panel/panel.hpp"
 #include "sim/panel/panel_server.hpp"
+#include "sim/run_setup/setup.hpp"
 #include "sim/running_line/running_line.hpp"
 #include "sim/running_program/line_threads.hpp"
 #include "sim/running_program/stepper.hpp"
 #include "sim/running_program/stop_signals.hpp"
-#include "sim/setup/setup.hpp"
-#include "sim/watch/watch.hpp"
+#include "sim/terminal_view/watch.hpp"
 
 namespace ex9000::sim {
 

@@ -1,4 +1,4 @@
-#include "sim/watch/face_text.hpp"
+#include "sim/terminal_view/face_text.hpp"
 
 #include <chrono>
 #include <cstdint>

@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "sim/line/line.hpp"
-#include "sim/setup/setup.hpp"
+#include "sim/run_setup/setup.hpp"
 
 namespace ex9000::sim {
 

@@ -1,4 +1,4 @@
-#include "sim/setup/line_factory.hpp"
+#include "sim/run_setup/line_factory.hpp"
 
 #include <algorithm>
 #include <utility>

@@ -9,7 +9,7 @@
 
 #include "sim/line/line.hpp"
 #include "sim/module_view/face.hpp"
-#include "sim/watch/terminal.hpp"
+#include "sim/terminal_view/terminal.hpp"
 
 namespace ex9000::sim {
 

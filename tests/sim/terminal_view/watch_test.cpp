@@ -1,5 +1,5 @@
 // Tests the view of modules: repainted in place in a terminal, otherwise one printed line for each change.
-#include "sim/watch/watch.hpp"
+#include "sim/terminal_view/watch.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "sim/setup/paths_in_use.hpp"
+#include "sim/run_setup/paths_in_use.hpp"
 
 #include <sys/stat.h>
 

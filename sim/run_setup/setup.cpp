@@ -1,4 +1,4 @@
-#include "sim/setup/setup.hpp"
+#include "sim/run_setup/setup.hpp"
 
 #include <algorithm>
 #include <cctype>

@@ -1,5 +1,5 @@
 // Tests the text of each part of a module's face, and the lines about its changes.
-#include "sim/watch/face_text.hpp"
+#include "sim/terminal_view/face_text.hpp"
 
 #include <gtest/gtest.h>
 

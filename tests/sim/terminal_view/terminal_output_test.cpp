@@ -1,5 +1,5 @@
 // Tests the output to a terminal, with a pseudo-terminal in place of a window.
-#include "sim/watch/terminal_output.hpp"
+#include "sim/terminal_view/terminal_output.hpp"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "sim/watch/terminal.hpp"
+#include "sim/terminal_view/terminal.hpp"
 
 namespace ex9000::sim {
 

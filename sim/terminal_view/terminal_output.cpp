@@ -1,4 +1,4 @@
-#include "sim/watch/terminal_output.hpp"
+#include "sim/terminal_view/terminal_output.hpp"
 
 #include <fcntl.h>
 #include <poll.h>

@@ -1,8 +1,8 @@
-#include "sim/watch/watch.hpp"
+#include "sim/terminal_view/watch.hpp"
 
+#include "sim/terminal_view/face_text.hpp"
 #include "sim/text/durations.hpp"
 #include "sim/text/words.hpp"
-#include "sim/watch/face_text.hpp"
 
 namespace ex9000::sim {
 
