@@ -94,6 +94,19 @@ TEST_F(PicoImage, NoOutputIsEnergisedBeforeTheSettingsAreRead) {
   EXPECT_EQ(driven, (std::set<std::uint16_t>{0, kPowerOnValue}));
 }
 
+TEST_F(PicoImage, TheChipDrivesOnlyTheOutputsOfTheModelTheLineAndTheStatusLed) {
+  constexpr std::uint32_t kTransmit = 1U << board::kUartPins.first_pin;
+  constexpr std::uint32_t kOfEveryModel = kTransmit | board::kDriverEnable.mask() | board::kStatusLed.mask();
+  begin("EX9043D-M");
+  std::uint32_t outputs = 0;
+  for (const auto& group : board::kOutputs) {
+    outputs |= group.mask();
+  }
+  EXPECT_EQ(number("driven"), kOfEveryModel | outputs);
+  begin("EX9052D");  // has no outputs
+  EXPECT_EQ(number("driven"), kOfEveryModel);
+}
+
 TEST_F(PicoImage, OnlyTheFirstCoreRunsAndInterruptsDoNotNest) {
   begin();
   EXPECT_EQ(ask("$01M"), "!019043M\r");

@@ -300,6 +300,7 @@ PICO_IMAGES = (
 # Tests of them that together reach every driver.
 PICO_TESTS = """
     PicoImage.NoOutputIsEnergisedBeforeTheSettingsAreRead
+    PicoImage.TheChipDrivesOnlyTheOutputsOfTheModelTheLineAndTheStatusLed
     PicoImage.OnlyTheFirstCoreRunsAndInterruptsDoNotNest
     PicoImage.TheDriverIsOnForAllBitsOfAReplyAndGoesOffWithinACharacter
     PicoImage.TheModuleRepliesToEveryRequestWithoutPausesAt115200Baud

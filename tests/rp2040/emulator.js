@@ -120,6 +120,9 @@ const COMMANDS = {
     alarm.schedule(integer(nanoseconds));
   },
   levels: () => board.levels.reduce((mask, level, number) => mask + (level ? 2 ** number : 0), 0),
+  // driven: returns the pins that the chip drives. Bit n is GPIOn.
+  driven: () => board.levels.reduce(
+    (mask, _, number) => mask + (board.chip.level(number) === null ? 0 : 2 ** number), 0),
   // watch NUMBER NANOSECONDS: lets at most this time pass until the level of a pin changes; returns whether it has
   // changed
   watch(number, nanoseconds) {

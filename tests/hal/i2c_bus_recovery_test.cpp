@@ -1,0 +1,76 @@
+// Tests the recovery of an I2C bus on recorded wires. Source: NXP UM10204, 3.1.16 (nine clocks), 3.1.4 (START
+// and STOP), table 10 (times of the standard mode).
+#include "hal/i2c_bus_recovery.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace ex9000::hal {
+namespace {
+
+Time now;
+
+/// Records the levels of the wires after each change: `C` and `D` if the clock and the data line are high,
+/// `c` and `d` if they are low. The device holds the data line low until the clock has risen `held_for`
+/// times.
+struct RecordedWires {
+  static inline std::string levels;
+  static inline int held_for = 0;
+  static inline bool clock_is_pulled = false;
+  static inline bool data_is_pulled = false;
+  static inline Time changed;
+
+  static void take() { set(false, false); }
+  static void pull(bool clock, bool data) {
+    constexpr Duration kShortest(5);  // the standard requires 4.7 us at low and 4.0 us at high level
+    EXPECT_FALSE(now.since(changed) < kShortest && levels.size() > 3) << levels;
+    changed = now;
+    set(clock, data);
+  }
+  static bool data_is_high() { return !data_is_pulled && held_for == 0; }
+
+ private:
+  static void set(bool clock, bool data) {
+    if (clock_is_pulled && !clock && held_for > 0) {
+      --held_for;
+    }
+    clock_is_pulled = clock;
+    data_is_pulled = data;
+    levels += clock ? "c" : "C";
+    levels += data_is_high() ? "D " : "d ";
+  }
+};
+
+/// Returns the levels of the wires during a recovery. The device releases the data line at the rising edge of
+/// this clock; 0: it does not hold the line.
+std::string levels_of_recovery(int clock) {
+  RecordedWires::levels.clear();
+  RecordedWires::held_for = clock;
+  I2cBusRecovery<RecordedWires> recovery;
+  recovery.begin();
+  while (!recovery.poll(now)) {
+    now = now + Duration(1);
+  }
+  return RecordedWires::levels;
+}
+
+const std::string kStartAndStop = "Cd CD ";
+
+TEST(I2cBusRecoveryTest, ABusThatIsFreeGetsOnlyStartAndStop) {
+  EXPECT_EQ(levels_of_recovery(0), "CD " + kStartAndStop);
+}
+
+TEST(I2cBusRecoveryTest, TheClocksEndWhenTheDeviceReleasesTheDataLine) {
+  EXPECT_EQ(levels_of_recovery(1), "Cd cd CD " + kStartAndStop);
+  EXPECT_EQ(levels_of_recovery(3), "Cd cd Cd cd Cd cd CD " + kStartAndStop);
+  EXPECT_EQ(levels_of_recovery(9),
+            "Cd cd Cd cd Cd cd Cd cd Cd cd Cd cd Cd cd Cd cd Cd cd CD " + kStartAndStop);
+}
+
+TEST(I2cBusRecoveryTest, ADeviceThatNeverReleasesTheDataLineGetsNineClocks) {
+  EXPECT_EQ(levels_of_recovery(1000), "Cd cd Cd cd Cd cd Cd cd Cd cd Cd cd Cd cd Cd cd Cd cd Cd Cd Cd ");
+}
+
+}  // namespace
+}  // namespace ex9000::hal
