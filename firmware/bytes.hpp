@@ -26,8 +26,8 @@ struct Bytes {
   [[nodiscard, gnu::always_inline]] constexpr std::uint16_t word(std::size_t offset) const {
     return static_cast<std::uint16_t>((data[offset] << 8U) | data[offset + 1]);
   }
-  /// Return the 16 or 32 bits at `offset`, low byte first (the byte order of stored settings). They do not
-  /// check the range.
+  /// Return the 16 or 32 bits at `offset`, low byte first (the byte order of stored settings). These
+  /// functions do not check the range.
   [[nodiscard]] constexpr std::uint16_t low_byte_first_16(std::size_t offset) const {
     return static_cast<std::uint16_t>(data[offset] | (data[offset + 1] << 8U));
   }

@@ -225,7 +225,8 @@ void Module::continue_store(Time now) {
   }
 }
 
-/// Carries out a request that has been judged and whose settings are stored.
+/// Carries out a request that has been judged. If the request changes settings, these settings must be stored
+/// already.
 void Module::commit(Time now) {
   if (cycle_.outcome().changes_settings()) {
     commit_settings(now);
@@ -263,7 +264,7 @@ void Module::commit_settings(Time now) {
   configure_inputs(now);
   receiver_.restart_by_requests(state_.settings.fed_by_requests);
   if (state_.settings.timeout_status) {
-    state_.outputs = state_.settings.safe_value;  // the request may have changed it (wire.md D6)
+    state_.outputs = state_.settings.safe_value;  // this value may be new (wire.md D6)
   }
 }
 
@@ -323,7 +324,8 @@ void Module::finish_request() {
 
 // --- sleep ---
 
-/// Returns whether something has happened that `step` or `poll_panel` has not processed yet.
+/// Returns whether a finished memory access, a host OK or a change of the LED pattern has not been processed
+/// yet.
 bool Module::step_is_due() const {
   const bool memory_is_done = !keeper_.busy() && (start_ == Start::Loading || keeper_.has_work() ||
                                                   cycle_.phase() == RequestCycle::Phase::Storing);

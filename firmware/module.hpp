@@ -61,16 +61,17 @@ class Module {
   /// Returns whether a host OK, or a request that counts like one, is waiting for `step`. The host watchdog
   /// restarts from the time at which the host OK was received. The main loop may call this too.
   [[nodiscard]] bool host_ok_waits() const { return receiver_.host_oks().waiting(); }
-  /// Returns whether a frame is waiting for `step`, which must then be called: see HostOks.
+  /// Returns whether a request or a host OK is waiting. The main loop must then call `step` (see HostOks).
   [[nodiscard]] bool frame_waits() const { return request_waits() || host_ok_waits(); }
 
   // --- main loop ---
 
-  /// Updates the INIT* switch and the status LED, collects edges, and ends the gap after a reply. Call this
-  /// at every tick and when the time that `idle_for` returned has passed. `init_switch`: whether INIT* is
-  /// asserted (tied to GND), not debounced.
+  /// Samples the INIT* switch, updates the status LED, collects edges, and ends the gap after a reply if the
+  /// gap is over. Call this at every tick and when the time that `idle_for` returned has passed.
+  /// `init_switch`: whether INIT* is asserted (tied to GND), not debounced.
   void poll_panel(bool init_switch, Time now);
-  /// Runs one pass of the main loop: processes the events from interrupts and everything that is due.
+  /// Runs one pass of the main loop: completes the start after a reset, and processes host OKs, timeouts,
+  /// timed outputs, stores and the waiting request, if they are due.
   void step(Time now);
   /// Returns how long the main loop may sleep, at most `at_most`. An interrupt or a finished memory job must
   /// wake it earlier. If the result is 0, call `poll_panel` and `step` again immediately.
@@ -82,8 +83,8 @@ class Module {
   /// Returns whether to feed the hardware watchdog. See ModuleWatchdog::main_loop_alive.
   bool feed_watchdog() { return module_watchdog_.main_loop_alive(); }
 
-  /// Returns whether the settings and INIT* are known, so that the line can be opened at `baud()` with
-  /// `format()`.
+  /// Returns whether the start is complete: the settings are loaded and the mode is selected. The line can
+  /// then be opened at `baud()` with `format()`.
   [[nodiscard]] bool listening() const { return start_ == Start::Done; }
   /// Return the baud rate in bits per second and the line format. They do not change while `listening()`.
   [[nodiscard]] std::uint32_t baud() const { return baud_rate(state_.in_force.baud_code); }
@@ -91,7 +92,7 @@ class Module {
 
   /// See SettingsKeeper::busy.
   [[nodiscard]] bool needs_memory() const { return keeper_.busy(); }
-  /// Returns the memory access to carry out; valid while `needs_memory()`. It stays the same until
+  /// Returns the memory access to carry out; valid while `needs_memory()`. The result stays the same until
   /// `memory_done`.
   [[nodiscard]] MemoryJob memory_job() { return keeper_.job(); }
   /// See SettingsStore::done.
@@ -124,7 +125,7 @@ class Module {
   enum class Start : std::uint8_t {
     Loading,       ///< the memory is being read; outputs are off
     AwaitingInit,  ///< the settings are known; the INIT* switch has not settled yet
-    Done,          ///< the line is open
+    Done,          ///< the mode is selected; the line can be opened
   };
 
   void start_up(Time now);

@@ -6,8 +6,8 @@
 
 namespace ex9000 {
 
-/// Builds an array from rows: `table<Row>({{...}, {...}})`. The compiler counts the rows. (GCC 12 puts a
-/// std::array with a deduced size into writable memory.)
+/// Builds an array from rows: `table<Row>({{...}, {...}})`. The compiler counts the rows. A std::array with a
+/// deduced size cannot replace this function, because GCC 12 puts such an array into writable memory.
 template <class Row, std::size_t size>
 constexpr std::array<Row, size> table(const Row (&rows)[size]) {
   std::array<Row, size> result{};

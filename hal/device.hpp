@@ -47,6 +47,7 @@ class Device {
       wake();  // the turn-around time may be over already, if bytes take no time on this line
     }
   }
+  /// Processes the end of the silence after a byte. Call this when the silence timer expires.
   void on_silence() {
     const Duration more = module_.on_silence();
     // While a reply is being sent, no timer is necessary: `on_sent` ends a frame that is still open.
@@ -62,6 +63,7 @@ class Device {
     module_.on_own_driver_off(board_.clock.now_in_interrupt());
     wake();
   }
+  /// Processes an edge of an input. `channel`: from 0 on; `level`: the level after the edge, true = logic 1.
   void on_edge(unsigned channel, bool level) {
     const Time now = module_.edges_need_times() ? board_.clock.now_in_interrupt() : Time();
     module_.on_edge(channel, level, now);

@@ -8,8 +8,8 @@
 namespace ex9000::hal {
 
 /// A device that was interrupted during a byte may hold the data line low. This class sends up to nine clock
-/// pulses until the device releases the line, and then sends START and STOP. All functions are for the main
-/// loop and do not block.
+/// pulses until the device releases the line, and then sends START and STOP. When the recovery has ended, the
+/// caller must connect the lines to the master again. All functions are for the main loop and do not block.
 ///
 /// `Wires` controls the two lines directly, as open-drain outputs with pull-ups:
 ///

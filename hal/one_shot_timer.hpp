@@ -11,7 +11,7 @@ namespace ex9000::hal {
 /// The longest time that the wake timer is set to.
 inline constexpr Duration kLongestWake = milliseconds(1000);
 
-/// A timer that calls one function of `Device` in its interrupt. A board has two:
+/// A timer that calls one function of `Device` in its interrupt. `Device` requires two:
 ///
 ///   - The silence timer calls `on_silence`. It is set to 60 us to 34 ms. Its interrupt and the receive
 ///     interrupt must not interrupt each other. If both are pending, the interrupt of the silence timer

@@ -34,7 +34,7 @@ def checksum(data: bytes) -> int:
 
 
 def sealed(elf: bytes) -> bytes:
-    """Returns the ELF file with the right checksum in its second stage."""
+    """Returns the ELF file with the right checksum in its second stage. Raises NotAnImage if it has no second stage."""
     for offset, address, data in _segments(elf):
         if address == FLASH and len(data) >= SECOND_STAGE:
             end = offset + SECOND_STAGE - 4
@@ -44,7 +44,10 @@ def sealed(elf: bytes) -> bytes:
 
 
 def flash_content(elf: bytes) -> dict[int, bytes]:
-    """Returns the pages of the flash that an ELF file fills, by address. Unused bytes of a page are FFh."""
+    """Returns the pages of the flash that an ELF file fills, by address. Unused bytes of a page are FFh.
+
+    Raises NotAnImage if the file does not fill the start of the flash.
+    """
     pages: dict[int, bytearray] = {}
     for _, start, data in _segments(elf):
         for index, byte in enumerate(data):
@@ -56,7 +59,7 @@ def flash_content(elf: bytes) -> dict[int, bytes]:
 
 
 def uf2(elf: bytes) -> bytes:
-    """Returns the UF2 file of an ELF file."""
+    """Returns the UF2 file of an ELF file. Raises NotAnImage if the ELF file does not fill the start of the flash."""
     pages = flash_content(elf)
     blocks = []
     for number, (address, page) in enumerate(pages.items()):

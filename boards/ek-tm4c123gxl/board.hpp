@@ -15,8 +15,8 @@ using hal::stellaris::Port;
 
 inline constexpr auto kFamily = hal::stellaris::Family::Tm4c;
 
-/// The crystal oscillates at 16 MHz, and the PLL generates 50 MHz. The LM3S6965 board uses the same 50 MHz,
-/// so the tests of the divisors apply to both boards.
+/// The crystal oscillates at 16 MHz, and the system clock is 50 MHz. The LM3S6965 board has the same system
+/// clock, so the tests of the divisors apply to both boards.
 inline constexpr hal::stellaris::ClockTree kClock{0x15, 4};
 
 #ifdef EX9000_BUS_ON_USB

@@ -32,8 +32,9 @@ class Segment:
 def read(path: Path, memory: Memory) -> list[Segment]:
     """Returns the loaded segments of an image.
 
-    Raises Refusal if the file is not an ELF image for this board. An emulator starts any file. Without this
-    check, a wrong file would cause an error only after 60 s, and only if its UART is still off then.
+    Raises Refusal if the file cannot be read or is not an ELF image for this board. An emulator starts any file.
+    Without this check, QEMU would run a wrong file for 60 s before `run` reports an error, and `run` would report none
+    if the file had enabled the UART by then.
     """
     try:
         file = path.read_bytes()

@@ -20,7 +20,8 @@ def in_memory(size: int, content: bytes = b"") -> int:
 
 
 def in_file(option: str, path: Path, size: int) -> int:
-    """Returns the descriptor of a memory file and locks it against other runs. Creates a missing file with blank bytes.
+    """Returns the descriptor of a memory file and locks the file against other runs. Creates a missing file, and fills
+    a new or empty file with blank bytes.
 
     Raises Refusal, with the name of the option, if the file cannot be written, is locked, or has another size.
     """

@@ -16,7 +16,7 @@ from emulated.refusal import Refusal
 
 
 class Ended(Exception):
-    """The emulator has ended. The message says why."""
+    """The emulator has ended, or has reported an error. The message says why."""
 
 
 class Machine(Protocol):
@@ -32,7 +32,7 @@ class Machine(Protocol):
         """Takes the bytes from the master and returns the bytes from the module. `ready`: the descriptors of `watched`
         that are readable.
 
-        Does not wait. Raises Ended if the emulator has ended.
+        Does not wait for bytes. Raises Ended if the emulator has ended or has reported an error.
         """
 
     def end(self) -> None:
@@ -57,7 +57,7 @@ def parser_for(emulator: str, preset: str) -> argparse.ArgumentParser:
 def run(arguments: argparse.Namespace, emulator: str, start: Callable[[], Machine]) -> int:
     """Runs the machine that `start` returns, until a signal arrives.
 
-    Returns the exit status: 0 after a signal, 1 if the emulator has ended, 2 after a Refusal.
+    Returns the exit status: 0 after a signal, 1 after Ended, 2 after a Refusal.
     """
     try:
         with contextlib.ExitStack() as at_the_end:

@@ -33,13 +33,13 @@ class PseudoTerminal:
         os.close(slave)
         os.set_blocking(self.master, False)
         self.open_events = _watch(self.device)
-        self._written = False  # whether it may contain unread bytes
+        self._written = False  # whether the terminal may contain unread bytes
         self._link: Path | None = None
 
     def link(self, path: Path) -> None:
         """Creates a symbolic link to the terminal. Replaces a link that a killed run has left.
 
-        Raises Refusal if the path exists or cannot be written.
+        Raises Refusal if anything else is at the path, or if the path cannot be written.
         """
         try:
             if path.is_symlink() and _is_stale(path, self.device):
@@ -73,7 +73,7 @@ class PseudoTerminal:
     def _forget_unread(self) -> None:
         """Discards unread bytes, so that the next master does not get the reply to another master.
 
-        This must happen when a master closes the terminal: the next one may read as soon as it has opened it.
+        Call this when a master closes the terminal: the next master may read as soon as it has opened the terminal.
         """
         self._written = False
         slave = os.open(self.device, os.O_RDWR | os.O_NOCTTY | os.O_CLOEXEC)

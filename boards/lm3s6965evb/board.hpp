@@ -16,7 +16,7 @@ using hal::stellaris::Port;
 
 inline constexpr auto kFamily = hal::stellaris::Family::Lm3s;
 
-/// The crystal oscillates at 8 MHz, and the PLL generates 50 MHz, the highest frequency of this family.
+/// The crystal oscillates at 8 MHz. The system clock is 50 MHz, the highest frequency of the LM3S6965.
 inline constexpr hal::stellaris::ClockTree kClock{0x0E, 4};
 
 /// The line is UART0 on PA0 (receive) and PA1 (transmit).

@@ -120,7 +120,7 @@ __attribute__((section(".vectors"), used)) constexpr auto kVectors =
     start_up::vectors<kInterrupts>(on_system_tick, kServed);
 
 /// Starts the drivers. The watchdog starts first, so that it can reset the MCU if a later step hangs. The
-/// outputs start as early as possible after it, because their pins float until then.
+/// outputs start as early as possible after the watchdog, because their pins float until then.
 void start() {
   const ResetReason reason = Watchdog::reset_reason();
   Watchdog::start();

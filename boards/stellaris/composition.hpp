@@ -144,7 +144,7 @@ constexpr ClockGates kClockGates{
 };
 
 /// Starts the drivers. The watchdog starts first, so that it can reset the MCU if a later step hangs. The
-/// outputs start as early as possible after it, because their pins float until then.
+/// outputs start as early as possible after the watchdog, because their pins float until then.
 void start() {
   SystemControl::open(kClockGates);
   Watchdog::start();

@@ -46,7 +46,7 @@ void Inputs::collect(InputEdges& edges, unsigned channels, Time now) {
   }
 }
 
-/// Counts and latches `edges` alternating edges of a channel, and changes its level.
+/// Counts and latches `edges` alternating edges of a channel, and updates its level.
 void Inputs::count(unsigned channel, std::uint32_t edges) {
   if (edges == 0) {
     return;

@@ -33,8 +33,8 @@ class InputEdges {
 
   /// Returns the number of calls of `on_edge`, of all channels together; it wraps.
   [[nodiscard]] std::uint32_t edges() const { return edges_.load(); }
-  /// Returns the number of edges of `channel` since the last call for it. For the main loop, which must call
-  /// this at least once every 65535 edges.
+  /// Returns the number of edges of `channel` since the last call for this channel, modulo 65536. For the
+  /// main loop, which must call this at least once every 65535 edges.
   std::uint16_t collect(unsigned channel) { return channels_[channel].collect(); }
   /// Returns the time of the last edge of `channel`, if `needs_times()` was true at that edge. For the main
   /// loop.
@@ -75,7 +75,7 @@ class Inputs {
   /// Counts and latches the edges of the first `channels` channels, and the levels that have been stable
   /// for their filter time at `now`. Call this at least once every 65535 edges of a channel.
   void collect(InputEdges& edges, unsigned channels, Time now);
-  /// Returns the time until a filtered level counts, at most `at_most`.
+  /// Returns the time until the next filtered level counts, at most `at_most`.
   [[nodiscard]] Duration until_settled(const InputEdges& edges, Time now, Duration at_most) const;
 
   [[nodiscard]] std::uint16_t levels() const { return levels_; }

@@ -18,8 +18,8 @@ class OutputTimers {
   void start(unsigned channel, std::uint16_t units, Time now);
   /// Stops the timers of `channels`, bit n for channel n.
   void stop(std::uint16_t channels) { running_ = static_cast<std::uint16_t>(running_ & ~channels); }
-  /// Stops the timers that have expired and returns their channels, bit n for channel n. The main
-  /// loop calls this in every pass. Two calls must be at most 30 minutes apart.
+  /// Stops the timers that have expired and returns their channels, bit n for channel n. The main loop calls
+  /// this in every pass. Two calls must be at most 30 minutes apart.
   std::uint16_t expire(Time now);
 
   /// Returns the channels whose timer is running; bit n is channel n.

@@ -46,7 +46,7 @@ Refusal set_configuration(Exchange& exchange) {
 }
 
 Refusal read_configuration(Exchange& exchange) {
-  // This is the stored address in INIT mode too, so that a user can find a lost address.
+  // The reply contains the stored address even in INIT mode, so that a user can find a lost address.
   exchange.reply.put('!');
   exchange.reply.put_hex(exchange.state.settings.address);
   exchange.reply.put_hex(kDioType);

@@ -61,7 +61,7 @@ void refuse(Exchange& exchange, Refusal refusal) {
   }
 }
 
-/// Appends the checksum, if it is in force, and CR.
+/// Appends the checksum, if it is in force, and CR. An empty reply stays empty.
 void finish(Exchange& exchange) {
   Reply& reply = exchange.reply;
   if (reply.empty()) {

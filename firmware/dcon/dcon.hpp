@@ -18,7 +18,7 @@ std::size_t find_command(const Model& model, Bytes frame);
 
 /// Judges the frame of `exchange` and writes its outcome and its reply, including the checksum, if it is in
 /// force, and CR. The module must carry out the outcome before it sends the reply. The reply is empty if the
-/// frame is a broadcast or is for another address. Changes nothing but `exchange`.
+/// frame is `#**` or `~**`, or is for another address. Changes nothing but `exchange`.
 void answer(Exchange& exchange);
 
 /// Replaces the reply with `?AA`, the checksum if it is in force, and CR. Call this if the settings could not

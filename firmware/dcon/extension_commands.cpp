@@ -12,7 +12,8 @@ using modbus::WordRow;
 
 constexpr std::uint8_t kDelayKey = 'D';  // the second letter of `~AARD`
 
-/// Returns the value of the four digits from `args[at]` on, or -1 if one of them is not a hex digit.
+/// Returns the value of the four digits from `args[at]` on, or -1 if one of them is not an upper-case hex
+/// digit.
 int hex_word(Bytes args, std::size_t at) {
   constexpr int kByte = 0x100;
   const int high = hex_byte(args[at], args[at + 1]);

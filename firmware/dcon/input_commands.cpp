@@ -9,7 +9,8 @@ namespace {
 
 constexpr unsigned kNoChannel = kMaxInputs;
 
-/// Returns the input channel of the hex digit N, or kNoChannel if this model does not have it.
+/// Returns the input channel of the hex digit N. Returns kNoChannel if `digit` is not an upper-case hex
+/// digit, or if the model does not have this channel.
 unsigned channel_of(const Model& model, std::uint8_t digit) {
   const int channel = hex_value(digit);
   return channel >= 0 && channel < model.inputs ? static_cast<unsigned>(channel) : kNoChannel;

@@ -13,9 +13,9 @@ inline void put_hex_word(Reply& reply, std::uint16_t value) {
   reply.put_hex(value & 0xFFU);
 }
 
-/// Writes First and Second data (manuals 1.10). More than 8 outputs or inputs use both, high byte first.
-/// Otherwise First contains the outputs and Second the inputs. On a module without outputs, First contains
-/// the inputs and Second is 00.
+/// Writes First and Second (manuals 1.10). On a model with more than 8 outputs or more than 8 inputs, First
+/// contains the high byte and Second the low byte. On other models with outputs, First contains the outputs
+/// and Second the inputs. On other models without outputs, First contains the inputs, and Second is 00.
 inline void put_data(const Model& model, std::uint16_t outputs, std::uint16_t inputs, Reply& reply) {
   constexpr unsigned kChannelsOfAByte = 8;
   if (model.outputs > kChannelsOfAByte || model.inputs > kChannelsOfAByte) {

@@ -55,7 +55,7 @@ class WrittenByMainLoop : public detail::Crossing<T> {
 
 /// A value that is too large for one instruction, so only one side at a time owns it. The main loop owns it
 /// first and hands it over by storing to a WrittenByMainLoop. The interrupts return it by storing to a
-/// WrittenByInterrupt. A side must access it only while it owns it.
+/// WrittenByInterrupt. A side may access the value only while it owns the value.
 template <class T>
 class HandedToInterrupt {
  public:

@@ -8,10 +8,10 @@
 
 namespace ex9000 {
 
-/// Stores the times of the first and the last host OK that the main loop has not taken yet. The host OKs
-/// between them do not matter: a host OK wakes the main loop, and one pass of the main loop is shorter than
-/// the shortest timeout of the host watchdog, 0.1 s, so the watchdog cannot expire between the first and the
-/// last.
+/// Stores the times of the first and the last host OK that the main loop has not taken yet. Host OKs between
+/// these two do not matter, because the host watchdog cannot expire between the first and the last: a host OK
+/// wakes the main loop, and one pass of the main loop is shorter than the shortest timeout, 0.1 s. A request
+/// that counts like a host OK (register 0x0251) is stored like one.
 class HostOks {
  public:
   /// A host OK counts from its CR in ASCII, and from the end of its silence in Modbus.

@@ -65,7 +65,7 @@ class Receiver {
 
  private:
   [[nodiscard]] bool modbus() const { return kBuiltModbus && protocol_ == Protocol::ModbusRtu; }
-  /// Counts the verdict, if a frame has ended at `over`.
+  /// Counts `verdict`, unless it is Open. `over`: when the frame ended.
   void note(Verdict verdict, Time over) {
     if (verdict != Verdict::Open) {
       count(verdict, over);

@@ -39,8 +39,9 @@ Verdict RtuAssembler::cut_off(FrameQueue& queue) {
   return verdict;
 }
 
-/// Queues the frame if its CRC is correct, either from the first byte or after a turn-around byte 00, and if
-/// it is a broadcast or has the address of this module. Does not queue a host OK.
+/// Judges the frame. If the CRC of the whole frame is wrong or its first byte is spoiled, ignores a leading
+/// turn-around byte 00. Returns Open if the CRC or the length is wrong or a byte is spoiled. Queues a frame
+/// that is a broadcast or has the address of this module, except a host OK.
 Verdict RtuAssembler::conclude(FrameQueue& queue) {
   Frame& frame = queue.assembling();
   unsigned offset = 0;

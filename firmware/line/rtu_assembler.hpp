@@ -30,15 +30,17 @@ class RtuAssembler {
   /// receive interrupt.
   Verdict byte(FrameQueue& queue, std::uint8_t byte, ByteStatus status, Time now);
 
-  /// Call this when the timer has expired. Restart the timer with `next_wait()` after this call. Returns the
-  /// verdict on the frame that has ended, or Open if none has ended. An accepted frame contains address,
-  /// function and data, but neither the CRC nor a leading turn-around byte 00. For the timer interrupt.
+  /// Call this when the timer has expired. After this call, restart the timer with `next_wait()`, unless that
+  /// time is 0. Returns the verdict on the frame that has ended, or Open if none has ended. An accepted frame
+  /// contains address, function and data, but neither the CRC nor a leading turn-around byte 00. For the
+  /// timer interrupt.
   Verdict silence(FrameQueue& queue);
   /// Returns the next time for the timer; 0 if none is necessary.
   [[nodiscard]] Duration next_wait() const;
 
   /// Call this when the module's own driver has been on. A frame with a correct CRC is complete and is
-  /// judged; any other frame is dropped (wire.md D9). For interrupts.
+  /// judged; any other frame is dropped (wire.md D9). Returns the verdict, or Open if no frame was open or
+  /// the frame is dropped. For interrupts.
   Verdict cut_off(FrameQueue& queue);
 
   /// Returns whether the last frame with a correct check for this module was a broadcast. For interrupts.

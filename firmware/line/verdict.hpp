@@ -15,10 +15,10 @@ enum class Verdict : std::uint8_t {
   Accepted,   ///< correct, and for this module or a broadcast; the frame is in the queue
   HostOk,     ///< a host OK; counted in the interrupt, so that it is never lost
   Ignored,    ///< ASCII: correct and a broadcast, but not a command
-  Foreign,    ///< correct, but for another address
+  Foreign,    ///< correct, but neither for this module nor a broadcast
   NoRoom,     ///< correct, and for this module or a broadcast, but lost because another frame is waiting
   BadCheck,   ///< wrong or missing checksum, wrong CRC
-  TooShort,   ///< too short to contain a check or, in Modbus, an address
+  TooShort,   ///< ASCII with checksum: fewer than 3 characters; Modbus: fewer than 4 bytes
   TooLong,    ///< longer than the longest allowed frame
   LineError,  ///< a byte had a framing error, wrong parity or a break
   Overrun,    ///< a byte was lost because the previous byte was not read in time

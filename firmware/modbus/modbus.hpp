@@ -5,8 +5,9 @@
 
 namespace ex9000::modbus {
 
-/// Judges the frame of `exchange` and writes its reply, including the CRC. The reply must be sent after the
-/// outcome has been carried out; it is empty for a broadcast. Changes nothing but `exchange`.
+/// Judges the frame of `exchange` and writes its outcome and its reply, including the CRC. The module must
+/// carry out the outcome before it sends the reply. The reply is empty if the frame is a broadcast. Changes
+/// nothing but `exchange`.
 void answer(Exchange& exchange);
 
 /// Replaces the reply with an exception. Call this if the settings could not be stored. The empty reply to a

@@ -46,13 +46,13 @@ struct BitWrite {
   std::uint16_t value = 0;
 };
 
-/// Additional rules for writing to a row.
+/// Additional rules for access to a row.
 using Rules = std::uint8_t;
 constexpr Rules kPlain = 0;
-constexpr Rules kDrivesOutputs = 1U << 0U;  ///< exception 04 while the timeout status is set
+constexpr Rules kDrivesOutputs = 1U << 0U;  ///< writes are refused while the timeout status is set
 constexpr Rules kOnlyOn = 1U << 1U;         ///< exception 03 for function 05 with 0000
-constexpr Rules kConfiguration = 1U << 2U;  ///< broadcasts are ignored
-constexpr Rules kExtension = 1U << 3U;      ///< `~AAX` accesses it too (firmware/extensions.md)
+constexpr Rules kConfiguration = 1U << 2U;  ///< writes by broadcast are ignored
+constexpr Rules kExtension = 1U << 3U;      ///< `~AAX` accesses the row too (firmware/extensions.md)
 constexpr Rules kLong = 1U << 4U;           ///< pairs of registers with 32-bit values, high word first
 
 /// The part of a row of coils or discrete inputs that an image contains.
@@ -256,7 +256,7 @@ inline constexpr auto kWordRegisters = table<WordRegister>({
                  {0x0250, Width::One, Needs::Inputs, kReadRegisters | kWriteRegisters,
                   kExtension | kConfiguration, 0, 0xFFFF, read_inverted_inputs, write_inverted_inputs}},
     WordRegister{"watchdog-feed",
-                 "what restarts the host watchdog: 0 only a host OK, 1 also every request for this module",
+                 "what restarts the host watchdog: 0 a host OK, 1 also every request for this module",
                  "0 or 1; not by broadcast",
                  {0x0251, Width::One, Needs::Nothing, kReadRegisters | kWriteRegisters,
                   kExtension | kConfiguration, 0, 1, read_fed_by_requests, write_fed_by_requests}},

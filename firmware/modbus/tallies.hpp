@@ -1,4 +1,5 @@
-// The line tallies: what a module has counted on its line since reset (firmware/extensions.md and D1).
+// The line tallies: what a module has counted on its line since reset or clearing (firmware/extensions.md,
+// wire.md D1).
 #pragma once
 
 #include <cstdint>

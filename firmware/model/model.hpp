@@ -30,7 +30,7 @@ struct Model {
   std::string_view designation;  ///< as on the label, e.g. "EX9042D-M"
   std::uint8_t inputs;           ///< number of channels, 0 to 16; more than 8 only without outputs
   std::uint8_t outputs;          ///< number of channels, 0 to 16; more than 8 only without inputs
-  std::uint16_t modbus_code;     ///< returned by function 46, e.g. 0x9042; 0: the model speaks ASCII only
+  std::uint16_t modbus_code;     ///< the module's code in Modbus, e.g. 0x9042; 0: the model speaks ASCII only
   StatusStyle status_style;
   std::string_view factory_name;  ///< factory setting of the name, which `$AAM` returns
   std::uint8_t longest_name;      ///< longest name that `~AAO` accepts, in characters

@@ -28,8 +28,9 @@ class Debounce {
 
   /// Returns whether a level has been accepted since reset.
   [[nodiscard]] bool known() const { return known_; }
+  /// Returns the last accepted level; false if none has been accepted since reset.
   [[nodiscard]] bool level() const { return level_; }
-  /// Returns when to sample the switch again, at most 1 ms after the last sample; disarmed if the level has
+  /// Returns when to sample the switch again, at most 1 ms after the last sample; disarmed if this level has
   /// been accepted.
   [[nodiscard]] Deadline next_sample() const { return next_sample_; }
 

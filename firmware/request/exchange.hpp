@@ -19,7 +19,7 @@ struct Exchange {
   const LineTallies& tallies;  ///< the counts already include this request
 
   Bytes frame;       ///< the request as the assembler accepted it
-  Bytes args;        ///< the part of a DCON request after address and key; set for each DCON request
+  Bytes args;        ///< the part of a DCON request after address and key; set before a DCON handler runs
   bool broadcast{};  ///< a Modbus request to address 0; set for each Modbus request
 
   Outcome outcome;

@@ -77,7 +77,8 @@ class Outcome {
   /// Returns the timed outputs to switch; the mask is 0 if there are none.
   [[nodiscard]] const TimedDrive& timed_outputs_to_drive() const { return timed_drive_; }
 
-  /// Returns the change of settings, so that the caller can add to it.
+  /// Records that the request changes settings. Returns the change, so that the caller can add settings to
+  /// it.
   SettingsChange& change() {
     changes_settings_ = true;
     return change_;

@@ -18,7 +18,7 @@ class RequestCycle {
     Idle,           ///< the next request may be judged
     AwaitingStore,  ///< judged; the store of the changed settings has not begun
     Storing,        ///< judged; the memory is storing the changed settings
-    ReplyReady,     ///< done; the reply waits until the line has been idle for long enough
+    ReplyReady,     ///< done; the reply waits for the gap after the last reply and for the response delay
     Replying,       ///< the reply is being sent
   };
 

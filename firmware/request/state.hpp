@@ -29,7 +29,8 @@ struct Sample {
   std::uint16_t inputs = 0;
 };
 
-/// Counters of the main loop. Together with LineTallies they are the line tallies (modbus/tallies.hpp).
+/// The counts of the main loop for the line tallies (modbus/tallies.hpp). LineTallies contains the counts of
+/// the interrupts.
 struct Diagnostics {
   std::uint16_t exceptions = 0;  ///< exceptions; in ASCII, replies that begin with `?`
   std::uint16_t no_responses = 0;

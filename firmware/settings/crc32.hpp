@@ -22,7 +22,7 @@ class Crc32Remainders {
     }
   }
 
-  /// Returns the remainder of the lowest bits of `value`.
+  /// Returns the remainder of the lowest four bits of `value`.
   [[nodiscard]] constexpr std::uint32_t of(std::uint32_t value) const {
     return remainders_[value % remainders_.size()];
   }

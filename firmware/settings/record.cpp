@@ -114,7 +114,8 @@ class Decoder {
 };
 
 /// Returns how many bytes of settings a record requires: up to the last setting that differs from its factory
-/// value. A module that uses none of the newer settings therefore writes one page, as older firmware does.
+/// value, but at least kFirstSettings. A module that uses none of the newer settings therefore writes one
+/// page, as older firmware does.
 std::size_t required_size(const Model& model, const Settings& settings) {
   const Settings factory = Settings::factory(model);
   std::size_t size = 0;
@@ -143,7 +144,7 @@ std::uint32_t settings_check(const Model& model, Bytes bytes) {
 }
 
 void write_record(const Model& model, const Settings& settings, std::uint16_t sequence, RecordBytes& record) {
-  if (record[kLengthAt] <= kKnownSettings) {  // otherwise it keeps the bytes of newer firmware
+  if (record[kLengthAt] <= kKnownSettings) {  // otherwise the record keeps the bytes of newer firmware
     record[kLayoutAt] = kLayout;
     record[kLengthAt] = static_cast<std::uint8_t>(required_size(model, settings));
   }

@@ -49,8 +49,9 @@ constexpr std::size_t kRecordRoom = 128;
 ///     then        CRC-32 over the model's designation and all bytes before it, low byte first
 ///
 /// New settings are only appended. A record ends after the last setting that differs from its factory value,
-/// or after `safe_value`; the settings that are missing in it have their factory values, as in a record of
-/// older firmware. A record of newer firmware is longer; `write_record` keeps the additional bytes.
+/// but not before the end of `safe_value`. The settings that are missing in a record have their factory
+/// values, as in a record of older firmware. A record of newer firmware may be longer; `write_record` keeps
+/// the additional bytes.
 ///
 /// The CRC includes the designation, so that settings of another model are never used: their power-on value
 /// is intended for other outputs. The CRC detects every error burst of up to 32 bits and every error of two

@@ -150,7 +150,7 @@ struct Settings {
   friend bool operator!=(const Settings& a, const Settings& b) { return !(a == b); }
 };
 
-/// New values for some of the settings. A command changes all of them or none.
+/// New values for some of the settings. A command stores all of these values or none.
 struct SettingsChange {
 #define EX9000_MEMBER(type, name, factory_value, possible) std::optional<type> name{};
   EX9000_SETTINGS(EX9000_MEMBER)

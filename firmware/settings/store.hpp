@@ -69,14 +69,14 @@ class SettingsStore {
   /// is not used after the next reset.
   void begin_saving(const Settings& settings);
   [[nodiscard]] bool busy() const { return step_ != Step::Idle; }
-  /// Makes the running save fail at its next failed attempt to write. Has no effect unless the store is
-  /// writing or verifying.
+  /// Makes the running save fail at its next failed attempt to write or verify. Has no effect unless the
+  /// store is writing or verifying.
   void give_up_at_next_failure() {
     if (step_ == Step::Write || step_ == Step::Verify) {
       attempt_ = kAttempts - 1;
     }
   }
-  /// Returns whether the last save succeeded.
+  /// Returns whether the last save succeeded. Also true after `begin_invalidating`, which saves nothing.
   [[nodiscard]] bool saved() const { return saved_; }
 
   /// Returns whether the power failed during the first save after a firmware update. The new copy is then
@@ -97,7 +97,8 @@ class SettingsStore {
   /// Returns the settings that a reset now would load; for the exceptions, see SettingsKeeper::certain.
   [[nodiscard]] const Settings& stored() const { return stored_; }
 
-  /// Returns the memory access to carry out. Call this only while `busy()`. It stays the same until `done`.
+  /// Returns the memory access to carry out. Call this only while `busy()`. The result stays the same until
+  /// `done`.
   [[nodiscard]] MemoryJob job();
   /// Call this when the job has ended. `ok`: the memory answered.
   void done(bool ok);

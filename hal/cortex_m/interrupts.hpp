@@ -16,7 +16,7 @@ class Interrupts {
   /// An interrupt cannot interrupt another interrupt. The stack therefore needs room for only one interrupt,
   /// and interrupts can share data without protection. Priorities only define the order of pending
   /// interrupts: SysTick, then the others by number, then `last`. The board passes the UART as `last`, so
-  /// that the end of a silence is processed before the byte that follows it. Do not call this on a
+  /// that the end of a silence is processed before the byte that follows it. Do not call this overload on a
   /// Cortex-M0+, on which each priority can interrupt a lower one.
   static void enable(std::uint32_t numbers, std::uint32_t last) {
     constexpr std::uint32_t kLowest = 0xFF;
@@ -47,7 +47,7 @@ class Interrupts {
   }
 
   /// Resets the microcontroller immediately and does not return. Interrupts, faults and the main loop may
-  /// call it. On an RP2040, it would reset only the processor.
+  /// call this. Do not call this on an RP2040, because the reset would affect only the processor.
   [[noreturn]] static void reset() {
     constexpr Bits<ApplicationInterrupt> kReset(1U << 2U);
     kApplicationInterrupt.write(kKey | kReset);

@@ -32,20 +32,21 @@ class Memory {
   [[nodiscard]] VirtualTime next() const { return ends_; }
   void run();
 
-  /// Simulates a power failure or a reset of the MCU. A write in progress changes only a part of the page:
-  /// the first bytes are new, in proportion to the time that has passed, the next byte is corrupted, and the
-  /// rest is old.
+  /// Simulates a power failure or a reset of the MCU, and ends the job. If bytes are being programmed, the
+  /// first ones are new, in proportion to the time since programming began. The next byte is corrupted, and
+  /// the rest are old.
   void cut();
 
-  /// A function that saves each programmed range outside this object. It is called before the job ends. If it
-  /// returns false, the job fails.
+  /// A function that saves each programmed range outside this object. It is called at the end of a write; if
+  /// it returns false, the write fails. `cut` also calls it, for the range that may have changed, and
+  /// ignores the result.
   using Keep = std::function<bool(std::uint16_t address, Bytes bytes)>;
   void keep(Keep keep) { keep_ = std::move(keep); }
 
-  /// Sets a function that is called after each successful write, before the job ends.
+  /// Sets a function that is called after each successful write, before the device gets the result.
   void on_write(std::function<void()> written) { written_ = std::move(written); }
 
-  /// While `on` is true, all jobs fail and change nothing.
+  /// While `on` is true, each job that ends fails and changes nothing.
   void fail(bool on) { failing_ = on; }
 
   [[nodiscard]] const std::vector<std::uint8_t>& contents() const { return contents_; }

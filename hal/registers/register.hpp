@@ -1,5 +1,5 @@
-// Types for registers and their bits. If code writes the bits of one register to another register, the
-// compiler rejects it.
+// Types for registers and their bits. The compiler rejects code that writes the bits of one register to
+// another register.
 #pragma once
 
 #include <cstdint>

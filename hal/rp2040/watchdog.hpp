@@ -12,8 +12,7 @@ namespace ex9000::hal::rp2040 {
 
 class WatchdogRegisters {
  public:
-  /// Resets the MCU immediately and does not return. Interrupts, faults and the main loop may call it at any
-  /// time.
+  /// Resets the MCU immediately and does not return. Interrupts, faults and the main loop may call this.
   [[noreturn]] static void reset_chip() {
     kResetBy.write(kAllButOscillators);
     kControl.set(kTrigger);

@@ -22,7 +22,7 @@ constexpr const char* kDescription =
     "or on a real serial port.";
 
 constexpr const char* kDefaultPty = "ex9000.tty";
-/// Represents the value of --panel if the user gives no port.
+/// The value of --panel if the user gives the option without a value.
 constexpr const char* kUsualPort = "usual";
 
 std::string list_models() {
@@ -68,7 +68,8 @@ void apply_writing(const WritingTexts& texts, Writing& writing) {
   }
 }
 
-/// Returns the prefix of the error message: the place in the bus file, or the option of the command line.
+/// Returns the prefix of the error message: the place in the bus file, or the option or the module's key on
+/// the command line.
 std::string where(const SetupError& error, const Setup& setup) {
   const Places& places = error.line ? setup.lines[*error.line].places : setup.places;
   const auto place = places.find(error.key);
@@ -78,7 +79,8 @@ std::string where(const SetupError& error, const Setup& setup) {
   return error.key == "eeprom" ? "eeprom=" : "--" + error.key + ": ";
 }
 
-/// Returns how a message refers to a key: as the option of the command line, unless the bus file has the key.
+/// Returns how a message refers to a key and its value: as the key of the bus file if the bus file sets it,
+/// otherwise as the option of the command line.
 std::string name_of(const std::string& key, const std::string& value, const Setup& setup) {
   const auto has_key = [&key](const auto& part) { return part.places.count(key) != 0; };
   const bool in_file = has_key(setup) || std::any_of(setup.lines.begin(), setup.lines.end(), has_key);
@@ -112,6 +114,7 @@ void apply_options(const Texts& texts, Setup& setup) {
   }
 }
 
+/// Returns the setup that the arguments describe, after all checks. Reads the bus file if there is one.
 /// Throws std::invalid_argument with a one-line message.
 Setup setup_of(const Texts& texts) {
   if (texts.line.modules.empty()) {
@@ -157,8 +160,9 @@ bool is_number(const std::string& text) {
   return !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
 }
 
-/// Returns the arguments with the values of --log and --panel attached to the options. These values are
-/// optional. CLI11 would take any next word as the value, even if that word is a module.
+/// Returns the arguments with a value attached to each --log and --panel: the next word if it is a value of
+/// the option, otherwise the default value. CLI11 itself would take any next word as the value, even if that
+/// word is a module.
 std::vector<std::string> with_optional_values(int argc, const char* const* argv) {
   std::vector<std::string> words;
   for (int i = 1; i < argc; ++i) {
@@ -246,7 +250,7 @@ Parsed printed(const std::string& text) {
   return parsed;
 }
 
-/// Returns the options given for `app` itself, in the order of --help.
+/// Returns the options and positional arguments given for `app` itself, in the order of --help.
 std::vector<const CLI::Option*> given_of(const CLI::App& app) {
   std::vector<const CLI::Option*> given;
   for (const CLI::Option* option : app.get_options()) {
@@ -257,8 +261,8 @@ std::vector<const CLI::Option*> given_of(const CLI::App& app) {
   return given;
 }
 
-/// Returns the name of an option. A module has no option name, so this function returns the module as the
-/// user wrote it.
+/// Returns the name of an option. Modules have no option name, so for modules this function returns the first
+/// module as the user wrote it.
 std::string name_of(const CLI::Option& option) {
   return option.get_positional() ? option.results().front() : option.get_name();
 }
@@ -323,7 +327,7 @@ Parsed parse_arguments(int argc, const char* const* argv) {
       ->type_name("DEVICE");
   app.add_flag("--echo", texts.line.echo, "ignore the echo of a serial adapter that receives what it sends");
   app.add_option("--baud", texts.line.baud,
-                 "set the line's rate until a master sets one (default: the first module's)")
+                 "set the line's baud rate until a master sets one (default: the first module's)")
       ->type_name("RATE");
   app.add_option("--format", texts.line.format,
                  "set the line's format: 8N1, 8N2, 8E1 or 8O1 (default: the first module's)")
@@ -371,7 +375,7 @@ Parsed parse_arguments(int argc, const char* const* argv) {
   app.add_flag("--example", example, "print an example of a bus file and exit");
   app.add_flag("--schema", schema, "print the JSON Schema of bus files and exit");
   app.add_flag("--models", models, "list the models and exit");
-  app.require_subcommand(0, 1);  // a file may have the same name as a subcommand
+  app.require_subcommand(0, 1);  // at most one, so that a file may have the name of a subcommand
   PlayTexts play_texts;
   const CLI::App* const playing = add_play(app, play_texts);
   DescribeTexts describe_texts;

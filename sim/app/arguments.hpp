@@ -21,7 +21,8 @@ struct Parsed {
   int exit_status = 0;
 };
 
-/// Returns `text` with each newline replaced by a blank, because arguments may contain newlines.
+/// Returns `text` as one line, because arguments may contain newlines: replaces each newline by a blank, and
+/// removes the blanks at the end.
 std::string one_line(std::string text);
 
 /// Parses the command line and reads the bus file that it names. Wrong arguments do not cause an exception:

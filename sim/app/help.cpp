@@ -66,7 +66,8 @@ Examples:
   ex9000-sim EX9052D@01 --input '1 0 square 100ms' --fault '1 lost-reply every 10th reply' --log
   ex9000-sim EX9042D-M@01 --tcp 5020 --control test.ctl --speed step
   ex9000-sim --example > bus.json && ex9000-sim bus.json
-The rate that a master sets on the pseudo-terminal becomes the line's rate. A pseudo-terminal carries no parity.)";
+The baud rate that a master sets on the pseudo-terminal becomes the baud rate of
+the line. A pseudo-terminal carries no parity.)";
 
 }  // namespace
 

@@ -12,7 +12,8 @@ namespace ex9000::sim {
 namespace {
 
 /// Removes the module's position at the start of `text`. Returns the position, counted from 0; nullopt if
-/// `text` does not start with a position.
+/// `text` does not start with a number. Throws std::invalid_argument if the number is not from 1 to
+/// `modules`.
 std::optional<std::size_t> take_position(std::string& text, std::size_t modules) {
   const auto end = text.find(' ');
   if (text.empty() || end == 0 || text.find_first_not_of("0123456789") < end) {

@@ -1,4 +1,4 @@
-// The modules of a single line and its options on the command line.
+// Reads the modules and the options of a single line from the command line.
 #pragma once
 
 #include <optional>

@@ -8,13 +8,14 @@
 
 namespace ex9000::sim {
 
-/// Returns the value of an option, as `parse` reads it.
+/// Returns the result of `parse` for `text`, the value of an option. Adds the option to the message of an
+/// exception of `parse`.
 template <class Parse>
 auto of_option(const char* option, const std::string& text, Parse parse) {
   return with_place(std::string(option) + ": ", [&] { return parse(text); });
 }
 
-/// Sets `value` if the option is given.
+/// Sets `value` to the parsed `text` if the option is given. Throws like `of_option`.
 template <class Parse, class Value>
 void take_option(const char* option, const std::optional<std::string>& text, Parse parse, Value& value) {
   if (text) {

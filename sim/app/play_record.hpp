@@ -18,8 +18,8 @@ class PlayRecord final : public play::PlayObserver {
  public:
   using Print = LineRecord::Print;
 
-  /// Writes the log and the capture that `writing` requests. The capture file is opened when the first run
-  /// begins; from then on this class throws like Capture.
+  /// Writes the log and the capture that `writing` requests. The first call of `run_begins` opens the capture
+  /// file. That call and all later calls throw the exceptions of Capture.
   PlayRecord(Writing writing, Print print);
 
   // --- play::PlayObserver ---

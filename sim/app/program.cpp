@@ -40,7 +40,7 @@ void run(const Setup& setup) {
     }
   };
   boost::asio::signal_set signals(io);
-  // From here on, a stop signal does not kill the process, so the program can remove the files that it
+  // From here on, a stop signal ends `io` instead of the process, so the program removes the files that it
   // creates.
   add_stop_signals(signals);
   signals.async_wait([&io](const boost::system::error_code& /*error*/, int /*signal*/) { io.stop(); });
@@ -77,7 +77,7 @@ int report_error(const std::exception& error, int status) {
 }
 
 /// Opens /dev/null in place of each standard stream that is closed. Otherwise the next file that the program
-/// opens would get the number of that stream, and the log would be written into that file.
+/// opens would get the descriptor of that stream, and the log would be written into that file.
 void occupy_standard_streams() {
   int fd = open("/dev/null", O_RDWR);
   while (fd >= 0 && fd <= STDERR_FILENO) {

@@ -40,8 +40,8 @@ bool StandardStream::write(const std::string& text) {
 
 /// Waits until the stream accepts output. Returns false if `gives_up` has returned true.
 bool StandardStream::wait_for_room() const {
-  // Another thread may receive the signal, which then does not interrupt poll(). Therefore poll() has a time
-  // limit, in milliseconds.
+  // A signal that another thread receives does not interrupt poll(). Therefore poll() has a time limit, in
+  // milliseconds, after which this function calls `gives_up` again.
   constexpr int kAskEvery = 100;
   pollfd stream{file_, POLLOUT, 0};
   while (poll(&stream, 1, 0) == 0) {

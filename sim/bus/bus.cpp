@@ -42,8 +42,8 @@ std::uint32_t Bus::bit_rate(std::uint32_t baud) const {
   return static_cast<std::uint32_t>(std::min(std::uint64_t{baud} * times_faster_, kFastest));
 }
 
-/// Returns the bit rate in virtual time and the format as receivers read it. A receiver gets the bytes of a
-/// sender unchanged if this result is the same for both.
+/// Returns the bit rate in virtual time and the format as receivers read it. If the result is the same for a
+/// sender and a receiver, the receiver gets the bytes unchanged, except those that collide or are disturbed.
 SerialMode Bus::on_the_wires(SerialMode mode) const {
   return {bit_rate(mode.baud), as_received(mode.format)};
 }

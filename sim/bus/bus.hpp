@@ -20,14 +20,15 @@ using hal::SerialMode;
 using hal::doubles::VirtualClock;
 using hal::doubles::Wire;
 
-/// A device on the two wires: a module or a master.
+/// A user of the bus. Most stations are devices on the two wires, for example a module or a master. Other
+/// stations do not send or receive; the bus only calls their `run`.
 class Station {
  public:
   /// The bus calls this at the time that the station has set with BusEnd::run_at. Before the call, the bus
   /// clears that time.
   virtual void run() = 0;
-  /// The bus calls this after the first stop bit of a byte, if the station listens. A station also receives
-  /// its own bytes, because both directions share the two wires.
+  /// The bus calls this after the first stop bit of a byte, if the station listens; `status` says whether the
+  /// byte has an error. A station also receives its own bytes, because both directions share the two wires.
   virtual void receive(std::uint8_t /*byte*/, ByteStatus /*status*/) {}
 
  protected:
@@ -88,14 +89,14 @@ class Disturbance {
 
 /// A half-duplex line. A byte lasts ten or eleven bit times at the rate of its sender. A receiver with the
 /// same rate and parity gets the byte after its first stop bit. A receiver with another rate or parity
-/// samples the wave in its own mode and gets framing errors, parity errors and wrong bytes. If two drivers
-/// are enabled at the same time, the level of the line is 0 while either driver sends a 0, and receivers
-/// sample the resulting wave.
+/// samples the wave in its own mode and gets framing errors, parity errors and wrong bytes. If several
+/// drivers are enabled at the same time, the level of the line is 0 while at least one of them sends a 0, and
+/// receivers sample the resulting wave.
 ///
 /// The clock jumps from event to event; this class does not depend on real time.
 ///
-/// `times_faster` multiplies all nominal rates of the line. It does not change which stations understand each
-/// other or which bytes collide.
+/// `times_faster` multiplies all nominal rates of the line. This factor does not change which stations
+/// understand each other or which bytes collide.
 class Bus {
  public:
   explicit Bus(VirtualClock& clock, std::uint32_t times_faster = 1);
@@ -112,11 +113,11 @@ class Bus {
   /// must live as long as the bus is used.
   void disturb(Disturbance& disturbance) { disturbance_ = &disturbance; }
 
-  /// Returns the time of the next event of the bus or of a station.
+  /// Returns the time of the next event of the bus or of a station; kNever if there is none.
   [[nodiscard]] VirtualTime next() const {
     return std::min(std::min(next_byte_end_, next_sample_), due_times_.next());
   }
-  /// Processes all events at the time `next`. Sets the clock to that time.
+  /// Processes all events at the time `next`, which must not be kNever. Sets the clock to that time.
   void run_next();
   /// Processes all events up to and including `until`. Sets the clock to `until`.
   void run_until(VirtualTime until);

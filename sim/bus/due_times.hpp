@@ -1,4 +1,4 @@
-// The times at which stations have to run, the earliest first.
+// Stores the times at which stations have to run, and finds the earliest of them.
 #pragma once
 
 #include <algorithm>
@@ -14,8 +14,8 @@ using hal::doubles::VirtualTime;
 
 /// Stores one due time for each station, and the earliest due time of each block of stations. After a change
 /// of due times, `next` searches only the blocks that have changed. Often all stations set their times
-/// between two calls of `next`, for example receivers after a byte, so a change of a due time must cost
-/// little.
+/// between two calls of `next`, for example receivers after a byte, so a change of a due time must take
+/// little time.
 class DueTimes {
  public:
   /// Adds a station without a due time. Returns its number, counted from 0.

@@ -1,4 +1,4 @@
-// The master's end of the line: sends bytes on the wires one after the other.
+// The master's end of the line: sends bytes on the wires one after the other, and receives bytes.
 #pragma once
 
 #include <cstdint>
@@ -21,9 +21,10 @@ class Master final : public Station {
 
   /// Returns how long `bytes` bytes take on this line.
   [[nodiscard]] VirtualTime takes(std::size_t bytes) const { return wire_.takes(bytes, mode_); }
-  /// Sends the bytes after those that already wait or are on the wires. If there are none, sends them
-  /// immediately, but not before `not_before`. The driver is enabled from the first byte to the last. Does
-  /// not block. The bytes at the positions `damaged` have wrong parity, if the format has one.
+  /// Sends the bytes after those that already wait or are on the wires. If no byte waits or is on the wires,
+  /// sends them immediately, but not before `not_before`. The driver is enabled from the first byte to the
+  /// last. Does not block. The bytes at the positions `damaged`, counted from 0, have wrong parity if the
+  /// format has a parity bit.
   void send(const std::uint8_t* bytes, std::size_t size, VirtualTime not_before = VirtualTime(0),
             const std::vector<std::size_t>& damaged = {});
   /// Returns whether bytes wait or are on the wires.

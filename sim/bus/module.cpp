@@ -78,7 +78,7 @@ void SimulatedModule::start(ResetReason reason) {
 void SimulatedModule::stop() {
   mcu_->line.abort();
   wire_.abort();
-  // A write reads its data from buffers in `mcu_`, so it must end before they are destroyed.
+  // A memory job uses buffers in `mcu_`, so the job must end before these buffers are destroyed.
   memory_.cut();
   mcu_.reset();
   outputs_.drive(0);
@@ -265,13 +265,13 @@ void SimulatedModule::work() {
   settle();
 }
 
-/// Runs the main loop until it has no work. This takes no virtual time.
+/// Runs the main loop until it has no work, unless the main loop is stopped by `hang`. Takes no virtual time.
 void SimulatedModule::turn() {
   if (hung_) {
     return;
   }
   do {
-    mcu_->device.on_wake_timer();  // the slow tick would delay due work visibly
+    mcu_->device.on_wake_timer();  // makes `turn` poll INIT* and collect edges now, not at the next tick
   } while (mcu_->device.turn() || mcu_->device.has_work());
 }
 

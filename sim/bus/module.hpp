@@ -30,7 +30,7 @@ namespace ex9000::sim {
 /// perform on a real module.
 class SimulatedModule final : public Station {
  public:
-  /// Attaches itself to `bus`. `model` is a row of kModels.
+  /// Attaches itself to `bus`. `model` is a row of kModels; `timing_at` is that of Module.
   SimulatedModule(Bus& bus, const Model& model, TimingAt timing_at = LineTiming::at);
   SimulatedModule(const SimulatedModule&) = delete;
   SimulatedModule& operator=(const SimulatedModule&) = delete;
@@ -69,9 +69,10 @@ class SimulatedModule final : public Station {
   void watch_replies(ModuleWire::Begins begins, ModuleWire::Ends ends, ModuleWire::OnTheWires on_the_wires) {
     wire_.watch(std::move(begins), std::move(ends), std::move(on_the_wires));
   }
-  /// Writes the settings that the module loads at the next reset.
+  /// Replaces the content of the memory with an image that contains `settings`. The module loads these
+  /// settings when it starts next.
   void store(const Settings& settings);
-  /// Returns an image of the whole memory that contains `settings`.
+  /// Returns an image of the whole memory that contains `settings`; a blank image for factory settings.
   static std::vector<std::uint8_t> memory_image(const Model& model, const Settings& settings);
 
   [[nodiscard]] const Model& model() const { return model_; }
@@ -90,7 +91,7 @@ class SimulatedModule final : public Station {
   [[nodiscard]] bool pending() const;
   /// Returns how often the hardware watchdog has reset the module since this object was constructed.
   [[nodiscard]] std::uint64_t watchdog_resets() const { return watchdog_resets_; }
-  /// Stops the tick until the next reset.
+  /// Stops the tick until the next reset. Call this only while the module is powered.
   void stop_tick();
 
   // --- Station ---
@@ -138,7 +139,8 @@ class SimulatedModule final : public Station {
     }
   }
   void wait() { run_at(std::min(next_without_silence_, mcu_->silence_timer.next())); }
-  /// Sets the time of the next `run`. On an instant line most bytes do not change it.
+  /// Sets the time of the next `run`. Calls the bus only if the time changes, because on an instant line most
+  /// bytes do not change the time.
   void run_at(VirtualTime when) {
     if (when != runs_at_) {
       runs_at_ = when;

@@ -28,9 +28,10 @@ class ModuleWire final : public Wire {
  public:
   ModuleWire(const VirtualClock& clock, Wire& wire) : clock_(clock), wire_(wire) {}
 
-  /// Called when the driver is enabled. The function must not switch off the module's power.
+  /// Called when the UART enables the driver. Returns the effect of defects on the reply. The function must
+  /// not switch off the module's power.
   using Begins = std::function<ReplyFate()>;
-  /// Called when the driver is disabled, even if the reply is not on the wires yet.
+  /// Called when the UART disables the driver, even if the reply is lost or is not on the wires yet.
   using Ends = std::function<void()>;
   /// Called with `on` true before the driver is enabled on the wires for a reply. Called with false after the
   /// driver is disabled, or when `abort` drops the reply. `reply` is the number of the reply, from 1. Lost
@@ -46,10 +47,11 @@ class ModuleWire final : public Wire {
   [[nodiscard]] bool sends_late() const { return driving_late_; }
   [[nodiscard]] VirtualTime next() const { return late_.empty() ? kNever : late_.front().when; }
   void run();
-  /// Ends the delay of the first late reply, if this reply has not begun. Moves all later replies forward by
+  /// Ends the delay of the first late reply, if this reply has not begun. Makes all later replies earlier by
   /// the same time.
   void end_first_delay();
-  /// Drops all bytes that have not been sent. Call this when the module loses its supply or is reset.
+  /// Drops all bytes that are not on the wires yet, and disables the driver if a late reply is on the wires.
+  /// Call this when the module loses its supply or is reset.
   void abort();
 
   // --- Wire ---
@@ -91,7 +93,7 @@ class ModuleWire final : public Wire {
   std::uint64_t reply_ = 0;  ///< number of the reply that the UART sends, or has sent last
   std::uint32_t forced_ = 0;
   std::uint32_t forced_for_reply_ = 0;  ///< the forced rate for the whole reply
-  bool drives_ = false;                 ///< the UART drives the wires
+  bool drives_ = false;                 ///< the UART has enabled its driver
   std::deque<Late> late_;
   bool driving_late_ = false;
 };

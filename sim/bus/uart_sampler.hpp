@@ -26,7 +26,7 @@ constexpr LineFormat as_received(LineFormat format) {
   return format == LineFormat::k8N2 ? LineFormat::k8N1 : format;
 }
 
-/// Returns whether receivers in these modes get each other's bytes.
+/// Returns whether stations in these modes get each other's bytes.
 constexpr bool hear_each_other(SerialMode a, SerialMode b) {
   return a.baud == b.baud && as_received(a.format) == as_received(b.format);
 }
@@ -50,7 +50,7 @@ constexpr Levels levels_of(std::uint8_t byte, LineFormat format = LineFormat::k8
   return static_cast<Levels>(kTenthBit | (parity ? kNinthBit : 0U) | start_and_data);
 }
 
-/// Returns `levels` with the other parity bit. Levels without a parity bit stay the same.
+/// Returns `levels` with the parity bit inverted. Levels without a parity bit stay the same.
 constexpr Levels with_wrong_parity(Levels levels, LineFormat format) {
   constexpr unsigned kParityBit = 1U << 9U;
   return static_cast<Levels>(has_parity(format) ? levels ^ kParityBit : levels);
@@ -74,7 +74,8 @@ constexpr ByteStatus status_of(Levels levels, LineFormat format) {
   return right ? ByteStatus::Good : ByteStatus::ParityError;
 }
 
-/// The levels of a byte as one driver puts them on the wires, and the byte that its station has sent.
+/// The levels that one station puts on the wires for a byte, with the changes by a disturbance, and the byte
+/// that this station has sent.
 struct Wave {
   /// `its_mode`: the bit rate, not 0, and the format as receivers read it.
   Wave(VirtualTime its_start, SerialMode its_mode, Levels its_levels)
@@ -114,14 +115,15 @@ class UartSampler {
     ByteStatus status;
   };
 
-  /// Samples the wires up to `until`. Returns a byte when its first stop bit is over; the caller must then
-  /// call this function again. `mode` has the bit rate on the wires, and must be the same in all calls.
+  /// Samples the wires up to `until`. Returns a byte if its first stop bit is over by then, otherwise
+  /// nullopt. After a byte, the caller must call this function again. `mode` has the bit rate on the wires,
+  /// and must be the same in all calls.
   std::optional<Received> advance(const Waves& waves, SerialMode mode, VirtualTime until);
 
   /// Returns whether the sampler is in the middle of a byte or waits for the line to become idle.
   [[nodiscard]] bool busy() const { return receiving_ || waits_for_idle_ || complete_; }
-  /// Returns when `advance` must be called again after a call with `now`: at the end of the byte, or after
-  /// half a bit.
+  /// Returns when `advance` must be called again after a call with `now`: at the end of the byte if its stop
+  /// bit has been sampled, otherwise half a bit after `now`.
   [[nodiscard]] VirtualTime next(SerialMode mode, VirtualTime now) const;
   /// Returns the time up to which the sampler has processed the wires.
   [[nodiscard]] VirtualTime position() const { return position_; }

@@ -12,7 +12,7 @@ namespace ex9000::sim {
 
 namespace {
 
-/// Returns the path of `error` in the file, from its root.
+/// Returns the path of the value that `error` concerns, from the root of the file.
 std::string path_of(const SetupError& error) {
   std::string object;
   if (error.line) {

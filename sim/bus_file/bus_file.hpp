@@ -17,7 +17,7 @@ Setup read_bus_file(const std::string& path);
 /// Parses `text` as the content of `path`. Throws like read_bus_file.
 Setup parse_bus_file(const std::string& path, const std::string& text);
 
-/// Returns a bus file with every kind of port, module, fault and input.
+/// Returns an example of a bus file: two lines with modules, faults, and inputs that change by themselves.
 std::string example_bus_file();
 /// Returns the JSON Schema of bus files.
 std::string bus_file_schema();

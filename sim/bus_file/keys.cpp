@@ -24,7 +24,8 @@ constexpr std::string_view kPort =
 constexpr std::string_view kNumber =
     R"({"anyOf": [{"type": "integer", "minimum": 0}, {"type": "string", "pattern": "^[0-9]+$"}]})";
 
-/// For each member of an object, records its place and calls the `take` of its key. Rejects unknown keys.
+/// Records the place of each member of an object, and calls the `take` of the member's key. Rejects unknown
+/// keys.
 template <class Object, std::size_t kSize>
 void read_members(const Node& node, const std::array<BusFileKey<Object>, kSize>& keys, Object& object) {
   node.members([&](const std::string& name, const Node& member) {
@@ -108,7 +109,7 @@ const std::array<BusFileKey<LineSetup>, 12> line_keys{{
     {"name", kText, "the line's name, one word (default: line1, line2, ...)",
      [](LineSetup& line, const Node& value) { line.name = value.text(); }},
     {"pty", kPath,
-     "creates a pseudo-terminal and links it at this path (default: NAME.tty without another port)",
+     "creates a pseudo-terminal and links it at this path (default: NAME.tty if the line has no other port)",
      [](LineSetup& line, const Node& value) { line.pty = value.text(); }},
     {"tcp", kPort, "serves the line's bytes at HOST:PORT, or at a port of 127.0.0.1",
      [](LineSetup& line, const Node& value) { line.tcp = parse_listening_address(value.number_or_text()); }},
@@ -121,7 +122,7 @@ const std::array<BusFileKey<LineSetup>, 12> line_keys{{
      [](LineSetup& line, const Node& value) { line.serial = value.text(); }},
     {"echo", kFlag, "ignores the echo of an adapter that receives what it sends",
      [](LineSetup& line, const Node& value) { line.echo = value.flag(); }},
-    {"baud", kRate, "the line's rate until a master sets one (default: the first module's)",
+    {"baud", kRate, "the line's baud rate until a master sets one (default: the first module's)",
      [](LineSetup& line, const Node& value) { line.baud = parse_baud_rate(value.number_or_text()); }},
     {"format", kFormat,
      "the line's format; a pseudo-terminal and TCP do not carry one (default: the first module's)",
@@ -150,7 +151,7 @@ const std::array<BusFileKey<ModuleObject>, 12> module_keys{{
      [](ModuleObject& module, const Node& value) { set_address(module.spec, value.text()); }},
     {"protocol", R"({"enum": ["ascii", "modbus"]})",
      "the module's protocol (default: modbus for -M models, else ascii)", take_setting<&Node::text>},
-    {"baud", kRate, "the module's rate (default 9600)", take_setting<&Node::number_or_text>},
+    {"baud", kRate, "the module's baud rate (default 9600)", take_setting<&Node::number_or_text>},
     {"format", kFormat, "the module's line format (default 8N1)", take_setting<&Node::text>},
     {"checksum", kOnOff, "checksums of ASCII frames (default off)", take_setting<&Node::flag_or_text>},
     {"edge", R"({"enum": ["falling", "rising"]})", "the edge that the counters count (default falling)",

@@ -13,7 +13,7 @@ namespace ex9000::sim {
 template <class Object>
 struct BusFileKey {
   std::string_view name;
-  std::string_view schema;   ///< the JSON Schema of its value, as JSON
+  std::string_view schema;   ///< the JSON Schema of the key's value, as JSON
   std::string_view meaning;  ///< a description for people
   void (*take)(Object& object, const Node& value);
 };

@@ -35,9 +35,10 @@ class CountingIterator {
   unsigned* line_;
 };
 
-/// Records the line number of each value. The parser detects the end of a number only at the next character,
-/// which may be on a new line. Therefore a scalar gets the line of its key or, in an array, the line of the
-/// previous token.
+/// Records the line number of each value. A member of an object gets the line of its key, and an element of
+/// an array gets its own line. An element that is a number, true, false or null gets the line of the last
+/// string, bracket or brace before it, because the parser detects the end of a number only at the next
+/// character, which may be on a new line.
 class Locator final : public nlohmann::json_sax<json> {
  public:
   explicit Locator(const unsigned& line) : line_(line) {}
@@ -117,11 +118,11 @@ class Locator final : public nlohmann::json_sax<json> {
 
   bool open(bool is_array) {
     // No bus file requires more levels. Without this limit, a deeply nested file would take much memory,
-    // because the parser stores the whole path of each object and list that it has entered.
+    // because this class stores the whole path of each value.
     constexpr std::size_t kDeepest = 16;
     if (open_.size() == kDeepest) {
       throw std::invalid_argument(std::to_string(line_) +
-                                  ": is nested deeper than any bus file; see 'ex9000-sim --schema'");
+                                  ": has too many levels of lists and objects; see 'ex9000-sim --schema'");
     }
     seen_ = line_;
     const std::string path = place();

@@ -10,8 +10,8 @@
 
 namespace ex9000::sim {
 
-/// All errors are std::invalid_argument with a one-line message: `FILE:LINE: PATH: what is wrong; what would
-/// be right`.
+/// All functions report errors as std::invalid_argument with a one-line message: `FILE:LINE: PATH: what is
+/// wrong; what would be right`.
 class Node {
  public:
   using json = nlohmann::ordered_json;
@@ -30,7 +30,7 @@ class Node {
   /// Returns the place in the form of messages: the file, the line number, and the path of the value.
   [[nodiscard]] std::string place() const { return place_of(path_) + path_; }
 
-  /// Returns the key of a member.
+  /// Returns the key of this node, which must be a member of an object.
   [[nodiscard]] std::string key() const { return path_.substr(path_.rfind('.') + 1); }
 
   /// Calls `take(key, member)` for each member of an object.

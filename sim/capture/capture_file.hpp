@@ -11,8 +11,8 @@ namespace ex9000::sim {
 class CaptureFile {
  public:
   /// Creates the file if it is missing. An existing file keeps its content until `begin`. Throws
-  /// std::invalid_argument with a one-line message if the file is not writable or another simulator uses it.
-  /// All messages begin with `place` and the path.
+  /// std::invalid_argument with a one-line message if the file is not writable, if another simulator uses the
+  /// file, or if a pipe has no reader. All messages begin with `place` and the path.
   CaptureFile(std::string path, const std::string& place);
   /// Removes the file if the constructor has created it and `begin` has not been called.
   ~CaptureFile();
@@ -23,8 +23,8 @@ class CaptureFile {
   void begin();
   /// Writes the block to the kernel, without a buffer in the program: blocks that were written stay in the
   /// file even if the program is killed. If a write to a regular file fails, removes the incomplete block.
-  /// Blocks while the reader of a pipe does not read. Throws std::runtime_error with a one-line message if
-  /// the disk is full or the reader has closed the pipe.
+  /// Waits while the reader of a pipe does not read. Throws std::runtime_error with a one-line message if the
+  /// write fails, for example because the disk is full or the reader has closed the pipe.
   void append(const std::vector<std::uint8_t>& block);
 
  private:

@@ -31,7 +31,8 @@ void put_padded(Block& block, const Bytes& bytes) {
   block.resize((block.size() + 3) / 4 * 4);
 }
 
-/// Appends an option (3.5). Its length excludes the padding.
+/// Appends an option (3.5), with at most 65535 bytes of `value`. The length in the option excludes the
+/// padding.
 void put_option(Block& block, std::uint16_t code, const std::string& value) {
   constexpr std::size_t kLongest = 0xFFFF;
   const std::string fitting = value.substr(0, kLongest);
@@ -40,8 +41,8 @@ void put_option(Block& block, std::uint16_t code, const std::string& value) {
   put_padded(block, fitting);
 }
 
-/// Returns a complete block (3.1): type and length, the body, and the length again. `body` must lack only the
-/// end of options.
+/// Returns a complete block (3.1): type and length, the body, and the length again. `body` must end with its
+/// options; this function adds the end of options.
 Block framed(std::uint32_t type, Block body) {
   put_option(body, kEndOfOptions, "");
   constexpr std::size_t kTypeAndLengths = 12;

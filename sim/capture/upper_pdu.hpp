@@ -1,6 +1,7 @@
 // The header that lets Wireshark dissect a frame without the layers below it: LINKTYPE_WIRESHARK_UPPER_PDU,
 // see https://wiki.wireshark.org/Protocols/exported_pdu. Unlike the link types for serial lines, this one
-// records which side sends the request. It also names the dissector, so that users need not configure one.
+// records whether a frame is a request or a reply. It also names the dissector, so that users need not
+// configure one.
 #pragma once
 
 #include <cstdint>
@@ -15,8 +16,8 @@ constexpr std::uint16_t kLinkTypeWiresharkUpperPdu = 252;
 struct UpperPdu {
   std::string dissector;  ///< Wireshark's name of the dissector
   std::string protocol;   ///< text for the protocol column; empty: the dissector chooses it
-  /// The dissector for Modbus RTU treats a frame from its port as a response and a frame to its port as a
-  /// query.
+  /// The dissector for Modbus RTU treats a frame from the port mbrtu.tcp.port as a response, and a frame to
+  /// that port as a query.
   std::uint16_t source_port = 0;
   std::uint16_t destination_port = 0;
 

@@ -103,7 +103,7 @@ std::string status(SimulatedModule& module, const Words& /*args*/) {
   return text + rest.str();
 }
 
-/// Returns the numbers of all channels, separated by spaces.
+/// Returns the results of `number_of` for all channels, separated by spaces.
 template <class NumberOf>
 std::string for_each_channel(unsigned channels, NumberOf number_of) {
   std::string text;
@@ -164,7 +164,7 @@ struct LineVerb {
 
 constexpr std::array<LineVerb, 6> kLineVerbs{{
     {"baud", "RATE",
-     "sets the line's rate, for TCP; a pseudo-terminal overrides it, and a serial port has its own"},
+     "sets the line's baud rate, for TCP; a pseudo-terminal overrides it, and a serial port has its own"},
     {"format", "FORMAT", "sets the line's format: 8N1, 8N2, 8E1 or 8O1; a serial port has its own"},
     {"sent", "", "reads how many bytes the line has written to its ports"},
     {"fault", "FAULT", "adds a fault, see below; replies with its number. With N: for that module"},

@@ -1,4 +1,4 @@
-// Commands that act on lines and their modules from outside; each command is one line of text.
+// Commands that act on lines and their modules from outside. Each command is a text without a newline.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@ namespace ex9000::sim {
 /// The largest number of pulses on an input in one command. The program needs some milliseconds for them.
 constexpr unsigned long kMostPulses = 1'000'000;
 
-/// The commands of `--control`, without the socket.
+/// The commands of `--control`, without the socket and without `advance`.
 class Control {
  public:
   struct ControlledLine {
@@ -32,7 +32,7 @@ class Control {
     bool quit = false;
   };
 
-  /// Carries out a command and returns the reply. `command` is a line without its newline. A rejected command
+  /// Carries out a command and returns the reply. `command` is a text without a newline. A rejected command
   /// changes nothing.
   Reply carry_out(const std::string& command);
 

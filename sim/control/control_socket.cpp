@@ -28,7 +28,8 @@ constexpr std::size_t kMostClients = 64;
   throw std::invalid_argument(path + ": " + why);
 }
 
-/// Removes a socket at `path` if its process has ended. Throws if anything else is there.
+/// Removes a socket at `path` if the process that created it has ended. Throws std::invalid_argument if
+/// another program uses the path or if anything else is there.
 void remove_stale(boost::asio::io_context& io, const std::string& path, const Claim& claim) {
   const std::string in_use = "another program listens there; end it or name another path";
   if (!claim.held()) {

@@ -17,18 +17,18 @@
 namespace ex9000::sim {
 
 /// Serves up to 64 clients at the same time, and disconnects further clients. Each line from a client is a
-/// command. The reply to each command is one line, and replies keep the order of the commands. A client that
-/// does not read its replies does not block the server, which then stops reading from this client.
+/// command. The reply to each command is one line, and replies keep the order of the commands. If a client
+/// does not read its replies, the server stops reading from this client and continues to serve the others.
 class ControlSocket {
  public:
   using Answer = std::function<void(const Control::Reply&)>;
-  /// Calls `answer` exactly once, immediately or later. Until then the server reads nothing more from that
-  /// client.
+  /// Carries out `command`. Calls `answer` exactly once, immediately or later. Until then the server reads
+  /// nothing more from that client.
   using CarryOut = std::function<void(const std::string& command, const Answer& answer)>;
 
   /// Starts to listen on `path`; replaces a socket of a process that has ended. Throws std::invalid_argument
-  /// with a one-line message if the path is in use or cannot be created. The reply to the `quit` command is
-  /// sent before `quit` is called.
+  /// with a one-line message if the path is empty, too long or in use, or cannot be created. The reply to the
+  /// `quit` command is sent before `quit` is called.
   ControlSocket(boost::asio::io_context& io, std::string path, CarryOut carry_out,
                 std::function<void()> quit);
   /// Removes the socket file if it still belongs to this object.
@@ -36,7 +36,7 @@ class ControlSocket {
   ControlSocket(const ControlSocket&) = delete;
   ControlSocket& operator=(const ControlSocket&) = delete;
 
-  /// Starts to accept clients. Does not block. Call this function when the line is ready for commands.
+  /// Starts to accept clients. Does not block. Call this function when the lines are ready for commands.
   void start();
 
  private:

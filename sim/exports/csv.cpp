@@ -25,7 +25,7 @@ struct Row {
   std::string meaning;
 };
 
-/// Returns the cell in quotes if it contains special characters.
+/// Returns the text of a cell, in quotes if it contains a comma, a quote or a line break.
 std::string quoted_cell(const std::string& text) {
   if (text.find_first_of(",\"\r\n") == std::string::npos) {
     return text;

@@ -53,12 +53,10 @@ class Hub {
   [[nodiscard]] std::string watchdog_actions() const {
     const std::string after =
         model_.outputs == 0 ? "the timeout status stays set" : "the outputs keep their safe values";
-    return "# With register 0x0251 = 1, each poll restarts the host watchdog, so that it watches Home "
-           "Assistant. It expires if the\n"
-           "# polls stop for longer than its timeout (register 0x01E8; from the factory 25.5 s), which must "
-           "be "
-           "longer than the\n"
-           "# scan_interval. Polls of any other master restart it too. Call these actions once:\n" +
+    return "# With register 0x0251 = 1, each poll restarts the host watchdog, which then watches Home\n"
+           "# Assistant. It expires if the polls stop for longer than its timeout (register 0x01E8; factory\n"
+           "# setting: 25.5 s), which must be longer than the scan_interval. Polls of any other master also\n"
+           "# restart it. Call these actions once:\n" +
            write("register", "watchdog-feed", "value: 1") + write("coil", "watchdog-enable", "state: true") +
            "# After a timeout, " + after + " until you call these:\n" +
            write("coil", "timeout-status", "state: true") + write("coil", "watchdog-enable", "state: true");

@@ -148,7 +148,8 @@ std::string dcon_notes(const Models& models) {
          "to GND.\n";
 }
 
-/// Formats alternatives, for example `!AA10 or !AA11`, as separate pieces of code.
+/// Formats alternatives, for example `!AA10 or !AA11`, as separate pieces of code. Returns `-` for an empty
+/// text.
 std::string reply_code(std::string_view reply) {
   constexpr std::string_view kOr = " or ";
   const auto at = reply.find(kOr);

@@ -53,7 +53,7 @@ class Flow {
     return digits;
   }
 
-  /// Returns a node on the tab, in the present row.
+  /// Returns a node on the tab, in the current row.
   [[nodiscard]] Json node(const std::string& name, const char* type, unsigned column) const {
     return {{"id", id(name)},
             {"type", type},
@@ -77,7 +77,7 @@ class Flow {
                       {"clienttype", "tcp"},
                       {"tcpHost", network_address_.tcp.host},
                       {"tcpPort", std::to_string(network_address_.tcp.port)},
-                      // TELNET sends the bytes as on the line; DEFAULT adds the header of Modbus TCP.
+                      // TELNET sends RTU frames, as on the line; DEFAULT sends Modbus TCP frames.
                       {"tcpType", network_address_.modbus_tcp ? "DEFAULT" : "TELNET"},
                       // The client sends one request at a time, because all modules share one line.
                       {"bufferCommands", true},

@@ -6,8 +6,8 @@ namespace {
 
 modbus::Functions functions_of(const modbus::BitRow& row) { return row.functions; }
 
-/// Returns the functions that can access the row. Only host OK has no functions in its row, because the
-/// firmware does not look it up in its table. Masters read host OK with functions 03 and 04.
+/// Returns the functions that can access the row. Only the row of host OK lists no functions, because the
+/// firmware does not look host OK up in its table. Masters read host OK with functions 03 and 04.
 modbus::Functions functions_of(const modbus::WordRow& row) {
   return row.functions != 0 ? row.functions : modbus::kReadHoldingRegisters | modbus::kReadInputRegisters;
 }

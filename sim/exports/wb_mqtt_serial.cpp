@@ -23,7 +23,7 @@ constexpr unsigned kSilenceMicroseconds = 38'500'000 / baud_rate(kFactoryBaudCod
 Json channel(const Shown& shown, unsigned index) {
   Json channel{
       {"name", shown.name_of(index)}, {"id", shown.key_of(index)}, {"reg_type", register_type(shown.table)}};
-  // wb-mqtt-serial must not poll a button, because most of these coils are write-only.
+  // wb-mqtt-serial must not poll the coils of buttons, because most of these coils are write-only.
   channel[shown.role == Role::Button ? "write_address" : "address"] = shown.first + index;
   switch (shown.role) {
     case Role::Output:

@@ -42,7 +42,8 @@ void Echo::run() {
     return;
   }
   wire_.put(heard_[sent_], sends_in_);
-  // The end is calculated from the first byte, so that rounding errors do not accumulate.
+  // The end of each byte is calculated from the start of the first byte, so that rounding errors do not
+  // accumulate.
   wake_at(began_ + wire_.takes(++sent_, sends_in_));
 }
 

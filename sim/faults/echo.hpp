@@ -30,7 +30,7 @@ class Echo final : public Station {
   }
   /// Sets the rate and format of the line.
   void set_mode(SerialMode mode);
-  /// Returns whether the echo has bytes to send.
+  /// Returns whether the echo has bytes to send or is sending.
   [[nodiscard]] bool sending() const { return next_ != kNever; }
 
   // --- Station ---
@@ -38,7 +38,7 @@ class Echo final : public Station {
   void receive(std::uint8_t byte, ByteStatus status) override;
 
  private:
-  static constexpr std::size_t kMostHeard = 1024;  ///< the echo ignores bytes beyond this number
+  static constexpr std::size_t kMostHeard = 1024;  ///< bytes of one echo; further bytes are ignored
 
   const Bus& bus_;
   VirtualClock& clock_;

@@ -22,7 +22,7 @@ std::uint64_t parse_count(const std::string& word) {
 struct Row {
   std::string_view name;
   std::string_view value;  ///< name of the fault's value in the help text; empty: the fault has no value
-  std::string_view usual;  ///< a typical value and, for some faults, a typical schedule
+  std::string_view usual;  ///< a typical value, a typical schedule, or both; may be empty
   Trouble trouble;
   bool of_a_module;
   void (*take)(Fault& fault, const std::string& word);
@@ -52,7 +52,7 @@ constexpr std::array<Row, 13> kRows{{
     {"stray-zeros", "P", "0.01", Trouble::StrayZeros, false, take_probability,
      "adds 00 after a byte with this probability, like the turn-around of a line"},
     {"echo", "TIME", "5ms", Trouble::Echo, false, take_silence,
-     "repeats all bytes after a pause of this length"},
+     "sends all received bytes again after a pause of this length"},
     {"foreign-traffic", "HEX", "0501000000083C48 every 1s", Trouble::ForeignTraffic, false, take_bytes,
      "sends these bytes, as another device would"},
     {"lost-reply", "", "every 3rd reply", Trouble::LostReply, true, take_nothing, "drops the reply"},

@@ -12,7 +12,7 @@ namespace {
 
 using When = Schedule::When;
 
-/// The foreign station drops a message if this many bytes are already waiting.
+/// The foreign station drops a message if at least this many bytes are already waiting.
 constexpr std::size_t kMostForeign = 1024;
 
 bool is_of(const Fault& fault, std::size_t module) { return !fault.module || *fault.module == module; }
@@ -289,8 +289,8 @@ void Faults::reply_ends(std::size_t module) {
   }
 }
 
-/// Begins noise with the first bit of this reply, even if the reply is late. Noise without a duration ends
-/// with the reply.
+/// Begins the noise that this reply has triggered when the reply begins on the wires (`on` is true), even if
+/// the reply is late. Ends noise without a duration when the reply has ended, or is dropped (`on` is false).
 void Faults::reply_on_the_wires(std::size_t module, std::uint64_t reply, bool on) {
   for (Armed& armed : armed_) {
     if (!is_noise(armed.fault.trouble)) {

@@ -28,8 +28,8 @@ class Faults final : public Station {
   /// faults without a schedule (When::Always) are not reported.
   using Notice = std::function<void(const std::string&)>;
 
-  /// Attaches itself to `bus`. `master` has the line's rate; `notice` may be empty. All arguments must live
-  /// as long as the bus is used.
+  /// Attaches itself to `bus`. `master` has the line's mode; `notice` may be empty. `bus`, `master` and
+  /// `modules` must live as long as the bus is used.
   Faults(Bus& bus, Master& master, Modules& modules, std::uint64_t seed, Notice notice);
   Faults(const Faults&) = delete;
   Faults& operator=(const Faults&) = delete;
@@ -45,7 +45,7 @@ class Faults final : public Station {
     std::size_t number;
     std::string text;
     std::optional<std::size_t> module;
-    std::size_t in_progress;  ///< at most one, or one for each module if the fault depends on replies
+    std::size_t in_progress;  ///< at most 1; at most 1 for each module if the fault depends on replies
     std::uint64_t occurrences_so_far;
   };
   [[nodiscard]] std::vector<Info> list() const;
@@ -122,7 +122,7 @@ class Faults final : public Station {
   bool changed_ = false;  ///< the next call of `act` must update the effects
   std::vector<std::size_t> hanging_;
   std::vector<std::vector<std::uint8_t>> to_say_;
-  // Created when the first fault needs them.
+  // Created when the first fault requires them.
   std::unique_ptr<Noise> noise_;
   std::unique_ptr<Echo> echo_;
   std::unique_ptr<Master> stranger_;

@@ -18,7 +18,7 @@ struct NoiseRates {
   double stray_character = 0;
   /// For each character: a byte 00 follows it directly, as after the turn-around of a real line.
   double stray_zero = 0;
-  /// For each 0 bit that is sent while another driver is enabled: receivers see the idle level.
+  /// For each 0 bit of a character that begins while another driver is enabled: receivers see the idle level.
   double lost_in_contention = 0;
 };
 

@@ -25,14 +25,16 @@ std::optional<std::vector<std::uint8_t>> read_eeprom_file(const std::string& pat
 class EepromFile {
  public:
   /// Opens and locks an existing file. Throws std::invalid_argument with a one-line message if the file is
-  /// not an image, is not writable or is in use. Does not create a file.
+  /// not an image, cannot be read and written, or is in use. Does not create a file.
   explicit EepromFile(std::string path);
 
   /// Returns the content of the file when it was opened; nullopt if there was no file.
   [[nodiscard]] const std::optional<std::vector<std::uint8_t>>& found() const { return found_; }
-  /// Creates the file with the whole image or not at all. Throws like the constructor.
+  /// Creates the file with the whole image or not at all, and locks it. Throws std::invalid_argument with a
+  /// one-line message if the file exists or cannot be created.
   void create(const std::vector<std::uint8_t>& image);
-  /// Writes `bytes` at `address`. Returns false if the system call fails; errno then has the reason.
+  /// Writes `bytes` at `address`. Call this only if the file was found or created. Returns false if the
+  /// system call fails; errno then has the reason.
   [[nodiscard]] bool write(std::uint16_t address, Bytes bytes) const;
 
   [[nodiscard]] const std::string& path() const { return path_; }

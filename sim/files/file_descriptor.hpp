@@ -27,7 +27,7 @@ class FileDescriptor {
   [[nodiscard]] bool is_open() const { return fd_ >= 0; }
   /// Returns the number, which is valid as long as this object owns it.
   [[nodiscard]] int get() const { return fd_; }
-  /// Returns the number; the caller has to close it.
+  /// Returns the number. The caller must close the file descriptor.
   int release() { return std::exchange(fd_, -1); }
 
  private:

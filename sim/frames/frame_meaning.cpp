@@ -144,7 +144,7 @@ constexpr std::size_t kShortestModbus = 4;
 
 std::string modbus_check_error(const FrameBytes& bytes) {
   if (bytes.size() < kShortestModbus) {
-    const bool noise = bytes.size() == 1 && bytes[0] < 0x20;  // an LF after CR, or a turn-around 00
+    const bool noise = bytes.size() == 1 && bytes[0] < 0x20;  // for example an LF after CR
     return noise ? "" : "too short for a frame";
   }
   return crc16({bytes.data(), bytes.size()}).value() == 0 ? "" : "wrong CRC";

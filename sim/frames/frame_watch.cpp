@@ -89,7 +89,7 @@ void FrameWatch::driver(std::size_t station, bool on, VirtualTime /*now*/) {
     }
   }
   if (on && station != kMaster && !looks_like_dcon(sender(kMaster).frame.bytes)) {
-    hand_out(kMaster);  // a module replies, so the request has ended
+    hand_out(kMaster);  // another station sends, so the request has ended
   }
 }
 

@@ -34,8 +34,9 @@ struct Frame {
   FrameBytes bytes;
   std::vector<Change> changes;
   bool collided = false;  ///< during a byte, another driver was enabled or another byte was on the wires
-  /// The modes of the sender and of the line at the first byte. Receivers of the line get these bytes only if
-  /// rate and parity are equal. A change of the mode during the frame is not reported.
+  /// The modes of the sender and of the line at the first byte. Receivers in the line's mode get these bytes
+  /// only if the rates and the parities of both modes are equal. A change of the mode during the frame is not
+  /// reported.
   SerialMode sent_in;
   SerialMode line_in;
   VirtualTime began{0};  ///< start of the first start bit
@@ -44,10 +45,12 @@ struct Frame {
   [[nodiscard]] Speaker speaker() const { return station == 0 ? Speaker::Master : Speaker::Module; }
 };
 
-/// Combines bytes into frames by these rules. A frame of a module ends when its driver is disabled. An RTU
-/// frame of the master may arrive in pieces; it ends when no byte follows for some time, when a module
-/// replies, or when a gap follows a correct CRC. A person may type a DCON frame; it ends with CR, or when no
-/// byte follows for 5 s. Every frame ends after 300 bytes at the latest.
+/// Combines bytes into frames by these rules. A DCON frame ends with CR, or when no byte follows for 5 s,
+/// because a person may type the frame. Any other frame ends when no byte follows for 5 ms or for the time of
+/// four characters, whichever is longer, because the master may write the frame in pieces. If the master
+/// sends such a frame, the frame also ends when another station enables its driver, or when a gap follows a
+/// correct CRC. A frame of another station also ends when this station disables its driver. Every frame ends
+/// after 300 bytes at the latest.
 class FrameWatch final : public BusObserver {
  public:
   using Take = std::function<void(const Frame&)>;

@@ -31,7 +31,7 @@ ModuleSpec parse_module_spec(const std::string& text);
 ModuleSpec factory_fresh(const Model& model);
 /// Sets the address. `text` is one or two hex digits.
 void set_address(ModuleSpec& spec, const std::string& text);
-/// Applies one KEY=VALUE of the command line.
+/// Applies one setting: KEY=VALUE of a module on the command line, or a key of a module in a bus file.
 void apply_setting(ModuleSpec& spec, const std::string& key, const std::string& value);
 /// Checks that the settings are valid in combination.
 void check(const ModuleSpec& spec);

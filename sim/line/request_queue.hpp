@@ -64,9 +64,9 @@ class RequestQueue final : private Station {
   enum class State {
     Idle,           ///< nothing to send
     WaitsForLine,   ///< others use the line; the request waits for at most kReplyTimeout
-    WaitsForReply,  ///< the request is being sent, or no byte has arrived yet
-    Receives,       ///< the reply ends with a silence
-    TurnsAround,    ///< the request has no reply
+    WaitsForReply,  ///< the request is being sent, or no byte of its reply has arrived yet
+    Receives,       ///< bytes of the reply arrive; a silence ends it
+    TurnsAround,    ///< the request is being sent and has no reply, or the turn-around time passes
   };
 
   void run() override;
@@ -84,7 +84,7 @@ class RequestQueue final : private Station {
   VirtualTime own_byte_{0};      ///< end of the last reply; a later byte means that others have used the line
   std::uint64_t taken_ = 0;      ///< the value of Master::taken when the request was sent
   VirtualTime sent_{0};          ///< end of the last byte of the request
-  VirtualTime deadline_{0};      ///< when the wait for the line, or for the reply, ends
+  VirtualTime deadline_{0};      ///< when the wait for the line, for the reply or after a broadcast ends
   Reply reply_;
 };
 

@@ -40,7 +40,8 @@ struct BannerContent {
 
 /// Returns a text of several lines that names the simulated lines, their ports and their modules. For each
 /// module that masters can reach through a pseudo-terminal or a gateway, the text contains commands that the
-/// user can paste to read the module or to switch an output.
+/// user can paste. These commands read a Modbus module and switch an output. For a module that speaks ASCII,
+/// the command opens a terminal.
 std::string greeting(const BannerContent& all);
 
 }  // namespace ex9000::sim

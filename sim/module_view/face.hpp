@@ -26,9 +26,9 @@ enum class Led : std::uint8_t {
 struct Plate {
   bool switched_on = false;  ///< the supply's switch
   bool powered = false;      ///< false during a supply failure, even if the switch is on
-  bool init = false;         ///< INIT* is connected to GND
+  bool init = false;         ///< INIT* is tied to GND
   bool listening = false;    ///< the module has started up
-  bool init_mode = false;    ///< the module has started up with INIT*
+  bool init_mode = false;    ///< the module has started up while INIT* was tied to GND
   // address, mode, protocol and checksum are valid only if `listening`.
   std::uint8_t address = 0;  ///< the address in force
   hal::SerialMode mode;      ///< rate and format in force

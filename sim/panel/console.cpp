@@ -53,7 +53,8 @@ std::string words_text(Bytes bytes) {
   return text;
 }
 
-/// Returns the values in a valid Modbus reply, or its exception; empty if the function has none.
+/// Returns the values in a valid Modbus reply, or its exception; empty if replies of this function contain no
+/// values.
 std::string values_text(Bytes request, Bytes reply) {
   constexpr std::size_t kValues = 2;  // after the function code and the byte count
   const std::uint8_t function = reply[0];

@@ -15,8 +15,8 @@
 
 namespace ex9000::sim {
 
-/// Viewers affect the lines only by the commands that their pages send. Without viewers, the panel only
-/// stores the last frames of each line.
+/// Viewers affect the lines only by the commands and requests that their pages send. Without viewers, the
+/// panel only stores the last frames and notes of each line.
 class Panel final : public PanelSource {
  public:
   using CarryOut = std::function<Control::Reply(const std::string& command)>;

@@ -20,9 +20,9 @@ class PanelViewer {
   PanelViewer& operator=(const PanelViewer&) = delete;
   virtual ~PanelViewer() = default;
 
-  /// Carries out a request of the page; `next` returns the reply. Returns false if `text` is not a valid
-  /// request, or if the page holds too many actions active. Actions that the page holds active are undone
-  /// when this object is destroyed.
+  /// Carries out a request of the page; a later call of `next` returns the reply. Returns false if `text` is
+  /// not a valid request, or if the page holds too many actions active. Actions that the page holds active
+  /// are undone when this object is destroyed.
   virtual bool ask(const std::string& text) = 0;
   /// Returns the next message for the page: the reply to its request, and those changes before the last look
   /// that the page has not received yet. Returns an empty text if there is nothing to send.

@@ -18,10 +18,10 @@ struct Task {
   sim::Writing writing;
 };
 
-/// Prints one line of text for each run and a summary. Returns whether all runs have passed. Throws
-/// std::invalid_argument with a one-line message if the path or the content of a file is wrong, if the bus is
-/// missing, incomplete or not used, or if the capture is one of the files to read. In these cases `observer`
-/// is not called.
+/// Plays the files. Prints one line of text for each run and a summary. Returns whether all runs have passed.
+/// Throws std::invalid_argument with a one-line message if the path or the content of a file is wrong, if the
+/// bus is missing, incomplete or not used, or if the capture is one of the files to read. In these cases
+/// `observer` is not called.
 bool play(const Task& task, const std::function<void(const std::string& line)>& print,
           PlayObserver& observer);
 

@@ -16,7 +16,8 @@ struct Result {
   [[nodiscard]] bool passed() const { return failure.empty(); }
 };
 
-/// Plays all steps up to the first failure. For a scenario, the target must have been started.
+/// Plays all steps up to the first failure. If all steps pass, checks that no more bytes arrive. For a
+/// scenario, the modules of the target must have started up.
 Result play(const Transcript& transcript, Target& target);
 
 }  // namespace ex9000::play

@@ -108,7 +108,8 @@ constexpr std::chrono::milliseconds kSilence{250};
 /// Returns what is wrong if `model` lacks an input with this number; empty if the input exists.
 std::string missing_input(const Model& model, unsigned channel);
 
-/// Returns the transcripts below `directory`, sorted by path.
+/// Returns the paths of all files below `directory` that end with .txt, sorted. Throws
+/// std::filesystem::filesystem_error if the directory cannot be read.
 std::vector<std::string> transcript_files(const std::string& directory);
 
 /// Returns all runs of a transcript, one for each `model:` line, or the single run of a scenario. Throws

@@ -1,5 +1,5 @@
-// A real serial port, for example a USB RS-485 adapter: the simulated modules appear on the line that it is
-// connected to.
+// A real serial port, for example a USB RS-485 adapter. Masters on the line at this port can reach the
+// simulated modules.
 #pragma once
 
 #include <array>

@@ -22,15 +22,15 @@ struct Pace {
   /// host's delays would extend every transaction.
   VirtualTime host_latency = std::chrono::microseconds(300);
   /// While a byte is on the wires, and for this time after it, the pacer processes events without waiting for
-  /// the wall clock. If virtual time is then more than some milliseconds ahead, masters have to wait. If this
-  /// value is zero, every event waits for the wall clock.
+  /// the wall clock. If virtual time is then more than 5 ms ahead, masters have to wait. If this value is
+  /// zero, every event waits for the wall clock.
   VirtualTime lead{0};
-  /// A frame to a module other than the last sender waits until a silence of T3.5 has passed; a frame to a
-  /// Modbus module after an ASCII reply waits until the module no longer treats the reply as part of a frame.
-  /// If a master begins earlier, only the module that has just replied receives the frame, because that
-  /// module does not receive its own reply. All other modules receive the reply and the frame as one frame.
-  /// Many masters, for example libmodbus, begin too early. With a real adapter this causes no problem,
-  /// because the adapter delays the frame.
+  /// A frame to a module other than the last sender waits until a silence of T3.5 has passed. A frame to a
+  /// Modbus module after an ASCII reply, or after bytes of an unknown sender, waits until the module no
+  /// longer treats these bytes as part of a frame. If a master begins earlier, only the module that has just
+  /// replied receives the frame, because that module does not receive its own reply. All other modules
+  /// receive the reply and the frame as one frame. Many masters, for example libmodbus, begin too early. With
+  /// a real adapter this causes no problem, because the adapter delays the frame.
   bool keep_frames_apart = true;
   /// The ratio of virtual time to the wall clock.
   double speed = 1;

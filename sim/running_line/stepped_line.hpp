@@ -1,4 +1,4 @@
-// A line in stepped time: its clock stops until a command advances it.
+// A line in stepped time: only a command advances its clock.
 #pragma once
 
 #include <cstddef>

@@ -41,7 +41,7 @@ RunningProgram::RunningProgram(boost::asio::io_context& io, Setup setup, Print p
     print_ = [this](const std::string& line) { watch_->print(line); };
   }
   for (const LineSetup& line : setup_.lines) {
-    // With several lines, each message begins with the line's name. JSON already contains the name.
+    // Each message begins with the line's name, if the line has one. JSON already contains the name.
     const bool as_it_is = line.name.empty() || for_machines();
     const std::string lead = as_it_is ? "" : line.name + ": ";
     lines_.push_back(std::make_unique<RunningLine>(

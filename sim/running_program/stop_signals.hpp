@@ -10,7 +10,7 @@ namespace ex9000::sim {
 /// SIGHUP, and shells ignore SIGINT for background jobs.
 void add_stop_signals(boost::asio::signal_set& signals);
 
-/// Detects these signals while a long computation keeps the program's own io_context from running.
+/// Detects these signals while a long computation prevents the io_context of the program from running.
 class StopSignals {
  public:
   StopSignals();

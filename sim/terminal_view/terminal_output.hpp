@@ -17,13 +17,13 @@ class TerminalOutput final : public Terminal {
  public:
   /// Opens the terminal of `descriptor`, which remains open.
   explicit TerminalOutput(int descriptor);
-  /// Discards output that the terminal has not accepted.
+  /// Writes as much output as the terminal accepts without blocking, and discards the rest.
   ~TerminalOutput() override;
   TerminalOutput(const TerminalOutput&) = delete;
   TerminalOutput& operator=(const TerminalOutput&) = delete;
 
-  /// Returns false if the descriptor is not a terminal, or if the cursor of the terminal cannot be moved. In
-  /// this case no other function may be called.
+  /// Returns false if the descriptor is not a terminal, if TERM is `dumb` because the cursor cannot be moved,
+  /// or if the terminal could not be opened. In these cases no other function may be called.
   [[nodiscard]] bool is_open() const { return fd_ != kClosed; }
 
   // --- Terminal ---

@@ -7,8 +7,8 @@
 
 namespace ex9000::sim {
 
-/// Throws std::invalid_argument with a one-line message if `text` is not a number with a unit, is negative,
-/// or is longer than a year.
+/// Parses a number with a unit: us, ms, s, min or h. Throws std::invalid_argument with a one-line message if
+/// `text` is anything else, is negative, or is longer than a year.
 hal::doubles::VirtualTime parse_time(const std::string& text);
 
 /// Returns the time in us, ms or s, in the format that parse_time reads.

@@ -81,7 +81,7 @@ void request_to_reply(benchmark::State& state, std::string_view designation, boo
   BareModule module(*find_model(designation), ascii);
   for ([[maybe_unused]] auto _ : state) {
     if (module.ask(request) == 0) {
-      state.SkipWithError("no answer");
+      state.SkipWithError("no reply");
       break;
     }
   }

@@ -1,5 +1,5 @@
 // Runs the benchmarks. Fails only if a benchmark reports an error, for example a wrong reply. Durations
-// cannot make it fail. Reports each `figure` that is below its `at_least` or above its `at_most`.
+// cannot make the program fail. Reports each `figure` that is below its `at_least` or above its `at_most`.
 #include <benchmark/benchmark.h>
 
 #include <iostream>

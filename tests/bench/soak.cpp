@@ -1,4 +1,5 @@
-// Polls two buses with 32 modules each without pauses. Fails if a reply is wrong or if memory grows.
+// Polls two simulators with 32 modules each without pauses. Fails if a reply is wrong, or if the memory of a
+// simulator grows by more than 256 KiB.
 //
 //     soak [SECONDS]
 #include <array>

@@ -33,8 +33,8 @@ std::vector<std::uint8_t> frame(const std::vector<std::uint8_t>& bytes) { return
 
 double seconds(VirtualTime time) { return std::chrono::duration<double>(time).count(); }
 
-/// Measures a line on which the master sends no request except a host OK every 20 s. All watchdogs are
-/// enabled. One module has timed out and its LED flashes.
+/// Measures a line on which the master sends no request except a host OK every 20 s. The host watchdogs of
+/// all modules but one are enabled. The host watchdog of that module has expired, so its LED flashes.
 void idle_line(benchmark::State& state) {
   Line line(a_line_of_modules(), sim::kPaced, [](std::uint8_t, ByteStatus) {});
   const auto tell = [&line](const std::vector<std::uint8_t>& bytes, VirtualTime then) {
@@ -83,7 +83,7 @@ void loaded_line(benchmark::State& state) {
     // 8 and 13 characters, two silences of 1.75 ms, and a margin for rounding.
     line.bus().run_for(std::chrono::microseconds(21 * 10 * 1'000'000 / 115200 + 2 * 1752 + 10));
     if (!heard) {
-      state.SkipWithError("no answer");
+      state.SkipWithError("no reply");
     }
   }
   state.counters["figure"] =

@@ -10,14 +10,14 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 IMAGE = "/some where/EX9042D-M.elf"
-HANG = 60  # seconds; OpenOCD takes less than one, or a few on a busy machine
+HANG = 60  # seconds; OpenOCD takes less than one second, or a few seconds on a busy machine
 
 MOVES_A_BOARD = ("init", "reset", "flash", "verify_image", "poll")
 ECHO_INSTEAD = "; ".join([f'proc {name} {{args}} {{ echo "> {name} $args" }}' for name in MOVES_A_BOARD])
 
 
 def openocd_script(board: Path) -> str | None:
-    """Returns the OpenOCD script that a board.cmake, or the file that it includes, sets."""
+    """Returns the OpenOCD script that a board.cmake, or the file that it includes, sets; None if neither sets one."""
     text = board.read_text()
     if match := re.search(r"set\(openocd_script (\S+)\)", text):
         return match.group(1).replace("${CMAKE_CURRENT_LIST_DIR}", str(board.parent))

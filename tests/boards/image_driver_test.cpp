@@ -1,4 +1,5 @@
-// Tests how an image reacts to faults of the parts around its microcontroller.
+// Tests images on simulated boards: faults of the EEPROM and of the line, turn-around times, pulses at the
+// inputs, resets, the INIT* switch, the status LED and a long uptime.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -33,15 +34,16 @@ class OnBoard : public testing::TestWithParam<ImageName> {
   }
   UartPort& uart() { return bench.image.uart == 0 ? bench.mcu->uart0 : bench.mcu->uart1; }
   bool listens() { return uart().enabled(); }
-  /// Checks that the module starts from reset with the bus in its present state.
+  /// Switches the supply on, with the EEPROM and its bus in their present state. Checks that the module
+  /// starts in time and replies.
   void expect_comes_up() {
     power_up();
     EXPECT_TRUE(listens());
     EXPECT_EQ(bench.resets, 0U);
     EXPECT_EQ(bench.ask("$01M"), "!019055");
   }
-  /// Sends the command that stores a name. After the time `after`, switches the supply off for 50 ms. Returns
-  /// whether the module had begun to reply.
+  /// Sends the command that stores a name. Switches the supply off at the time `after` from the start of the
+  /// command, and on again 50 ms later. Returns whether the module had begun to reply before the cut.
   bool cut_while_it_stores(const std::string& name, Instant after) {
     const std::string command = "~01O" + name + "\r";
     bench.line.heard.clear();
@@ -134,7 +136,7 @@ TEST_P(OnBoard, ComesUpWithin100msAfterAResetAtAnyTimeWhileItReadsItsSettings) {
 }
 
 TEST_P(OnBoard, HasOldOrNewSettingsAfterAPowerCutAndNewOnesIfItHasReplied) {
-  // The command takes 9.4 ms and its turn-around 1 ms; storing takes another 10 ms, or twice that if an
+  // The command takes at most 9.4 ms and its turn-around 1 ms. Storing takes another 10 ms, or 20 ms if an
   // earlier cut has left a copy that must be repaired first.
   constexpr microseconds kCommandIsSent{10'300};
   constexpr microseconds kInBetween{5000};
@@ -279,7 +281,7 @@ TEST_P(OnBoard, AcceptsTwoHostOksWithoutAPauseBetweenThem) {
   for (int phase = 0; phase < 20; ++phase) {
     bench.line.send(host_ok);
     bench.run_for(takes);
-    // The first host OK ends before the timeout, the second one after it.
+    // The host watchdog would expire between the ends of the next two host OKs.
     bench.run_for(milliseconds(100) - 2 * takes + takes / 2);
     bench.line.send(host_ok);
     bench.line.send(host_ok);
@@ -293,7 +295,8 @@ TEST_P(OnBoard, CountsShortPulsesOnEveryInputDespiteInterruptLatency) {
   bench.mcu->core.set_latency(microseconds(10));
   for (unsigned channel = 0; channel < bench.image.inputs; ++channel) {
     for (int i = 0; i < 7; ++i) {
-      // The pulse is so short that both edges set the same flag and the level is back at its old value.
+      // The pulse is so short that, when the handler runs, both edges have set the same flag and the level is
+      // back at its old value.
       bench.set_input(channel, true);
       bench.run_for(microseconds(i));
       bench.set_input(channel, false);
@@ -353,7 +356,8 @@ TEST_P(OnBoard, ReportsTheReasonOfTheLastReset) {
   }
 }
 
-/// wire.md D13. If the module sampled this switch only every 10 ms, the switch would seem to be stable.
+/// wire.md D13. If the module sampled the bouncing switch only every 10 ms, the switch would seem to be
+/// stable.
 TEST_P(OnBoard, TreatsAnInitSwitchThatBouncesAfterResetAsReleased) {
   for (const bool most_of_the_time : {true, false}) {
     for (int phase = 0; phase < 10; ++phase) {
@@ -418,12 +422,13 @@ TEST_P(OnBoard, AccessesNoRegisterWhileInterruptsAreDisabled) {
   EXPECT_EQ(bench.mcu->most_accesses_held(), 0U);
 }
 
-/// In this image, all 32-bit counts of the interrupts are about to wrap (tests/support/long_uptime).
+/// In this image, each 32-bit count that the interrupts and the main loop share is about to wrap
+/// (tests/support/long_uptime).
 class OnBoardForMonths : public OnBoard {};
 
 TEST_P(OnBoardForMonths, WorksAcrossTheWrapOfEvery32BitCount) {
   power_up();
-  Instant shortest = kNever;  // silence before the reply to a store
+  Instant shortest = kNever;  // from the end of a command that stores to its reply
   Instant longest{0};
   const auto store = [&](const std::string& command) {
     bench.line.drives.clear();
@@ -432,7 +437,7 @@ TEST_P(OnBoardForMonths, WorksAcrossTheWrapOfEvery32BitCount) {
     shortest = std::min(shortest, silence);
     longest = std::max(longest, silence);
   };
-  store("~013114");  // 2 s; each round is shorter
+  store("~013114");  // a timeout of 2 s; each round is shorter
   for (unsigned round = 1; round <= 150; ++round) {
     bench.line.send({'~', '*', '*', '\r'});
     bench.run_for(milliseconds(10));
@@ -447,7 +452,8 @@ TEST_P(OnBoardForMonths, WorksAcrossTheWrapOfEvery32BitCount) {
     ASSERT_EQ(bench.ask("~010"), "!0100") << round;
   }
   EXPECT_EQ(bench.ask("$01M"), "!01PUMP0");
-  // If the driver gave up a byte on the EEPROM's bus and repeated it, the reply would begin 3 ms later.
+  // If the driver gave up a byte on the EEPROM's bus and sent the byte again, the reply would begin 3 ms
+  // later.
   EXPECT_LT(std::chrono::duration<double>(longest - shortest).count(), 0.002);
   bench.run_for(seconds(2));
   EXPECT_EQ(bench.ask("~010"), "!0104");

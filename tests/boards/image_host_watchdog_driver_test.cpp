@@ -26,8 +26,8 @@ using std::chrono::seconds;
 /// microseconds. The module rounds up the end of a byte and the end of the silence after the byte, so that
 /// the host watchdog does not expire too early.
 constexpr microseconds kRounding{3};
-/// The time from the interrupt at the expiry until the main loop has set the last of sixteen pins, which
-/// change one after the other. The measured time is 2.5 us.
+/// The longest permitted time from the interrupt at the expiry until the main loop has set the last of
+/// sixteen pins. The pins change one after the other. The measured time is 2.5 us.
 constexpr microseconds kTurn{5};
 constexpr milliseconds kExpiresWithin{1};
 
@@ -86,7 +86,7 @@ void ExpiryOnBoard::expect_expiry_within(Instant most, const std::function<void(
               static_cast<double>(earliest.count()) / 1e9, static_cast<double>(latest.count()) / 1e9);
 }
 
-TEST_P(ExpiryOnBoard, IsNeverEarlyAndAtMostOneMillisecondLateForEveryTimeout) {
+TEST_P(ExpiryOnBoard, IsNeverEarlyAndAtMostOneMillisecondLate) {
   expect_expiry_within(kExpiresWithin, [](BoardBench& /*bench*/) {});
 }
 
@@ -189,8 +189,9 @@ TEST_P(HostWatchdogOnBoard, ATimedOutputDoesNotChangeTheOutputsAfterTheExpiry) {
   }
 }
 
-/// wire.md D6. From the expiry on, the outputs have the old safe value. When the command is stored, they take
-/// the new safe value. They never take the value of a later command.
+/// wire.md D6. From the expiry on, the outputs have the old safe value. When the command that changes the
+/// safe value has been stored, the outputs take the new safe value. They never take the value of a later
+/// command.
 TEST_P(HostWatchdogOnBoard, ASafeValueThatIsBeingStoredAtTheExpiryIsDrivenWhenItIsStored) {
   constexpr unsigned kVv = 5;
   constexpr std::uint16_t kCommanded = 0x3C96;
@@ -343,8 +344,8 @@ TEST_P(HostWatchdogOnBoard, NoCommandedValueReturnsAfterTheExpiryAndAPowerCut) {
       const std::uint16_t from_reset = stored ? kSafeValue : power_on_value;
       EXPECT_EQ(outputs, from_reset);
       for (const WatchedModule::Change& change : module.changes) {
-        // The outputs go off when the supply is switched off, and on after it is switched on again. No other
-        // output is ever on.
+        // Until the supply is switched on again, only outputs of the safe value are on. After that, only
+        // outputs of the value after a reset are on.
         EXPECT_EQ(change.at < bench.began ? change.outputs & ~kSafeValue : change.outputs & ~from_reset, 0);
       }
       unstored += stored ? 0U : 1U;

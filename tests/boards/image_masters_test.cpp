@@ -35,8 +35,7 @@ class ImageAndMaster : public testing::Test {
     return finished.output;
   }
 
-  /// The module replies in simulated time. This is the time that a busy host may need for a request and its
-  /// reply.
+  /// The time that a busy host may need to simulate a request and its reply.
   static constexpr std::chrono::seconds kPatience{10};
 
   EmulatedModule module_;

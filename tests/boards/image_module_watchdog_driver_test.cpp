@@ -1,5 +1,5 @@
-// Tests that the module watchdog of an image resets the module if it hangs, during each of its activities:
-// wire.md section 6.
+// Tests that the module watchdog of an image resets the module if the image hangs during any of its
+// activities: wire.md section 6. Also tests that a stuck EEPROM bus causes no reset.
 #include <gtest/gtest.h>
 
 #include <cstdio>

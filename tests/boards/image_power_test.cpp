@@ -1,4 +1,5 @@
-// Tests power cuts. Each power-on starts a new emulator, which uses the EEPROM file of the previous one.
+// Tests power cuts, and the first start after an update of the firmware. After a power cut, a new emulator
+// uses the EEPROM file of the previous one.
 //
 // The emulated EEPROM stores a page immediately when STOP arrives. Therefore this test checks only in which
 // order the image writes, reads back and replies, and that it starts after a cut. power_cuts_test checks the
@@ -58,7 +59,8 @@ Settings settings_before(const Model& model, const StoringCommand& command) {
   return settings;
 }
 
-/// Includes the time of a timeout, and 2 ms for each store at which the module stops.
+/// The time limit for all register stores of one command. The limit includes the wait for a timeout of the
+/// host watchdog, and 2 ms for each store at which the module stops.
 constexpr milliseconds kStoresWithin{3000};
 
 /// A module whose emulator is killed after a number of stores to the registers of the I2C master.
@@ -67,8 +69,9 @@ class CutModule {
   CutModule(const Model& model, const StoringCommand& command)
       : command_(command), before_(settings_before(model, command)), module_(model) {}
 
-  /// Starts the module, sends the command, and makes the power fail after `stores` stores to the registers of
-  /// its I2C master. Returns false if the command caused fewer stores.
+  /// Starts the module, sends the command or waits for the timeout of the host watchdog, and makes the power
+  /// fail after `stores` stores to the registers of the I2C master. Returns false if the command caused fewer
+  /// stores.
   bool cut_behind(unsigned stores) {
     constexpr std::uint32_t kI2c = 0x4002'0000;
     constexpr std::uint32_t kRegisters = 0x24;
@@ -117,7 +120,7 @@ class CutModule {
         found = spoken_to(FrameFormat::of(*guess)).read(guess->format);
       }
     }
-    ASSERT_TRUE(found) << "it does not answer";
+    ASSERT_TRUE(found) << "the module does not reply";
     ASSERT_TRUE(*found == done_ || (!must_be_done && !answered_ && *found == before_));
     ASSERT_EQ(outputs, found->timeout_status ? found->safe_value : found->power_on_value);
     (*found == done_ ? news_ : olds_) += 1;
@@ -140,7 +143,8 @@ class CutModule {
     module_.run_for(milliseconds(60));
     ASSERT_NE(module_.mode().baud, 0U) << "the module does not start";
   }
-  /// Returns whether the module uses the line format of a baud-rate code, and its rate within 5 %.
+  /// Returns whether the module uses the line format of a baud rate code, and a baud rate within 5 % of that
+  /// of the code.
   bool is_used(std::uint8_t code) {
     const std::uint32_t rate = baud_rate(code);
     const hal::SerialMode mode = module_.mode();
@@ -161,7 +165,7 @@ class CutModule {
   Settings before_;
   Settings done_;
   TimedModule module_;
-  std::map<std::string, std::optional<Settings>> known_;  ///< found settings, by contents of the EEPROM
+  std::map<std::string, std::optional<Settings>> known_;  ///< the settings, by contents of the EEPROM
   bool answered_ = false;
   unsigned olds_ = 0;
   unsigned news_ = 0;
@@ -193,7 +197,7 @@ TEST(ImageAfterAnUpdate, HasAllSettingsThatEarlierFirmwareHasStored) {
     module.power(true);
     module.run_for(kComesUpWithin);
     const auto found = reader_of(module, FrameFormat::of(stored.settings)).read(stored.settings.format);
-    ASSERT_TRUE(found) << stored.file << ": it does not reply";
+    ASSERT_TRUE(found) << stored.file << ": the module does not reply";
     EXPECT_TRUE(*found == stored.settings) << stored.file;
     EXPECT_EQ(module.memory(), memory) << stored.file;
     ++updates;

@@ -174,7 +174,7 @@ class FaultyImage : public testing::TestWithParam<Protocol>, protected EitherPro
 
   /// Returns whether the test runs this case without EX9000_CUTS=all. In ASCII, it runs each value of the
   /// timeout status with half of the activities. In Modbus, it runs only Storing with a clear timeout status.
-  /// It runs only one storm, because the emulator requires seconds for a storm.
+  /// The test runs only one storm, because the emulator requires seconds for a storm.
   [[nodiscard]] bool belongs_to_short_form(Doing doing, bool status, Fault fault) const {
     const bool first_half = doing == Doing::Nothing || doing == Doing::Storing;
     if (fault == &FaultyImage::storm) {
@@ -249,7 +249,7 @@ TEST_P(FaultyImage, RunsWithABlockedEepromBusAndStoresWhenItIsFree) {
     EXPECT_FALSE(timeout_status());
     EXPECT_FALSE(was_reset());
     bus().write(entry, own);
-    module_.run_for(std::chrono::seconds(2));  // pending repairs are complete
+    module_.run_for(std::chrono::seconds(2));  // until pending repairs are complete
     EXPECT_TRUE(stores());
     ASSERT_FALSE(HasFailure());
   }

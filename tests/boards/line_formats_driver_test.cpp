@@ -44,7 +44,8 @@ class ImageInFormat : public testing::TestWithParam<ImageAndFormat> {
   [[nodiscard]] Protocol protocol() const {
     return find_model(bench.image.model)->speaks_modbus() ? Protocol::ModbusRtu : Protocol::Ascii;
   }
-  /// Reads the register 0x030E, the number of bytes with framing or parity errors.
+  /// Returns the value of register 0x030E, which is the number of bytes with framing or parity errors.
+  /// Returns 0xFFFF'FFFF if a Modbus module does not reply correctly.
   unsigned damaged_bytes() {
     if (protocol() == Protocol::Ascii) {
       return static_cast<unsigned>(std::stoul(bench.ask("~01X030E").substr(3), nullptr, 16));
@@ -52,7 +53,7 @@ class ImageInFormat : public testing::TestWithParam<ImageAndFormat> {
     const std::vector<std::uint8_t> reply = bench.exchange(with_crc({1, 4, 0x03, 0x0E, 0, 1}));
     return reply.size() == 7 ? reply[3] * 256U + reply[4] : 0xFFFF'FFFF;
   }
-  /// Sends a request to which every module replies.
+  /// Sends a request to which every module replies, and returns the reply.
   std::vector<std::uint8_t> reply() {
     return bench.exchange(protocol() == Protocol::Ascii ? std::vector<std::uint8_t>{'$', '0', '1', 'M', '\r'}
                                                         : with_crc({1, 0x11}));

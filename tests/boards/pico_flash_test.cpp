@@ -1,5 +1,5 @@
 // Tests the flash driver in the emulator: a program runs from RAM, erases and programs the flash, and
-// receives bytes by interrupt at the same time.
+// receives bytes by interrupt at the same time. Also tests that the program finds the reason of each reset.
 #include <gtest/gtest.h>
 
 #include <string>

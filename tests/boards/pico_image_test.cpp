@@ -1,5 +1,5 @@
-// Tests the images for the Pico in the emulator: the driver enable, resets by the watchdog, faults, and a
-// blocked EEPROM bus. To make an image hang, a test changes its code in RAM. After the reset, the second
+// Tests the images for the Pico in the emulator: the pins, replies and their turn-around times, resets,
+// faults, and the EEPROM. To make an image hang, a test changes its code in RAM. After the reset, the second
 // stage copies the image from the flash again.
 #include <gtest/gtest.h>
 

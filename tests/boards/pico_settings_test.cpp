@@ -51,7 +51,7 @@ class PicoSettings : public testing::Test {
     }
   }
 
-  /// Provides a new board that replies at kBaud.
+  /// Provides a new board whose module and master use kBaud. Its supply is off.
   void prepare() {
     bench_.begin_anew(model_, &settings_);
     bench_.set_baud(kBaud);
@@ -70,8 +70,9 @@ class PicoSettings : public testing::Test {
     bench_.run_for(milliseconds(10));
   }
 
-  /// Sends a request after a silence, and returns `size` bytes of the reply. Sets `waited_` to the time from
-  /// the end of the request to the start of the reply.
+  /// Sends a request after a silence, and returns the first `size` bytes of the reply, or fewer if no more
+  /// arrive in time. Sets `waited_` to the time from the end of the request to the start of the reply, which
+  /// must have `size` bytes.
   Bytes ask(const Bytes& request, std::size_t size) {
     bench_.run_for(kSilence);
     bench_.send(request);
@@ -277,7 +278,7 @@ TEST_P(PicoAfterAnUpdate, HasAllSettingsThatEarlierFirmwareHasStored) {
       return reply;
     });
     const auto found = reader.read(stored.settings.format);
-    ASSERT_TRUE(found) << stored.file << ": it does not reply";
+    ASSERT_TRUE(found) << stored.file << ": the module does not reply";
     EXPECT_TRUE(*found == stored.settings) << stored.file;
     ++updates;
   }

@@ -1,5 +1,5 @@
-// Tests the shipped code that an image runs before its `main`. The memory has extra words around the sections
-// that the linker marks.
+// Tests the shipped code that an image runs before its `main`, after a return from `main`, and on a fault.
+// The memory has extra words around the sections that the linker marks.
 #include <gtest/gtest.h>
 
 #include <algorithm>

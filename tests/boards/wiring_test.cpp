@@ -89,7 +89,7 @@ Table table_of(const std::string& head) {
   return found;
 }
 
-/// Returns the name of an output on the model's label: RL1 is channel 0 (wire.md section 1).
+/// Returns the name of an output on the model's label: for channel 0, RL1 or DO0 (wire.md section 1).
 std::string output_label(const Model& model, unsigned channel) {
   const bool is_relay = model.description.find("relay") != std::string_view::npos ||
                         model.description.find("PhotoMOS") != std::string_view::npos;
@@ -146,7 +146,8 @@ TEST(Wiring, TheReadmeListsThePinsOfTheCommonSignals) {
     written[row->at(0)] = row->at(1);
   }
 #ifdef EX9000_BOARD_HAS_HEADERS
-  // README's table describes the image with a transceiver; the image without one has its own section.
+  // The table of the README describes the image for a transceiver. Another section describes the image
+  // without a transceiver.
   static_assert(kUart == 1);
 #endif
   std::map<std::string, std::string> expected = names_of_peripherals();

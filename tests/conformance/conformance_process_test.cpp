@@ -18,7 +18,8 @@ using Over = system::TranscriptLines::Over;
 
 constexpr std::size_t kLines = 12;  ///< in one simulator process
 
-/// Plays each transcript on its own line, in one simulator, one after the other.
+/// Plays the transcripts one after another in one simulator, each on its own line. If the simulator does not
+/// start or does not accept a connection, all of them fail.
 void play_on_a_simulator(Played* runs, std::size_t count, Over over) try {
   std::vector<const play::Transcript*> transcripts;
   for (std::size_t each = 0; each < count; ++each) {

@@ -26,7 +26,7 @@ struct Played {
   play::Result result;
 };
 
-/// Returns a run of each transcript for each model that it names.
+/// Returns one run for each model of each transcript. The runs have not been played yet.
 inline std::vector<Played> all_runs() {
   std::vector<Played> runs;
   for (const std::string& file : play::transcript_files(EX9000_CONFORMANCE_DIR)) {
@@ -40,7 +40,7 @@ inline std::vector<Played> all_runs() {
 inline constexpr std::array<std::string_view, 8> kModelsOfTheManuals{
     "EX9042D", "EX9042D-M", "EX9043D", "EX9043D-M", "EX9052D", "EX9052D-M", "EX9068D-M", "EX9068AD-M"};
 
-/// Returns the runs of the models in the manuals.
+/// Returns the runs of `all_runs` for the models in the manuals.
 inline std::vector<Played> runs_of_the_manuals() {
   std::vector<Played> runs = all_runs();
   const auto others = std::remove_if(runs.begin(), runs.end(), [](const Played& run) {

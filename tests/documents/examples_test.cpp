@@ -1,8 +1,9 @@
-// Runs the examples of the documents. In each section, a `sh` block that starts the simulator runs in one
-// terminal. All other `sh` and `python` blocks run in a second terminal, and the `text` block is their
-// expected output. A `json` block is the content of the file `bus.json`. The working directory contains only
-// links to `boards` and `build`, because the images are there. For the block `sim/run`, the test runs only
-// the last command of sim/run, because tests/first-command runs sim/run itself, which builds the simulator.
+// Runs the examples in each section of the documents that has a `text` block. A `sh` block that starts the
+// simulator runs in one terminal. All other `sh` and `python` blocks run in a second terminal, and the `text`
+// blocks are their expected output. A `json` block is the content of the file `bus.json`. Apart from this
+// file, the working directory contains only links to `boards` and `build`, because the images are there. For
+// the line `sim/run`, the test runs only the last command of sim/run. The script itself also builds the
+// simulator; tests/first-command runs it.
 #include <gtest/gtest.h>
 
 #include <algorithm>

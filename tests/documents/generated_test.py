@@ -1,4 +1,4 @@
-"""Tests that each generated section of a document is up to date. toolchain/update-documents updates it."""
+"""Tests that each generated part of a document is up to date. toolchain/update-documents updates all of them."""
 
 from __future__ import annotations
 

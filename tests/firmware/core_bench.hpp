@@ -1,5 +1,5 @@
-// The core without a simulated line: a Modbus module that receives whole frames. Tests that send thousands of
-// frames use it because it is fast.
+// The core without a simulated line, for tests that send thousands of frames: a Modbus module that receives
+// whole frames.
 #pragma once
 
 #include <algorithm>
@@ -16,7 +16,7 @@ class CoreBench {
  public:
   using FrameBytes = std::vector<std::uint8_t>;
 
-  /// Starts the module on an erased memory and returns when it listens.
+  /// Starts the module with an erased memory, and returns when the module listens.
   explicit CoreBench(std::string_view model) : module_(*find_model(model)) {
     module_.start(0, now_);
     while (!module_.listening()) {
@@ -40,7 +40,7 @@ class CoreBench {
     now_ = now_ + kCharacter;
     module_.on_byte(value, status, now_);
   }
-  /// Lets a silence pass that is long enough to end every frame.
+  /// Lets a silence of 50 ms pass, which ends every frame.
   void silence() {
     now_ = now_ + milliseconds(50);
     while (!(module_.on_silence() == Duration())) {
@@ -54,8 +54,8 @@ class CoreBench {
     }
     silence();
   }
-  /// Runs the main loop once. Returns the reply to the received frame, with its CRC; empty if there is no
-  /// reply.
+  /// Runs the main loop until the received frame is processed and stored. Returns the reply with its CRC;
+  /// empty if there is no reply.
   FrameBytes answer() {
     module_.step(now_);
     do_memory_jobs();

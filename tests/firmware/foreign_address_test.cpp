@@ -1,5 +1,5 @@
 // Tests that a module never replies to a request for another address. The requests combine every other
-// address with every command and every function code.
+// address with every command and every function code. The broadcasts are left out.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -78,8 +78,8 @@ void every_function_to_every_other_address(const char* model) {
       if (address == kOwnAddress) {
         continue;
       }
-      // Depending on the function, the data means coil 0000 on, register 0000, or quantity 0xFF00. The module
-      // must ignore the request whether or not it is valid.
+      // Depending on the function, the data means coil 0000 on, the value 0xFF00 for register 0000, or the
+      // quantity 0xFF00. The module must ignore the request whether or not it is valid.
       Bytes frame{static_cast<std::uint8_t>(address), static_cast<std::uint8_t>(function), 0, 0, 0xFF, 0};
       if (function == 0x0F) {
         frame = {frame[0], frame[1], 0, 0, 0, 8, 1, 0xFF};

@@ -18,7 +18,7 @@ TEST(Hex, SixteenDigitsHaveAValue) {
   }
 }
 
-TEST(Hex, NoOtherCharacterHasAValue) {
+TEST(Hex, ACharacterThatIsNotADigitHasNoValue) {
   for (unsigned character = 0; character < 256; ++character) {
     if (kDigits.find(static_cast<char>(character)) == std::string_view::npos) {
       EXPECT_EQ(hex_value(static_cast<std::uint8_t>(character)), -1) << character;
@@ -26,13 +26,13 @@ TEST(Hex, NoOtherCharacterHasAValue) {
   }
 }
 
-TEST(Hex, LowerCaseIsNoDigit) {
+TEST(Hex, ALowerCaseLetterIsNotADigit) {
   for (const char letter : std::string_view("abcdef")) {
     EXPECT_EQ(hex_value(static_cast<std::uint8_t>(letter)), -1) << letter;
   }
 }
 
-TEST(Hex, TwoDigitsMakeEveryByteHighDigitFirst) {
+TEST(Hex, TwoDigitsGiveAByteHighDigitFirst) {
   for (unsigned byte = 0; byte < 256; ++byte) {
     EXPECT_EQ(hex_byte(digit(byte / 16), digit(byte % 16)), static_cast<int>(byte));
   }

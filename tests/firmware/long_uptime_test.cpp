@@ -43,7 +43,8 @@ TEST(LongUptime, InputsLatchesAndCountersFollowEveryEdge) {
   }
 }
 
-// This test makes one edge at a time, so that the main loop reads the total at every value around the wrap.
+// This test makes one edge at a time, so that the main loop reads every value of the edge count around the
+// wrap.
 TEST(LongUptime, NoSingleEdgeIsMissed) {
   CoreBench bench("EX9052D-M");
   const Inputs& inputs = bench.module().state().inputs;

@@ -21,7 +21,7 @@ class ModuleBench {
  public:
   using Bytes = std::vector<std::uint8_t>;
 
-  /// `module` has the form of the simulator's command line. When the constructor returns, 100 ms have passed
+  /// `module` is written as on the simulator's command line. When the constructor returns, 100 ms have passed
   /// since power-on.
   explicit ModuleBench(const std::string& module)
       : spec_(parse_module_spec(module)),
@@ -37,8 +37,8 @@ class ModuleBench {
   BusRecorder& recorder() { return recorder_; }
   [[nodiscard]] VirtualTime now() { return line_.clock().virtual_now(); }
   void run(VirtualTime time) { line_.bus().run_for(time); }
-  /// Runs until `condition` is true, checked every millisecond, for at most one second. Returns whether it is
-  /// true.
+  /// Runs until `condition` is true, but for at most one second, and checks `condition` every millisecond.
+  /// Returns whether `condition` is true at the end.
   template <class Condition>
   bool runs_until(Condition condition) {
     const VirtualTime gives_up = now() + std::chrono::seconds(1);
@@ -56,8 +56,8 @@ class ModuleBench {
   }
   void send(const std::string& text) { send(Bytes(text.begin(), text.end())); }
 
-  /// Sends a command; the bench adds the CR. Returns the reply without CR; empty if none arrives within 250
-  /// ms.
+  /// Sends a command; the bench adds the CR. Waits for 250 ms in every case, and returns the reply without
+  /// CR; empty if none arrived.
   std::string ask(const std::string& command) {
     heard_.clear();
     send(command + "\r");
@@ -69,8 +69,8 @@ class ModuleBench {
     return reply;
   }
 
-  /// Sends a frame; the bench adds the CRC. Returns the reply without CRC; empty if none arrives within 250
-  /// ms.
+  /// Sends a frame; the bench adds the CRC. Waits for 250 ms in every case, and returns the reply without
+  /// CRC; empty if none arrived.
   Bytes ask(const Bytes& frame) {
     heard_.clear();
     send(with_crc(frame));

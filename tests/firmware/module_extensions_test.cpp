@@ -1,4 +1,5 @@
-// Tests extensions of a whole module that depend on exact times, stores and resets: firmware/extensions.md.
+// Tests, on a whole module, the extensions that depend on exact times, stores and resets:
+// firmware/extensions.md.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -46,7 +47,7 @@ TEST(TimedOutput, IsSwitchedOffInTimeWhileSettingsAreStoredOrAReplyIsSent) {
     ModuleBench bench("EX9043D");
     std::vector<OutputChange> changes;
     bench.watch_outputs(changes);
-    ASSERT_EQ(bench.ask("~01X02800003"), "!01");  // `ask` waits for 250 ms, so 50 ms are left
+    ASSERT_EQ(bench.ask("~01X02800003"), "!01");  // `ask` waits for 250 ms, so about 50 ms are left
     bench.run(milliseconds(offset));
     bench.send("~01ONAME" + std::to_string(offset % 10) + "\r");
     bench.run(milliseconds(400));
@@ -131,7 +132,7 @@ TEST(FedByRequests, ARequestRestartsTheHostWatchdogAtItsEnd) {
   EXPECT_LE(changes[0].at - fed, milliseconds(500) + kTick);
 }
 
-// The request ends in the same millisecond in which the watchdog would expire.
+// The second request ends less than a millisecond before or after the time at which the watchdog expires.
 TEST(FedByRequests, OnlyARequestBeforeTheExpiryRestartsTheHostWatchdog) {
   const std::string request = "$01M\r";
   const VirtualTime takes = VirtualTime(10'000'000'000 / 115200) * static_cast<int>(request.size());
@@ -259,7 +260,7 @@ TEST(StoreCount, ReadsZeroAfterAnUpdateUntilTheFirstStore) {
   EXPECT_EQ(bench.ask("~01X0305"), "!010001");
 }
 
-// The power failed during the first store after the update: the new copy is complete, and the old ones are
+// The power failed during the first store after the update: the new copy is complete, and the old copies are
 // still valid.
 TEST(StoreCount, CountsTheStoreThatFinishesAnUpdateAtStart) {
   const Model& model = *find_model("EX9043D");

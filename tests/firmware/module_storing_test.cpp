@@ -17,7 +17,7 @@ using Bytes = ModuleBench::Bytes;
 using std::chrono::microseconds;
 using std::chrono::milliseconds;
 
-// --- wire.md 8: a reply means that it is stored ---
+// --- wire.md 8: a reply to a command means that its settings are stored ---
 
 TEST(Storing, ACommandThatCannotBeStoredIsRefusedAndChangesNothing) {
   const std::vector<std::string> commands{"%0102400680", "~01OABC", "~013164", "~015P", "~015S"};
@@ -54,8 +54,8 @@ TEST(Storing, ABroadcastThatCannotBeStoredGetsNoReplyAndHasNoEffect) {
   EXPECT_EQ(bench.module().outputs(), 0);
 }
 
-/// Sends each command twice. The first time it may store something; the second time it must not. `ask`
-/// returns whether the command was executed.
+/// Sends each command twice. The first execution may store something; the second one must not. `ask` returns
+/// whether the command was executed.
 template <class Command, class Ask>
 void expect_nothing_written_the_second_time(ModuleBench& bench, const std::vector<Command>& commands,
                                             Ask ask) {
@@ -137,7 +137,7 @@ TEST(Storing, ABroadcastThatChangesNothingWritesNothing) {
 
 TEST(Storing, ATimeoutStatusIsClearedOnceAndNotAgain) {
   ModuleBench ascii("EX9042D");
-  ASSERT_EQ(ascii.ask("~013101"), "!01");  // has expired when `ask` returns
+  ASSERT_EQ(ascii.ask("~013101"), "!01");  // the watchdog has expired when `ask` returns
   expect_nothing_written_the_second_time<std::string>(
       ascii, {"~011"}, [&ascii](const std::string& command) { return ascii.ask(command) == "!01"; });
   ModuleBench modbus("EX9042D-M");
@@ -324,7 +324,7 @@ TEST(Queueing, ACompleteModbusFrameIsNotLostWhenThePreviousReplyStarts) {
   bench.recorder().clear();
   bench.run(milliseconds(400));
   ASSERT_FALSE(bench.recorder().drivers.empty());
-  // Otherwise the silence would end before the driver is switched on, and the test would prove nothing.
+  // The driver must be switched on before the silence ends. Otherwise the test proves nothing.
   EXPECT_LT(bench.recorder().drivers[0].at, sent + microseconds(4010));
   EXPECT_FALSE(bench.module().module().state().settings.timeout_status);
 }
@@ -346,8 +346,8 @@ TEST(Queueing, TwoRepliesAreAtLeastT35Apart) {
   EXPECT_GE(on[1].at - off[0].at, microseconds(1750));
 }
 
-// "A reply means that it is stored": settings that could not be read may be readable again after the next
-// reset.
+// wire.md section 8: a reply means that the settings are stored. Settings that could not be read may be
+// readable again after the next reset, so the module must store even the factory values.
 TEST(Storing, ACommandWithFactoryValuesIsStoredIfTheSettingsWereUnreadable) {
   ModuleBench bench("EX9042D");
   ASSERT_EQ(bench.ask("~01OONE"), "!01");

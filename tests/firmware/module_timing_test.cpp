@@ -57,13 +57,13 @@ TEST(Reset, ABouncingInitSwitchIsReadOnlyAfterItIsStable) {
 
 // --- wire.md 3 and 7: start of a reply; 9: the driver; firmware/extensions.md: line formats ---
 
-/// A rate and a line format, and the duration of a character.
+/// A baud rate, a line format, and the duration of a character.
 struct LineMode {
   std::uint32_t baud;
   const char* format;
   VirtualTime character;
 
-  /// Returns a specification of a module with this mode.
+  /// Returns the specification of a module with this line mode.
   [[nodiscard]] std::string of(const std::string& model) const {
     return model + ",baud=" + std::to_string(baud) + ",format=" + format;
   }
@@ -89,7 +89,7 @@ TEST(Timing, ACharacterHasTenBitsIn8N1AndElevenInTheOtherFormats) {
     ASSERT_EQ(bench.ask("$01M"), "!019055") << mode;
     const auto& bytes = bench.recorder().bytes;
     ASSERT_EQ(bytes.size(), 13U) << mode;
-    for (std::size_t i = 6; i < bytes.size(); ++i) {  // bytes of the reply, which follow each other
+    for (std::size_t i = 6; i < bytes.size(); ++i) {  // the bytes of the reply have no gaps
       EXPECT_NEAR(static_cast<double>((bytes[i].start - bytes[i - 1].start).count()),
                   static_cast<double>(mode.character.count()), 2.0)
           << mode;
@@ -137,8 +137,8 @@ TEST(Timing, AModbusReplyStartsAfterT35AndWithin20msOr200msIfStored) {
   }
 }
 
-// firmware/extensions.md: the response delay counts from the last stop bit, and the other limits from its
-// end.
+// firmware/extensions.md: the response delay counts from the last stop bit of the request. The limits of 20
+// ms and 200 ms count from the end of the response delay if the delay ends after the turn-around.
 TEST(Timing, AReplyStartsAtTheEndOfTheResponseDelayAndAStoreDoesNotAddToIt) {
   for (const LineMode& mode : all_line_modes()) {
     ModuleBench bench(mode.of("EX9055D"));
@@ -182,7 +182,7 @@ TEST(Driver, IsOnBeforeTheFirstStartBitAndOffWithinACharacterAfterTheLastStopBit
   }
 }
 
-TEST(Driver, ItsOwnEchoIsNeverProcessedAsARequest) {
+TEST(Driver, TheEchoOfAReplyIsNeverProcessedAsARequest) {
   // The name looks like a command for this module. On a two-wire line, the module receives the reply that it
   // sends, and the reply contains the name.
   ModuleBench bench("EX9042D,name=$01M");
@@ -215,7 +215,7 @@ TEST(Time, TheHostWatchdogExpiresOnTimeAcrossTheClockWrap) {
   EXPECT_EQ(bench.module().watchdog_resets(), 0U);
 }
 
-TEST(Time, AMasterThatPollsOnceAWrapIsAnsweredEveryTime) {
+TEST(Time, AMasterThatPollsOncePerClockWrapIsAnsweredEveryTime) {
   constexpr microseconds kWrap{std::int64_t{1} << 32};
   ModuleBench bench("EX9042D-M");
   for (int i = 0; i < 5; ++i) {
@@ -228,7 +228,7 @@ TEST(Time, AMasterThatPollsOnceAWrapIsAnsweredEveryTime) {
 // On a 32-bit microsecond clock, a moment that is 36 to 71 minutes in the past looks like one in the future.
 constexpr std::array kPauses{std::chrono::minutes(36), std::chrono::minutes(50), std::chrono::minutes(71)};
 
-TEST(Time, ARequestIsAnsweredAfterAnyPause) {
+TEST(Time, ARequestIsAnsweredAfterAPauseOf36To71Minutes) {
   ModuleBench modbus("EX9042D-M");
   ModuleBench ascii("EX9042D");
   for (const auto pause : kPauses) {
@@ -241,7 +241,7 @@ TEST(Time, ARequestIsAnsweredAfterAnyPause) {
   }
 }
 
-TEST(Time, StoresInitSwitchAndHostWatchdogAreOnTimeAfterAnyPause) {
+TEST(Time, StoresInitSwitchAndHostWatchdogAreOnTimeAfterAPauseOf36To71Minutes) {
   ModuleBench bench("EX9042D");
   unsigned number = 0;
   for (const auto pause : kPauses) {

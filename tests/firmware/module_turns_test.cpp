@@ -34,7 +34,7 @@ class ModuleTurns : public testing::Test {
 
   void pass(Duration time) { now_ = now_ + time; }
 
-  /// Does a memory job, without a step of the module afterwards.
+  /// Does one memory job. Does not run the main loop (`step`) afterwards.
   void do_memory_job() {
     const MemoryJob job = module_.memory_job();
     if (job.kind == MemoryJob::Kind::Write) {
@@ -51,7 +51,7 @@ class ModuleTurns : public testing::Test {
     module_.memory_done(answers_);
   }
 
-  /// Sends a command and passes time until the turn-around is over.
+  /// Sends a command, to which the function adds the CR, and passes time until the turn-around is over.
   void put(const std::string& command) {
     for (const char character : command + "\r") {
       pass(kCharacter);
@@ -154,8 +154,9 @@ TEST_F(ModuleTurns, ATimeoutRequestsATurnForTheLedAndAnotherWhenItIsStored) {
   EXPECT_FALSE(requests_another_turn());
 }
 
-// Otherwise the reply could come later than 200 ms after the request if a record takes several pages.
-TEST_F(ModuleTurns, ACommandBehindATimeoutThatCannotBeStoredWaitsForOneAttemptOnly) {
+// With more attempts, the reply could begin later than 200 ms after the request if a record takes several
+// pages.
+TEST_F(ModuleTurns, ACommandAfterATimeoutThatCannotBeStoredWaitsForOnlyOneAttempt) {
   put("~013101");
   module_.step(now_);
   while (module_.needs_memory()) {
@@ -176,7 +177,7 @@ TEST_F(ModuleTurns, ACommandBehindATimeoutThatCannotBeStoredWaitsForOneAttemptOn
     module_.step(now_);
   }
   EXPECT_EQ(take_reply(), "?01\r");
-  // The memory gets one attempt to store the timeout and three attempts to store the command. After each of
+  // The module makes one attempt to store the timeout and three attempts to store the command. After each of
   // these two failed stores, one more write tries to invalidate the copy.
   EXPECT_EQ(writes_, 1U + 1U + 3U + 1U);
 }
@@ -203,8 +204,9 @@ TEST_F(ModuleTurns, AHostOkReceivedAfterATurnRequestsAnotherTurn) {
 }
 
 // wire.md section 6: a host OK restarts the host watchdog from the time of its reception, however late the
-// main loop is. Here one pass of the main loop follows two host OKs: one before the expiry, and one after it.
-TEST_F(ModuleTurns, AHostOkBeforeTheExpiryCountsEvenIfAnotherOneFollowsBeforeTheNextTurn) {
+// main loop is. Here one pass of the main loop follows three host OKs: one before the expiry, and two after
+// it.
+TEST_F(ModuleTurns, AHostOkBeforeTheExpiryCountsEvenIfOthersFollowBeforeTheNextTurn) {
   put("~013101");
   module_.step(now_);
   while (module_.needs_memory()) {
@@ -219,7 +221,7 @@ TEST_F(ModuleTurns, AHostOkBeforeTheExpiryCountsEvenIfAnotherOneFollowsBeforeThe
   ASSERT_TRUE(module_.host_watchdog_expiry().reached(now_));
   module_.step(now_);
   EXPECT_FALSE(module_.state().settings.timeout_status);
-  pass(kUnitOfTimeout - kCharacter - kCharacter);  // since the CR of the last host OK
+  pass(kUnitOfTimeout - kCharacter - kCharacter);  // the time since the CR of the last host OK
   module_.step(now_);
   EXPECT_FALSE(module_.state().settings.timeout_status);
   pass(Duration(1));

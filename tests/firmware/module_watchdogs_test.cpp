@@ -39,8 +39,8 @@ TEST(HostWatchdog, HostOksAtIntervalsShorterThanTheTimeoutPreventExpiryAtAnyBaud
 
 TEST(HostWatchdog, ATimeoutWhileAClearCommandIsStoredIsNotCleared) {
   ModuleBench bench("EX9043D,baud=115200");
-  ASSERT_EQ(bench.ask("~013101"), "!01");  // has expired when `ask` returns
-  bench.send("~013101\r");                 // armed again
+  ASSERT_EQ(bench.ask("~013101"), "!01");  // the watchdog has expired when `ask` returns
+  bench.send("~013101\r");                 // enables the watchdog again
   bench.run(milliseconds(15));
   ASSERT_TRUE(
       bench.runs_until([&bench] { return bench.module().module().state().settings.watchdog_enabled; }));
@@ -106,7 +106,7 @@ TEST(HostWatchdog, StartsWhenTheEnableCommandHasBeenStored) {
   bench.recorder().clear();
   bench.ask("~013101");
   ASSERT_EQ(changes.size(), 1U);
-  // The restart lies between the end of the request and the start of the reply.
+  // The watchdog starts between the end of the request and the start of the reply.
   const VirtualTime request_end = bench.recorder().bytes[7].end;
   const VirtualTime reply_start = bench.recorder().bytes[8].start;
   EXPECT_GE(changes[0].at, request_end + milliseconds(100));

@@ -22,8 +22,8 @@ namespace {
 /// The number of steps of a session. It is large enough for one step to influence many others.
 constexpr unsigned kSteps = 300;
 
-/// Returns the model for a seed. Consecutive seeds give each model in turn; models with two protocols occur
-/// three times as often. Without extensions, the function does not return the models that came with them.
+/// Returns the model for a seed. Consecutive seeds give each model in turn; a model with two protocols occurs
+/// three times. Without extensions, the function does not return the models that the extensions add.
 const ModelRow& row_of(std::uint64_t seed, Extensions extensions) {
   std::vector<const ModelRow*> rows;
   for (const ModelRow& row : kModelRows) {
@@ -34,7 +34,7 @@ const ModelRow& row_of(std::uint64_t seed, Extensions extensions) {
   return *rows[seed % rows.size()];
 }
 
-/// A session and its steps, up to the first step at which firmware and reference differ.
+/// A session and its steps, up to the first step at which the firmware and the reference differ.
 struct Played {
   Played(std::uint64_t seed, unsigned length, Extensions extensions)
       : row(row_of(seed, extensions)), session(row, extensions) {
@@ -54,8 +54,8 @@ struct Played {
   bool alike = true;
 };
 
-/// Plays sessions until `wanted` requests have been sent. Fails if firmware and reference differ, or if a
-/// rule is never reached.
+/// Plays sessions until at least `wanted` requests have been sent. Fails if the firmware and the reference
+/// differ, if a rule is never reached, or if too few requests are sent near an expiry of the host watchdog.
 void play_sessions(std::uint64_t wanted, Extensions extensions) {
   std::uint64_t seed = number_in_environment("EX9000_SEED", 9042);
   std::uint64_t transactions = 0;
@@ -94,12 +94,12 @@ void play_sessions(std::uint64_t wanted, Extensions extensions) {
   EXPECT_GT(behind_expiry, wanted / 1000);
 }
 
-TEST(RandomSessions, TheFirmwareBehavesLikeTheSecondDescription) {
+TEST(RandomSessions, TheFirmwareBehavesLikeTheReference) {
   play_sessions(number_in_environment("EX9000_TRANSACTIONS", 200'000), Extensions::Present);
 }
 
 /// A factory-fresh module replies to the requests of the manuals as if it had no extensions. The reference
-/// has none here, and `Rules` rejects every rule of an extension.
+/// has no extensions here, and `Rules` rejects every rule of an extension.
 TEST(RandomSessions, RequestsOfTheManualsGetTheRepliesOfAModuleWithoutExtensions) {
   play_sessions(number_in_environment("EX9000_TRANSACTIONS", 50'000), Extensions::Absent);
 }

@@ -26,7 +26,7 @@ const Bytes kReadOutputs{0x01, 0x01, 0x00, 0x00, 0x00, 0x08};
 const Bytes kOutput0On{0x01, 0x05, 0x00, 0x00, 0xFF, 0x00};
 const Bytes kBusMessages{0x01, 0x08, 0x00, 0x0B, 0x00, 0x00};
 
-/// Sends a request, calls `event` in the silence after the last byte of the request, and returns the reply.
+/// Sends a request, calls `event` during the silence after the request, and returns the reply.
 template <class Event>
 std::string answer(ModuleBench& bench, const std::string& command, Event event) {
   bench.forget_heard();
@@ -124,7 +124,7 @@ TEST(SilenceAfterRequest, AFrameWithAnExtraByteAfterItsCrcIsNotExecuted) {
   EXPECT_EQ(bench.heard_text(), "");
   EXPECT_EQ(bench.module().outputs(), 0U);
   EXPECT_EQ(bench.ask(kReadOutputs), (Bytes{0x01, 0x01, 0x01, 0x00}));
-  EXPECT_EQ(bench.module().outputs(), 0U) << "the next frame must not execute the spoiled frame";
+  EXPECT_EQ(bench.module().outputs(), 0U) << "the damaged frame must not be executed after the next frame";
 }
 
 TEST(SilenceAfterRequest, TheInitSwitchIsEvaluatedAtTheEndOfTheSilence) {
@@ -151,7 +151,7 @@ TEST(SilenceAfterRequest, TheInitSwitchIsEvaluatedAtTheEndOfTheSilence) {
 TEST(SilenceAfterRequest, TheBusMessageCountIncludesTheRequestThatReadsIt) {
   ModuleBench bench("EX9052D-M");
   EXPECT_EQ(bench.ask(kBusMessages), (Bytes{0x01, 0x08, 0x00, 0x0B, 0x00, 0x01}));
-  // The request also counts itself if an input changes during the silence after the request.
+  // The count includes the request itself even if an input changes during the silence after the request.
   EXPECT_EQ(answer(bench, kBusMessages, [&] { bench.module().pulse_input(0, 1); }),
             with_crc({0x01, 0x08, 0x00, 0x0B, 0x00, 0x02}));
   EXPECT_EQ(bench.ask(kBusMessages), (Bytes{0x01, 0x08, 0x00, 0x0B, 0x00, 0x03}));

@@ -36,7 +36,7 @@ TEST(Tables, EveryModelIsWithinTheLimitsAndHasPossibleFactorySettings) {
     EXPECT_LE(model.outputs, kMaxOutputs) << model.designation;
     EXPECT_TRUE(model.has_inputs() || model.has_outputs()) << model.designation;
     EXPECT_TRUE(Settings::factory(model).possible_for(model)) << model.designation;
-    // Only -M models have a Modbus code, which consists of their four digits.
+    // Only -M models have a Modbus code. Its hex digits are the four digits of the designation.
     const bool m = model.designation.substr(model.designation.size() - 2) == "-M";
     EXPECT_EQ(model.speaks_modbus(), m) << model.designation;
     if (m) {

@@ -66,7 +66,7 @@ TEST(Deadline, IsNeverReachedBeforeItIsSet) {
   EXPECT_FALSE(deadline.reached(Time(kHalf)));
 }
 
-TEST(Deadline, IsReachedAtItsPointAndNotAMicrosecondBefore) {
+TEST(Deadline, IsReachedAtItsTimeAndNotAMicrosecondBefore) {
   Deadline deadline;
   deadline.set(Time(1000));
   EXPECT_TRUE(deadline.armed());
@@ -106,7 +106,7 @@ TEST(Deadline, GivesTheRemainingTime) {
   EXPECT_EQ(deadline.remaining(Time(999)).microseconds(), 1U);
 }
 
-TEST(Deadline, NothingRemainsOnceItIsReached) {
+TEST(Deadline, HasNoRemainingTimeAfterItIsReached) {
   Deadline deadline;
   deadline.set(Time(1000));
   EXPECT_EQ(deadline.remaining(Time(1000)).microseconds(), 0U);
@@ -119,7 +119,7 @@ TEST(Deadline, GivesTheRemainingTimeAcrossTheWrap) {
   EXPECT_EQ(deadline.remaining(kShortlyBeforeTheWrap).microseconds(), 150U);
 }
 
-TEST(Deadline, IsNotReachedOnceItIsDisarmed) {
+TEST(Deadline, IsNotReachedAfterItIsDisarmed) {
   Deadline deadline;
   deadline.set(Time(1000));
   deadline.disarm();
@@ -127,7 +127,7 @@ TEST(Deadline, IsNotReachedOnceItIsDisarmed) {
   EXPECT_FALSE(deadline.reached(Time(1000)));
 }
 
-TEST(Deadline, IsReachedOnlyAtItsNewPointIfItIsSetAgain) {
+TEST(Deadline, IsReachedOnlyAtItsNewTimeIfItIsSetAgain) {
   Deadline deadline;
   deadline.set(Time(1000));
   deadline.set(Time(2000));

@@ -41,21 +41,21 @@ double writes_of(ModuleBench& bench, const std::function<void(unsigned round)>& 
     most = std::max(most, each);
     pages += each != 0 ? 1U : 0U;
   }
-  EXPECT_LE(most, all / pages + 1) << "one page wears out before the others";
+  EXPECT_LE(most, all / pages + 1) << "one page is written more often than the others";
   return static_cast<double>(all) / kRounds;
 }
 
 double years(double writes_a_year, unsigned pages) { return kCycles * pages / writes_a_year; }
 
-TEST(Wear, AHostWatchdogThatExpiresAndIsEnabledAgainCausesThreeWrites) {
+TEST(Wear, EnablingExpiryAndClearingOfTheHostWatchdogCauseThreeWrites) {
   ModuleBench bench("EX9042D-M@01,protocol=ascii");
   unsigned pages = 0;
   const double writes = writes_of(
       bench,
       [&](unsigned /*round*/) {
-        ASSERT_EQ(bench.ask("~013101"), "!01");  // enabled
+        ASSERT_EQ(bench.ask("~013101"), "!01");  // enables the watchdog
         bench.run(std::chrono::milliseconds(300));
-        ASSERT_EQ(bench.ask("~010"), "!0184");  // expired; one write stores the status and the disabling
+        ASSERT_EQ(bench.ask("~010"), "!0184");  // expired; one write stores the status and the disabled state
         ASSERT_EQ(bench.ask("~011"), "!01");    // clears the timeout status
       },
       pages);
@@ -111,7 +111,7 @@ TEST(Wear, CountingWritesNothing) {
                                {1, 0x0F, 0x02, 0, 0, 8, 1, 0xFF}}) {
     ASSERT_EQ(modbus.ask(request).at(1), request[1]);
   }
-  ASSERT_EQ(ascii.ask("#010"), "!0100000");  // the counter had a value to clear
+  ASSERT_EQ(ascii.ask("#010"), "!0100000");  // `$01C0` has cleared this counter
   ASSERT_EQ(ascii.ask("#011"), "!0100001");
   EXPECT_EQ(ascii.module().memory().writes(), 0U);
   EXPECT_EQ(modbus.module().memory().writes(), 0U);

@@ -39,7 +39,7 @@ void check_module(const ModuleSpec& module) {
 }
 
 void check_line(const LineSetup& line) {
-  require(!line.modules.empty(), "there is a module");
+  require(!line.modules.empty(), "a line has at least one module");
   for (const ModuleSpec& module : line.modules) {
     check_module(module);
     const auto same_file = [&module](const ModuleSpec& other) {
@@ -76,7 +76,7 @@ void check_setup(const Setup& setup) {
             "maximum speed has no port for a master");
   }
   require(!setup.speed.max() || setup.lasts, "maximum speed requires a duration");
-  require(setup.speed.factor > 0, "time passes");
+  require(setup.speed.factor > 0, "the speed is greater than 0");
   require(!setup.speed.stepped() || setup.control, "stepped time requires a control socket");
   require(!setup.control || !setup.control->empty(), "a path is not empty");
 }

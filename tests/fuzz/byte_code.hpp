@@ -8,7 +8,11 @@
 
 namespace ex9000::fuzz {
 
-/// Byte 0 selects the model. Byte 1 selects the settings that the module has stored and its state at start:
+/// Plays an input on a module of `model`. Aborts if the module makes an error. Has no effect if the input has
+/// fewer than two bytes.
+///
+/// The caller selects `model` by byte 0. Byte 1 selects the settings that the module has stored and its state
+/// at start:
 ///
 ///     bits 0-2   baud code, 0: 06 (9600), 1: 07, and so on up to 0A, then 03
 ///     bit 3      checksum
@@ -20,7 +24,7 @@ namespace ex9000::fuzz {
 /// The other bytes are bytes on the line without gaps between them. Only `\` has a special meaning:
 ///
 ///     \\      the byte 5C
-///     \c      the check of the bytes since the last gap or CR: the CRC, or the checksum if it is enabled
+///     \c      the CRC, or the checksum if enabled, of the bytes since the last gap, reset or (in ASCII) CR
 ///     \s      250 ms without a byte
 ///     \g N    a gap of N/64 times T3.5
 ///     \w N    N times N ms without a byte

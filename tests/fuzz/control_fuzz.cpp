@@ -113,7 +113,7 @@ bool is_of_the_line(const Watched& watched, Words words, sim::VirtualTime now) {
   return is_fault(words, Whose::AnyModules, now);
 }
 
-/// Removes the leading `line NAME`. Returns no words if NAME is not `hall`, or if no command follows.
+/// Removes a leading `line NAME`. Returns no words if NAME is not `hall`, or if no command follows.
 Words of_the_line(const Words& words) {
   if (words[0] != "line") {
     return words;
@@ -161,7 +161,7 @@ bool is_command(Watched& watched, const Words& words) {
   return args == 0 && (verb == "inputs" || verb == "outputs" || verb == "led" || verb == "status");
 }
 
-/// Checks the reply after a fault was added or removed, or after all faults were listed.
+/// Checks the reply to a command that adds, removes or lists faults, and updates the expected faults.
 void check_faults(Watched& watched, const Words& words, const std::string& reply) {
   if (words[0] == "faults") {
     const std::size_t number = watched.faults.size();
@@ -234,9 +234,9 @@ void carry_out(Watched& watched, sim::Control& control, const std::string& comma
   const std::vector<Seen> before = seen(line);
   const sim::Control::Reply reply = control.carry_out(command);
   require(reply.text.find('\n') == std::string::npos, "a reply is one line");
-  require(reply.quit == (valid && words[0] == "quit"), "nothing else ends the program");
+  require(reply.quit == (valid && words[0] == "quit"), "quit and no other command ends the program");
   if (valid) {
-    require(reply.text == "ok" || reply.text.rfind("ok ", 0) == 0, "a command is carried out");
+    require(reply.text == "ok" || reply.text.rfind("ok ", 0) == 0, "a valid command is carried out");
     check_effect(watched, words, reply.text);
   } else {
     require(reply.text.rfind("error: ", 0) == 0, "an invalid command is rejected");
@@ -248,15 +248,15 @@ void carry_out(Watched& watched, sim::Control& control, const std::string& comma
 class RunTimeLimit {
  public:
   /// Lets up to `steps` steps of 10 ms pass, and at most 2 s in total: a watchdog requires 1.6 s to reset the
-  /// module. Lets no time pass on a line that has carried many bytes.
+  /// module. Lets no more time pass after the master has received 200 bytes.
   void pass(Watched& watched, unsigned long steps) {
     constexpr unsigned long kMostHeard = 200;
     for (; steps != 0 && steps_left_ != 0 && watched.heard < kMostHeard; --steps, --steps_left_) {
       watched.line.bus().run_for(std::chrono::milliseconds(10));
     }
   }
-  /// Returns whether the command may run. Each fuzzer input may contain one command with 100 to 99,999
-  /// pulses.
+  /// Returns whether the command may run. Each fuzzer input may run one command with 100 to 99,999 pulses,
+  /// and no valid command with more.
   bool permits(const Words& words) {
     const bool pulses = words.size() == 4 && words[1] == "pulse" && is_number(words[3], 100, 1'000'000);
     return !pulses || (std::stoul(words[3]) <= 99'999 && !std::exchange(used_, true));

@@ -30,7 +30,8 @@ class ModuleObserver {
   /// Called when the driver has been switched off.
   virtual void reply_ends() = 0;
   virtual void outputs_change(std::uint16_t channels) = 0;
-  /// Called when the main loop has completed one turn. The state of the module changes only in a turn.
+  /// Called when the main loop has completed one turn. After the start, settings and outputs change only in a
+  /// turn.
   virtual void turned() = 0;
 
  protected:
@@ -138,9 +139,9 @@ struct LeanBoard {
     void start(std::uint16_t address, std::size_t size, Microseconds program) {
       constexpr Microseconds kByteOnBus = 90;
       constexpr std::size_t kAddressing = 4;
-      require(!busy(), "one memory job at a time");
+      require(!busy(), "the module starts one memory job at a time");
       require(size != 0 && address + size <= around.memory.size(),
-              "a memory job stays where the settings are");
+              "a memory job stays within the part of the memory that the core uses");
       at = address;
       began = around.now;
       ends = began + (size + kAddressing) * kByteOnBus + program;
@@ -204,7 +205,7 @@ class LeanModule {
       : model_(model), timing_at_(timing_at), around_(observer) {}
 
   /// Switches the module on, or resets it. A reset interrupts a write in progress. Returns when the module
-  /// has started.
+  /// has started; aborts if this takes more than 100 ms.
   void reset() {
     if (device_) {
       board().memory.cut();
@@ -301,7 +302,8 @@ class LeanModule {
     }
   }
 
-  /// Runs turns until there is no work left. This takes no virtual time.
+  /// Runs turns until there is no work left. This takes no virtual time. Has no effect while the main loop is
+  /// stopped.
   void main_loop() {
     if (held_) {
       return;
@@ -310,7 +312,7 @@ class LeanModule {
     bool again = true;
     while (again) {
       constexpr unsigned kMostTurns = 50;
-      require(++turns < kMostTurns, "the main loop comes to rest");
+      require(++turns < kMostTurns, "the main loop completes its work in fewer than 50 turns");
       device_->on_wake_timer();
       again = device_->turn() || device_->has_work();
       around_.observer.turned();

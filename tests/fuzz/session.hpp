@@ -24,9 +24,9 @@ using judges::crc16;
 using judges::dcon_sum;
 using judges::upper_hex;
 
-/// Aborts if the witness reports an error, or if the outputs do not start with the stored values. It takes
-/// only two states from the module without a check: the settings in force after a reset, and the values with
-/// which the module starts.
+/// Aborts if the witness reports an error, or if the outputs do not start with the stored values. The witness
+/// takes only two states from the module without a check: the settings in force after a reset, and the values
+/// with which the module starts.
 class Session final : public ModuleObserver {
  public:
   Session(const Model& model, bool strict_gaps)
@@ -80,7 +80,7 @@ class Session final : public ModuleObserver {
     module_.receive(byte, status);
   }
 
-  /// Waits 250 ms. Repeats the wait while the module is still sending at its end.
+  /// Repeats a wait of 250 ms until the module is not sending at the end of the wait.
   void wait_for_quiet() {
     do {
       wait(250 * kMillisecond);

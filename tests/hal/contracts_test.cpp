@@ -1,5 +1,5 @@
-// The compiler checks the requirements of hal/: it rejects a driver that does not have a function or declares
-// it differently. refused/ tests the messages of the compiler.
+// The compiler checks the requirements of hal/: it rejects a driver that lacks a required function or
+// declares the function differently. refused/ tests the messages of the compiler.
 #include <gtest/gtest.h>
 
 #include "hal/board.hpp"

@@ -43,7 +43,7 @@ struct RecordedWires {
 };
 
 /// Returns the levels of the wires during a recovery. The device releases the data line at the rising edge of
-/// this clock; 0: it does not hold the line.
+/// clock number `clock`. If `clock` is 0, the device does not hold the data line.
 std::string levels_of_recovery(int clock) {
   RecordedWires::levels.clear();
   RecordedWires::held_for = clock;

@@ -9,9 +9,9 @@ const FIRST_RATE_CODE = 3;
 
 const TIMEOUT = 10000; // long enough for a busy machine; in milliseconds, like all times in this file
 // The time that a master waits after a broadcast, which has no reply: the duration of the longest broadcast on the
-// line, plus 5 s. The line runs in real time: even on a busy machine, the simulator must read the broadcast within this
-// time. A gateway for Modbus TCP keeps the requests apart by itself. There, the time only has to be long enough for a
-// reply.
+// line, plus 5 s. The line runs in real time: even on a busy machine, the simulator must read the broadcast within
+// this time. A gateway for Modbus TCP itself separates the requests, so with Modbus TCP the time only has to be long
+// enough for a reply.
 const turnaround = ({ modbusTcp, baud }) => (modbusTcp ? 250 : 5000 + 150000 / baud);
 
 const hex = (bytes) => Buffer.from(bytes).toString("hex").toUpperCase().replace(/..(?=.)/g, "$& ");

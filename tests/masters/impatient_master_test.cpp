@@ -1,4 +1,4 @@
-// Tests masters that do not keep the silences that a real line would enforce.
+// Tests masters that begin a request without the silence that a real line requires.
 #include <gtest/gtest.h>
 
 #include <string>

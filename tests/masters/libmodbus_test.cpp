@@ -230,7 +230,7 @@ TEST_P(LibmodbusOverModbusTcp, GetsTheExceptionsOfTheGateway) {
   constexpr int kAbsent = 3;
   EXPECT_EQ(modbus_read_bits(master_.at(kAbsent), 0, 1, &bit), -1);
   EXPECT_EQ(errno, EMBXGTAR) << modbus_strerror(errno);
-  // The default of libmodbus. It rejects 248 to 254 by itself.
+  // MODBUS_TCP_SLAVE (255) is the default address of libmodbus. libmodbus itself rejects 248 to 254.
   EXPECT_EQ(modbus_write_bit(master_.at(MODBUS_TCP_SLAVE), 0, 1), -1);
   EXPECT_EQ(errno, EMBXGPATH) << modbus_strerror(errno);
   EXPECT_EQ(coils(kOutputs, 0, 1), Bits{0});

@@ -14,7 +14,8 @@ using Arguments = std::vector<std::string>;
 
 class Mbpoll : public testing::TestWithParam<Way> {
  protected:
-  /// Runs mbpoll once with these arguments. Its references count from 0, as the addresses on the line do.
+  /// Runs mbpoll once with these arguments. The references of mbpoll count from 0, like the addresses on the
+  /// line.
   Finished mbpoll(const Arguments& options, const Arguments& values = {}) {
     Arguments command{"mbpoll", "-0", "-1", "-o", "10"};  // response timeout in seconds for a busy machine
     const Arguments port = over_modbus_tcp()
@@ -129,7 +130,7 @@ using MbpollOverModbusTcp = Mbpoll;
 TEST_P(MbpollOverModbusTcp, NamesTheExceptionsOfTheGateway) {
   expect_refusal({"-a", "3", "-t", "0", "-r", "0"}, "Target device failed to respond");
   expect_refusal({"-a", "3", "-t", "0", "-r", "0"}, "Target device failed to respond", {"1"});
-  // mbpoll sends 255 for 248 to 254, too.
+  // mbpoll also sends 255 for the addresses 248 to 254.
   expect_refusal({"-a", "255", "-t", "0", "-r", "0"}, "Gateway path unavailable");
   expect_refusal({"-a", "255", "-t", "4", "-r", "0x1E8"}, "Gateway path unavailable", {"1"});
 }

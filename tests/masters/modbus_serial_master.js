@@ -70,8 +70,8 @@ function sends({ modbusTcp }, frame) {
 
 /**
  * Returns whether the library's own port delivers the reply. The port delivers a reply only if it can calculate the
- * length, and supports few functions. On a serial line it delivers the reply to function 11 before it is complete.
- * The header of Modbus TCP contains the length.
+ * length, and supports few functions. On a serial line, the port delivers the reply to function 11 before the reply
+ * is complete. The header of Modbus TCP contains the length.
  */
 function reachesOwnPort({ tty, modbusTcp }, frame) {
   if (modbusTcp) {

@@ -53,7 +53,8 @@ def turnaround(arguments):
     broadcast on the line, plus 5 s.
 
     The line runs in real time: even on a busy machine, the simulator must read the broadcast within this time. A
-    gateway for Modbus TCP keeps the requests apart by itself. There, the time only has to be long enough for a reply.
+    gateway for Modbus TCP itself separates the requests, so with Modbus TCP the time only has to be long enough for a
+    reply.
     """
     return 0.25 if arguments.modbus_tcp else 5 + 150 / arguments.baud
 
@@ -220,7 +221,7 @@ def steps(arguments):
 
 
 def converse(client, arguments):
-    """Returns the number of checks that passed and failed."""
+    """Plays the conversation, and returns the numbers of checks that passed and that failed."""
     passed = failed = 0
     asked = ""
     for step in steps(arguments):
@@ -237,7 +238,7 @@ def converse(client, arguments):
                 # but it cannot fail without one.
                 time.sleep(turnaround(arguments))
                 if select.select([client.socket], [], [], 0)[0]:
-                    got = "an answer"
+                    got = "a reply"
             if got == expected:
                 passed += 1
             else:

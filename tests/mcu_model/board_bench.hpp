@@ -52,9 +52,9 @@ class BoardBench {
   EepromChip eeprom;
   LineBench line;
   std::optional<Microcontroller> mcu;
-  unsigned resets = 0;  ///< by the watchdog and the processor
+  unsigned resets = 0;  ///< by the watchdog or by software
   unsigned watchdog_resets = 0;
-  Instant began{0};  ///< the last reset of any kind
+  Instant began{0};  ///< the time of the last reset of any kind
   /// The time at which the first output was switched on since the last reset of any kind.
   Instant output_came_on = kNever;
   /// The next resets use these values.

@@ -18,7 +18,7 @@ struct Chip {
   Instant cycle_at_reset;  ///< period of the internal oscillator: 12 MHz or 16 MHz
   std::uint32_t rcc_at_reset;
   std::uint32_t rcc_kept;       ///< reserved bits of RCC, which must keep their value
-  std::uint32_t crystal_code;   ///< value of RCC field XTAL for the crystal on its board
+  std::uint32_t crystal_code;   ///< value of RCC field XTAL for the crystal on the board
   std::uint32_t crystal_field;  ///< mask of RCC field XTAL, shifted down
 };
 

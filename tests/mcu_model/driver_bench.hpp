@@ -1,5 +1,5 @@
-// A microcontroller for one driver at a time. Its system clock is 50 MHz and all clock gates are open. The
-// test sets the handlers of the interrupts.
+// A microcontroller for one driver at a time. Its system clock is 50 MHz, and the clock gates of all
+// peripherals except UART1 are open. The test sets the handlers of the interrupts.
 #pragma once
 
 #include <functional>

@@ -47,7 +47,7 @@ class EepromChip {
   void on_event(std::function<void()> act) { on_event_ = std::move(act); }
 
   [[nodiscard]] bool programming() const { return programmed_.is_set(); }
-  /// A byte of the array, and its new value.
+  /// A byte of the memory: its address and its new value.
   struct Cell {
     std::uint16_t place;
     std::uint8_t value;
@@ -56,7 +56,7 @@ class EepromChip {
   /// in progress.
   [[nodiscard]] std::vector<Cell> being_programmed() const;
   [[nodiscard]] bool pulls_data() const { return data_.driven_by(End::Device) == Drive::Low; }
-  /// A page write: its first address, its number of bytes, and its time.
+  /// A page write: its first address, its number of bytes, and the time at which it began.
   struct Programmed {
     std::uint16_t address;
     std::size_t size;

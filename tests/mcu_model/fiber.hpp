@@ -21,7 +21,7 @@ class Fiber {
   /// Runs `body` until it suspends itself or returns. Must not be called from `body` or after `body` has
   /// returned.
   void resume();
-  /// Called from `body`: returns to the caller of `resume`.
+  /// Returns to the caller of `resume`. Must be called from `body`.
   void suspend();
 
  private:

@@ -42,7 +42,8 @@ class GpioPort final : public Peripheral {
   std::uint32_t read(std::uint32_t offset) override;
   void write(std::uint32_t offset, std::uint32_t value) override;
 
-  /// Sets the level that a peripheral outputs. It takes effect while the pin is assigned to the peripheral.
+  /// Sets the level that a peripheral outputs. The level takes effect while the pin is assigned to the
+  /// peripheral.
   void alternate(unsigned pin, Drive drive) {
     alternate_drive_.at(pin) = drive;
     drive_pin(pin);
@@ -54,7 +55,7 @@ class GpioPort final : public Peripheral {
     return const_cast<GpioPort*>(this)->read(offset);
   }
 
-  /// Called by the nets when the level of the pin has changed.
+  /// Must be called when the level of the pin has changed.
   void look_at(unsigned pin);
 
  private:

@@ -19,7 +19,7 @@ constexpr std::uint32_t kBusBusy = 1U << 6U;
 
 constexpr std::uint32_t kMaster = 1U << 4U;
 
-// The parts of a bit, in tenths of a bit: the period register counts ten steps per bit.
+// The parts of a bit, in tenths of a bit: SCL_LP and SCL_HP of the data sheets.
 constexpr int kLowTime = 6;
 constexpr int kHighTime = 4;
 

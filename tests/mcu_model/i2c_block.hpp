@@ -43,7 +43,7 @@ class I2cBlock final : public Peripheral {
   std::uint32_t read(std::uint32_t offset) override;
   void write(std::uint32_t offset, std::uint32_t value) override;
   void software_reset();
-  /// Called when the level of the clock line has changed.
+  /// Must be called when the level of the clock line has changed.
   void look_at_clock();
 
   /// Returns the duration of a bit, as set in the registers.

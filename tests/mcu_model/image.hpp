@@ -1,6 +1,7 @@
-// A firmware image that a host can run: the unchanged composition of a board, a model and all its drivers,
-// whose bus accesses go to registers::Microcontroller. Each image is its own shared object: the code of
-// features that a model does not have is not compiled, so the types of the core differ between images.
+// A firmware image that a host can run: the unchanged composition of a board, a model and the board's
+// drivers. The bus accesses of the drivers go to registers::Microcontroller. Each image is its own shared
+// object: the code of features that a model does not have is not compiled, so the types of the core differ
+// between images.
 #pragma once
 
 #include <array>

@@ -22,7 +22,7 @@ class LineBench {
     std::uint8_t byte;
     bool good;  ///< the parity and the first stop bit were correct
   };
-  /// A time during which the board's driver was on.
+  /// A time during which the board's driver was on. `to` is kNever while the driver is on.
   struct Driven {
     Instant from;
     Instant to;

@@ -133,9 +133,9 @@ Peripheral& Microcontroller::peripheral_at(std::uint32_t address) {
   throw Fault(address, "no peripheral has this address");
 }
 
-/// Throws Fault if the peripheral has no clock or is held in reset. On a chip, an access to a peripheral
-/// without a clock causes a fault, and a peripheral that is held in reset ignores every access. Both are
-/// errors of a driver.
+/// Throws Fault if the peripheral has no clock, has had its clock for too few cycles, or is held in reset. On
+/// a chip, an access to a peripheral without a clock causes a fault, and a peripheral that is held in reset
+/// ignores every access. Each of these accesses is an error of a driver.
 void Microcontroller::check_usable(const Place& place, std::uint32_t address) const {
   switch (system_control.gate(place.gate_index, place.gate_bit)) {
     case SystemControl::Gate::Shut:

@@ -80,7 +80,7 @@ class Microcontroller {
 
   static Microcontroller& current();
 
-  // --- called by the drivers; throws Fault and ResetRequest ---
+  // --- called by the drivers; these functions throw Fault and ResetRequest ---
 
   std::uint32_t read(std::uint32_t address);
   void write(std::uint32_t address, std::uint32_t value);
@@ -106,7 +106,8 @@ class Microcontroller {
   [[nodiscard]] std::uint64_t accesses() const { return accesses_; }
   void record(bool on) { recording_ = on; }
   [[nodiscard]] const std::vector<Access>& recorded() const { return recorded_; }
-  /// Returns the greatest number of accesses during which interrupts were disabled without a break.
+  /// Returns the greatest number of accesses from the time at which interrupts were disabled to the time at
+  /// which they were enabled again.
   [[nodiscard]] std::uint64_t most_accesses_held() const { return most_held_; }
   [[nodiscard]] unsigned watchdog_expiries() const { return watchdog_expiries_; }
   /// Sets a function to call before each write takes effect.

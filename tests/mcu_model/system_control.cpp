@@ -74,8 +74,8 @@ void SystemControl::write(std::uint32_t offset, std::uint32_t value) {
   }
 }
 
-/// A cause stays until software clears it or the supply is switched off. On the LM3S6965, an external reset
-/// also clears all others.
+/// A cause stays until software clears it or the supply is switched off. On the LM3S6965, a reset by the
+/// reset pin also clears all other causes.
 void SystemControl::was_reset_by(ResetCause cause, std::uint32_t before) {
   const bool clears_others =
       cause == ResetCause::PowerOn || (cause == ResetCause::Pin && chip_.pin_clears_causes);

@@ -9,7 +9,7 @@
 
 namespace ex9000::registers {
 
-/// Time since the supply was switched on for the first time; 64 bits suffice for 106 days.
+/// Time since the beginning of the timeline; 64 bits suffice for 106 days.
 using Instant = std::chrono::duration<std::int64_t, std::pico>;
 
 constexpr Instant kNever = Instant::max();
@@ -40,7 +40,8 @@ class Timeline {
   Instant next_at_ = kNever;
 };
 
-/// Calls its function once for each `set`. The timeline must outlive the alarm.
+/// Calls its function once, at the time that the last `set` specifies, unless the alarm is cancelled before
+/// that time. The timeline must outlive the alarm.
 class Alarm {
  public:
   Alarm(Timeline& timeline, std::function<void()> ring);

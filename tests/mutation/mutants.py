@@ -1,8 +1,8 @@
 """Applies rules that make small changes to C++ source which a test should detect.
 
 The module divides a source into tokens, and each rule lists the changes that it can make: other operators and
-constants, removed statements, swapped branches. The rules skip comments, strings, preprocessor lines and static_assert,
-because no test at run time can detect changes there.
+constants, removed statements, swapped branches. The rules skip comments, preprocessor lines and static_assert, because
+no test at run time can detect changes there. They also skip strings.
 """
 
 import dataclasses
@@ -92,7 +92,7 @@ def tokens(source):
 
 
 def left_alone(source):
-    """Returns the positions of each static_assert."""
+    """Returns the start and the end of each static_assert."""
     return [(each.start(), each.end()) for each in re.finditer(r"static_assert\(.*?\);", source, re.DOTALL)]
 
 

@@ -1,7 +1,8 @@
 """Defines which tests check which sources, and how those tests are built.
 
 A unit is one object file: several sources that are compiled in one piece. A program is a test. It lists the units that
-it may require, and the linker takes those that it does require. The tests are read from CMakeLists.txt.
+it may require, and the linker takes those that it does require. Most programs are read from the CMakeLists.txt files;
+the functions `players`, `image_programs` and `pico_program` define the others.
 """
 
 import dataclasses
@@ -28,7 +29,7 @@ def stem_of(file):
 
 
 def standing_before(file, options):
-    """Returns the file that the compiler finds instead of `file`."""
+    """Returns the file that the compiler finds for `file`: one in a folder of `options`, or `file` itself."""
     for option in options:
         place = f"{option[2:]}/{file}"
         if option.startswith("-I") and (ROOT / place).exists():
@@ -71,7 +72,7 @@ class Unit:
 
 @dataclasses.dataclass(frozen=True)
 class Image:
-    """A shared object with the image of a board and a model. It runs on the bus of the register model."""
+    """A shared object with the image of a model for a board. It runs on the bus of the register model."""
 
     board: str
     model: str
@@ -95,7 +96,7 @@ class Image:
 
 @dataclasses.dataclass(frozen=True)
 class PicoImage:
-    """The content of the flash of a Pico. The unit is compiled for the host. It only shows which mutants change the
+    """The content of the flash of a Pico. The unit is compiled for the host and only shows which mutants change the
     image."""
 
     preset: str
@@ -148,8 +149,8 @@ class Program:
 
     @functools.cached_property
     def units(self):
-        """Returns the units of the tests, and the library units whose header one of them includes, directly or
-        indirectly."""
+        """Returns the units of the tests and of the images, and the library units whose header one of them includes,
+        directly or indirectly."""
         known = [LIBRARY_UNITS[name] for name in self.libraries]
         reached = list(self.tests) + [image.unit for image in self.images]
         for unit in reached:
@@ -255,7 +256,7 @@ def test_program(name, folder, sources, libraries, shadow):
 
 
 def listed_programs(folder):
-    """Returns the tests of CMakeLists.txt in `folder` that require only these libraries and no process."""
+    """Returns the tests of CMakeLists.txt in `folder` that require only LIBRARIES and no process."""
     text = (ROOT / folder / "CMakeLists.txt").read_text()
     found = []
     of_one_file = r"ex9000_test\(\$\{\w+\}_test SOURCES \$\{name\}_test\.cpp LIBRARIES (\w+)\)"
@@ -297,7 +298,7 @@ PICO_IMAGES = (
     PicoImage("pico", "EX9052D"),
     PicoImage("pico-eeprom", "EX9043D-M", ("-DEX9000_SETTINGS_IN_EEPROM",)),
 )
-# Tests of them that together reach every driver.
+# Tests of these images that together reach every driver.
 PICO_TESTS = """
     PicoImage.NoOutputIsEnergisedBeforeTheSettingsAreRead
     PicoImage.TheChipDrivesOnlyTheOutputsOfTheModelTheLineAndTheStatusLed
@@ -316,8 +317,8 @@ PICO_TESTS = """
 
 
 def filter_of_pico_tests():
-    """Returns the value of GTEST_FILTER that selects PICO_TESTS. A test with parameters runs only with Nothing. Ends
-    the program if a test does not exist, because GoogleTest ignores the name of such a test."""
+    """Returns the value of GTEST_FILTER that selects PICO_TESTS. A test with parameters runs only with the parameter
+    `Nothing`. Ends the program if a test does not exist, because GoogleTest ignores the name of such a test."""
     source = (ROOT / "tests/boards/pico_image_test.cpp").read_text(encoding="utf-8")
     patterns = []
     for test in PICO_TESTS:

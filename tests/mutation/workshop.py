@@ -118,7 +118,7 @@ class Workshop:
             for image in program.images:
                 self.image(image)
             if linked.returncode != 0 or not self.passes(program, place, BUILD):
-                raise SystemExit(f"mutate: {program.name} fails on the tree as it is\n{linked.stderr[-2000:]}")
+                raise SystemExit(f"mutate: {program.name} fails on the unchanged tree\n{linked.stderr[-2000:]}")
             taken = set(re.findall(r"\.a\((\w+)\.o\)", members.read_text()))
             return [*program.tests, *(unit for unit in libraries if unit.name in taken)]
 

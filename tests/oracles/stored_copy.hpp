@@ -45,7 +45,7 @@ constexpr std::array<std::size_t, 4> kStoredPlaces{0x080, 0x100, 0x000, 0x020};
 constexpr std::size_t kStoredMemory = 0x180;  ///< bytes of the memory that settings may occupy
 constexpr std::size_t kStoredPage = 32;
 
-/// Refers to the memory and to the model, which must outlive it.
+/// Refers to the memory and to the model, which must outlive this object.
 class StoredCopy {
  public:
   /// `place`: one of kStoredPlaces.
@@ -225,7 +225,7 @@ class StoredCopy {
   unsigned layout_;  ///< 0: no known layout
 };
 
-/// Returns the place of the valid copy that the module uses; kStoredMemory if no copy is good.
+/// Returns the place of the newest good copy, which the module uses; kStoredMemory if no copy is good.
 inline std::size_t place_that_counts(const StoringModel& model, const std::uint8_t* memory) {
   std::size_t counts = kStoredMemory;
   for (const std::size_t place : kStoredPlaces) {

@@ -88,11 +88,11 @@ class Modules(Panel):
         self.picture("lost")
         simulator.start_again()
         self.browser.until(f"!({lost})")
-        self.browser.until(f"!({pressed(DI3)})")  # a new run of the simulator
+        self.browser.until(f"!({pressed(DI3)})")  # off, because the simulator has started again
         self.browser.click(DI3)
         self.browser.until(pressed(DI3))
 
-    def test_everything_can_be_done_by_keyboard(self):
+    def test_the_keyboard_reaches_the_controls_of_the_modules_and_operates_an_input(self):
         self.show_two()
         focused = "return document.activeElement.getAttribute('aria-label')"
         seen = []

@@ -21,7 +21,7 @@ class Console(Panel):
         self.browser.until(f"{ITEMS}.length > 1")
 
     def choose(self, selector, beginning):
-        """Chooses the option whose text has this beginning, as a user does."""
+        """Chooses the option whose text begins with `beginning`. Sends the event that the choice of a user causes."""
         self.browser.run("""const list = document.querySelector(arguments[0]);
             const option = [...list.options].find((each) => each.textContent.startsWith(arguments[1]));
             list.value = option.value;
@@ -92,7 +92,7 @@ class Console(Panel):
         lamp = "document.querySelector('[aria-label=\"1 EX9042D-M\"] .output').dataset.on"
         self.assertEqual(self.browser.run(f"return {lamp}"), "false")
 
-    def test_errors_are_shown(self):
+    def test_a_wrong_request_and_a_broadcast_are_reported(self):
         self.open("EX9042D-M@01")
         self.send("nonsense")
         self.assertIn("expected a DCON command", self.replies(1)[0])

@@ -36,7 +36,8 @@ class Inputs(Panel):
         simulator.go_on()
         self.browser.until(f"!({LOST})")
         self.browser.until(f"!({pressed(DI3)})")
-        self.assertTrue(self.browser.run("return " + pressed("[aria-label='2 EX9052D-M: input DI1']")))  # the same run
+        # This input is still on, because the simulator has not started again.
+        self.assertTrue(self.browser.run("return " + pressed("[aria-label='2 EX9052D-M: input DI1']")))
         self.browser.click("input[value=toggle]")
         self.browser.click(DI3)
         self.browser.until(pressed(DI3))

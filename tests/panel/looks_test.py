@@ -1,5 +1,5 @@
-"""Tests the appearance of the panel and its content for a screen reader: contrast, narrow windows, the content of a
-drawer, and the messages if there is nothing to display."""
+"""Tests the appearance of the panel and its content for a screen reader: contrast, names, narrow windows, the content
+of a drawer, the terminals, and the message of an extra page."""
 
 import unittest
 
@@ -119,7 +119,7 @@ class Looks(Panel):
         self.browser.until(f"{left}.every((each) => each.hidden)")
 
     def let_in(self, simulator):
-        """Returns another page, or None if the server accepts no more pages."""
+        """Returns a new page, or None if the server accepts no more pages."""
         page = Page(simulator.port)
         self.addCleanup(page.close)
         return page if page.next() is not None else None

@@ -122,7 +122,8 @@ class Panel(unittest.TestCase):
         self.expect_accessible()
 
     def expect_accessible(self):
-        """Expects that axe-core finds no violation of the Web Content Accessibility Guidelines 2.2, level AA."""
+        """Expects that axe-core finds no violation of the Web Content Accessibility Guidelines 2.2, level AA, or of the
+        best practices that axe-core defines."""
         self.assertEqual(self.browser.violations(), [])
 
     def expect_rows_in_order(self):

@@ -38,7 +38,7 @@ class Polling:
             self.wrong = wrong
 
     def end(self):
-        """Ends after five more polls."""
+        """Sends five more polls, then ends."""
         self._left = 5
         self._thread.join()
         self._master.close()
@@ -103,7 +103,7 @@ class Server(unittest.TestCase):
         for site in "same-origin", "none":
             self.expect(200, request(self.port, headers=[f"Sec-Fetch-Site: {site}"]))
 
-    def test_nothing_else_is_served(self):
+    def test_unknown_paths_other_methods_and_bodies_are_refused(self):
         for target in ("/nothing", "/../etc/passwd", "/panel.js?x", "//", "http://example.org/"):
             self.expect(404, request(self.port, target))
         for method in "POST", "PUT", "DELETE", "OPTIONS", "FOO":
@@ -129,7 +129,7 @@ class Server(unittest.TestCase):
                         b"GET / HTTP/1.1\r\nHost : x\r\n\r\n", b"\x16\x03\x01\x02\x00\x01\x00\x01\xfc\x03\x03\r\n\r\n"):
             self.expect(400, garbage)
 
-    def test_an_incomplete_request_is_closed_after_a_timeout(self):
+    def test_a_connection_with_an_incomplete_request_is_closed_after_a_timeout(self):
         with open_socket(self.port) as silent, open_socket(self.port) as slow:
             slow.sendall(b"GET / HTTP/1.1\r\nHost:")
             for connection in silent, slow:
@@ -332,7 +332,7 @@ def unsent(port, connection):
         columns = line.split()
         if columns[1:3] == ends:
             return int(columns[4].split(":")[0], 16)
-    raise AssertionError("it was closed")
+    raise AssertionError("the connection was closed")
 
 
 def times_of(message):

@@ -95,7 +95,8 @@ class Master:
         self._socket.sendall(data)
 
     def ask(self, request, size):
-        """Returns the PDU of a reply of `size` bytes, which include the address and the CRC."""
+        """Sends a request, given in hex without CRC. Returns the PDU of the reply. `size` is the number of bytes of the
+        reply, with address and CRC."""
         data = bytes.fromhex(request)
         self._socket.sendall(data + crc(data))
         answer = self._read(size)
@@ -106,7 +107,7 @@ class Master:
         answer = b""
         while len(answer) < size:
             piece = self._socket.recv(size - len(answer))
-            assert piece, "the simulator has closed"
+            assert piece, "the simulator has closed the connection"
             answer += piece
         return answer
 

@@ -106,11 +106,11 @@ class Page:
                 return json.loads(data)
 
     def until(self, holds):
-        """Returns the first message for which `holds` is true."""
+        """Returns the first message for which `holds` is true. Raises AssertionError if the connection ends before."""
         while (message := self.next()) is not None:
             if holds(message):
                 return message
-        raise AssertionError("it was closed")
+        raise AssertionError("the connection was closed")
 
     def tell(self, command, number=1):
         self.say(command, number)

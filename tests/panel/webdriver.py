@@ -162,7 +162,7 @@ class Browser:
 
     def logged_errors(self):
         """Returns the errors that the page has logged since the last call, except failed connections to the server.
-        Pages of the browser itself, which it opens when it starts, do not count."""
+        Errors of the pages that the browser opens when it starts do not count."""
         nobody = ("ERR_CONNECTION_REFUSED", "ERR_CONNECTION_RESET", "closed before the connection is established")
         said = self._post("/se/log", {"type": "browser"})
         messages = [each["message"] for each in said if not each["message"].startswith("chrome://")]

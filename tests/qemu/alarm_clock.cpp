@@ -60,7 +60,7 @@ static_assert(board::kDriverEnable.mask() != board::kStatusLed.mask());
 constexpr std::uint32_t kUartFlags = 0x4000'C018;
 
 constexpr std::uint32_t kTickCounter = 0xE000'E018;
-/// The time from the alarm to the end of its interrupt: 29 instructions.
+/// The time from the alarm to the end of its interrupt: 29 instructions of 16 ns, rounded up.
 constexpr nanoseconds kInterruptTakes{480};
 constexpr nanoseconds kAtLeast{2000};
 
@@ -158,7 +158,7 @@ void AlarmClock::run(std::uint32_t clocks, const std::string& orders) {
 
 void AlarmClock::begin_to_run(std::uint32_t clocks, const std::string& orders) {
   std::string commands = orders;
-  if (at_first_ || ordered_ != clocks) {  // unchanged from byte to byte, because all bytes take the same time
+  if (at_first_ || ordered_ != clocks) {  // the same for each byte of a request
     commands += QtestClient::write_command(kOrders + kNextAlarm, clocks);
     ordered_ = clocks;
   }
@@ -185,7 +185,8 @@ void AlarmClock::go_on() {
   }
 }
 
-/// Returns false if the machine has stopped before a watched store.
+/// Waits until the machine stops. Returns true if the processor waits at the gate, and false if the machine
+/// has stopped before a watched store.
 bool AlarmClock::wait_for_alarm() {
   // The emulator can take seconds for an interrupt storm of 1.6 s, and more than `kHang` on a busy machine.
   // It still replies to reads during that time.
@@ -245,7 +246,7 @@ void AlarmClock::watch_stores(std::uint32_t address, std::uint32_t size) {
 }
 
 /// While the emulator counts instructions, it stops before a watched store, and stops there again when it
-/// continues. Therefore it executes one instruction with the watchpoint removed.
+/// continues. Therefore this function removes the watchpoint while the emulator executes one instruction.
 bool AlarmClock::run_to_store(nanoseconds time) {
   if (at_store_) {
     GdbClient& gdb = machine_.gdb();

@@ -24,7 +24,7 @@ class Halted : public std::runtime_error {
 ///
 /// GPTM3, which no image uses, interrupts when the time has elapsed. Its interrupt code is in RAM that no
 /// image uses, and reaches the gate (gate.cpp), where the processor waits. The image and its vectors are not
-/// changed: a copy of the vectors with one more entry replaces them. Neither this interrupt nor the
+/// changed: the processor uses a copy of the vectors with one more entry. Neither this interrupt nor the
 /// interrupts of the image can preempt another one. This interrupt delays those of the image by 0.5 us each
 /// time the machine stops, and uses as much stack as they do.
 ///

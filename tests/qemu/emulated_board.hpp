@@ -46,9 +46,9 @@ class EmulatedBoard {
   ~EmulatedBoard() = default;
 
   /// Switches the supply. When the supply goes on, the machine is halted before its first instruction, and
-  /// only the EEPROM has kept its content. The start of an emulator takes most of the time of a short test,
-  /// so this function halts and resets the same emulator, reads the EEPROM's file again, and fills RAM with
-  /// noise.
+  /// only the EEPROM has kept its content. The start of an emulator takes most of the time of a short test.
+  /// Therefore this function resets an emulator that is already running, which must be halted, and fills RAM
+  /// with noise. The reset makes the emulator read the EEPROM's file again.
   void supply(bool on);
   /// Switches the supply off and kills the emulator with SIGKILL. The next `supply` starts a new emulator.
   void kill();

@@ -40,7 +40,8 @@ class Emulator {
   QmpClient& qmp() { return *qmp_; }
   QtestClient& bus() { return *bus_; }
   GdbClient& gdb() { return *gdb_; }
-  /// Returns the socket of the gate, at which the processor waits at `kGate`. See gate.cpp.
+  /// Returns the socket of the gate. If the processor waits at `kGate`, a byte on this socket lets it
+  /// continue; see gate.cpp.
   UnixSocket& gate() { return *gate_; }
   /// Returns the line of UART0, which carries bytes at any baud rate. The caller must read regularly: a full
   /// socket (278 bytes) halts the machine.

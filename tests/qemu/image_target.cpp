@@ -13,7 +13,7 @@ using std::chrono::milliseconds;
 using std::chrono::nanoseconds;
 
 constexpr milliseconds kComingUp{100};
-/// The image processes a byte and updates its pins in less time.
+/// The image processes a byte and updates its pins in less than this time.
 constexpr milliseconds kSettling{1};
 constexpr milliseconds kSlice{2};
 /// Longer than the longest phase of a flashing LED.

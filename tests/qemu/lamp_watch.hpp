@@ -29,7 +29,7 @@ class LampWatch {
       throw std::runtime_error("the LED flashes; expected it to be on steadily");
     }
   }
-  /// Returns when the assumption will be verified, or nothing if there is none.
+  /// Returns the time at which the verification of the assumption ends; no value if there is no assumption.
   [[nodiscard]] std::optional<std::chrono::nanoseconds> until() const { return until_; }
 
  private:

@@ -8,7 +8,7 @@
 
 namespace ex9000::rig {
 
-/// Returns settings with the ASCII protocol.
+/// Returns the factory settings, but with the ASCII protocol.
 inline Settings ascii(const Model& model) {
   Settings settings = Settings::factory(model);
   settings.protocol = Protocol::Ascii;

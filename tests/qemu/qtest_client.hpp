@@ -9,7 +9,8 @@
 
 namespace ex9000::rig {
 
-/// QEMU's qtest protocol: one line for each command and each reply.
+/// QEMU's qtest protocol: one line for each command and each reply. All functions throw std::runtime_error if
+/// the emulator reports an error or does not reply within `kHang`.
 class QtestClient {
  public:
   explicit QtestClient(UnixSocket socket);
@@ -26,7 +27,7 @@ class QtestClient {
   static std::string write_command(std::uint32_t address, std::uint32_t value);
   /// Sends all commands in one write and waits until the emulator has executed them.
   void carry_out(const std::string& commands);
-  /// Fills memory.
+  /// Sets `size` bytes of memory to `byte`.
   void fill(std::uint32_t address, std::uint32_t size, std::uint8_t byte);
   /// Sets the level of an input line of the device at `path`. The emulator ends if the device has no line
   /// with this number.

@@ -112,7 +112,7 @@ void TimedModule::send(const Bytes& bytes, SerialMode mode) {
   constexpr milliseconds kLongestHold{2};
   constexpr microseconds kSlice{200};
   // On a real line a byte takes time, and the driver enable goes off soon after the last byte has arrived.
-  // Here the byte arrives immediately.
+  // Here the byte arrives immediately, while the driver enable is still on.
   constexpr milliseconds kLongestWait{100};
   const nanoseconds gives_up = now_ + kLongestWait;
   while (speaks() && now_ < gives_up) {

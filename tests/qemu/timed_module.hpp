@@ -62,8 +62,8 @@ class TimedModule : public EmulatedBoard {
   /// Returns whether the driver enable was on at the last stop.
   [[nodiscard]] bool speaks() const { return powered() && clock_->driver_on(); }
 
-  /// Assumes that the LED is steadily on. This function, or a later one that lets time pass, throws
-  /// std::runtime_error if the LED flashes.
+  /// Assumes that the LED is steadily on. If the LED flashes, a later function that lets time pass throws
+  /// std::runtime_error.
   void assume_led_on() { lamp_.believe(now_); }
   /// Lets time pass until the assumption about the LED is verified. Call this function only if the extra time
   /// does not disturb later steps.
@@ -76,7 +76,7 @@ class TimedModule : public EmulatedBoard {
   void put(const Arrival& arrival);
   void hold_memory(bool hold);
 
-  std::optional<AlarmClock> clock_;  ///< since the first power-on
+  std::optional<AlarmClock> clock_;  ///< no value before a power-on and after `kill`
   std::chrono::nanoseconds now_{0};
   LampWatch lamp_;
 };

@@ -41,7 +41,7 @@ class UnixSocket {
 /// Waits until one of the sockets has bytes. Returns false if no bytes arrive within `kHang`.
 bool wait_for_any(const std::vector<const UnixSocket*>& sockets);
 
-/// Listens at a path for one connection.
+/// Listens at a path for one connection. The constructor throws std::runtime_error if it cannot listen there.
 class UnixListener {
  public:
   explicit UnixListener(const std::string& path);

@@ -45,8 +45,8 @@ const REJECT = {
 };
 
 class Chip {
-  // `board` contains { clock, flash, pins, reason, chipReset, scratch, transmit(level), pinChanged(number),
-  // reset(reason) }.
+  // `board` contains { clock, flash, pins, reason, chipReset, scratch, transmitted, transmit(level),
+  // pinChanged(number), reset(reason) }.
   constructor(board) {
     this.board = board;
     this.mcu = new RP2040(board.clock);
@@ -168,7 +168,8 @@ class Chip {
   }
 
   // Acts like the boot ROM, which reads the second stage again until the checksum is correct. While the flash is
-  // busy, the checksum cannot be correct, so this function tries again later.
+  // busy, the checksum cannot be correct, so this function tries again later. If the flash is not busy, a wrong
+  // checksum is an error.
   boot() {
     const { board, mcu } = this;
     mcu.core.waiting = board.flash.busy;

@@ -5,7 +5,7 @@
 const SIZE = 8192;
 const PAGE = 32;
 const DEVICE = 0x50;
-const PROGRAMMING = 5e6; // ns; 10 ms at most
+const PROGRAMMING = 5e6; // ns; the data sheet permits at most 10 ms
 const BITS = 9; // a byte and its acknowledge
 
 class Eeprom {

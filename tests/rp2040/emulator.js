@@ -104,7 +104,7 @@ const COMMANDS = {
       }
     }
   },
-  // train NUMBER COUNT NANOSECONDS: begins the same pulses, and returns immediately
+  // train NUMBER COUNT NANOSECONDS: begins pulses like those of `pulses`, and returns immediately
   train(number, count, nanoseconds) {
     const pin = integer(number);
     let left = 2 * integer(count);
@@ -158,7 +158,7 @@ const COMMANDS = {
   "flash-times"(erase, program) {
     board.flash.times = { erase: integer(erase), program: integer(program) };
   },
-  // counts: returns the number of each event since `new`, and other values, as NAME=NUMBER
+  // counts: returns how often each kind of event has occurred since `new`, and other values, as NAME=NUMBER
   counts: () => Object.entries({ ...board.counts, pages: board.eeprom.pagesProgrammed,
     erases: [...board.flash.erased.values()].reduce((sum, each) => sum + each, 0), reason: board.reason,
     depth: board.chip?.processor.deepest ?? 0, secondCoreOff: (board.chip?.psm.frceOff ?? 0) >> 16,

@@ -38,7 +38,8 @@ class FlashChip {
     this.bytes = [];
   }
 
-  // Simulates a reset of the microcontroller, which releases chip select. An incomplete command has no effect.
+  // Simulates a reset of the microcontroller, which releases chip select. Only a complete erase or program command
+  // takes effect.
   interrupt() {
     const [command] = this.bytes;
     if (this.selected && (this.bytes.length > 4 || (command === 0x20 && this.bytes.length === 4))) {

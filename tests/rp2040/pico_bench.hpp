@@ -22,16 +22,17 @@ class PicoBench {
   /// `memory` is the memory in which the images of this board store their settings.
   explicit PicoBench(Memory memory = Memory::Flash) : memory_(memory) {}
 
-  /// Provides a new board with the image of `model`. Its supply is off. `settings` are in its memory; if the
-  /// pointer is null, the memory holds no settings. A store in the flash knows that its free sectors are
-  /// erased.
+  /// Provides a new board with the image of `model`. Its supply is off. Its memory holds `settings`, or no
+  /// settings if the pointer is null. If the memory is in the flash, its free sectors are marked as erased.
   void begin_anew(const Model& model, const Settings* settings);
-  /// Provides the same board, but sets the 384 bytes of its memory to `memory`. If `memory` is empty, the
-  /// memory holds no settings.
+  /// Provides a new board in the same way, but with `memory`, which has 384 bytes, as the content of its
+  /// memory. If `memory` is empty, the memory holds no settings.
   void begin_anew(const Model& model, const play::Bytes& memory);
-  /// Lets the store in the flash of a new board erase all free sectors, as on the first start of a module.
+  /// Removes the marks of erased sectors. The store in the flash then erases all free sectors, as on the
+  /// first start of a module. Call `begin_anew` first.
   void forget_erased_sectors();
-  /// Fills the log of the page store: all sectors are full of entries with these settings.
+  /// Fills the log of the page store: all sectors are full of entries with these settings. Call `begin_anew`
+  /// first.
   void fill_log(const Settings& settings);
   /// Provides a new board with the content of its flash from a file, and an erased EEPROM.
   void begin_with(const std::string& file);
@@ -41,7 +42,7 @@ class PicoBench {
   /// Resets the chip with its RUN pin.
   void reset();
   void run_for(std::chrono::nanoseconds time);
-  /// Returns the virtual time since `begin_anew`.
+  /// Returns the virtual time since `begin_anew` or `begin_with`.
   std::chrono::nanoseconds now();
 
   /// Sets the rate of the master.
@@ -67,7 +68,7 @@ class PicoBench {
   /// Lets time pass until the LED changes, at most `patience`. Returns whether it has changed.
   bool led_changes(std::chrono::nanoseconds patience);
 
-  /// Returns the emulator's event counts since `begin_anew`, by name; see emulator.js.
+  /// Returns the emulator's event counts since `begin_anew` or `begin_with`, by name; see emulator.js.
   std::map<std::string, long> counts();
   std::string execute(const std::string& command) { return emulator_.execute(command); }
 
@@ -82,7 +83,8 @@ class PicoBench {
   bool powered_ = false;
 };
 
-/// Returns the path of the content of the flash with the image of a model, or with a program for tests.
+/// Returns the path of a file with the content of the flash, which contains the image of a model or a program
+/// for tests.
 std::string image_of(const Model& model, Memory memory);
 std::string program_for_tests(const std::string& name);
 

@@ -11,7 +11,7 @@ using std::chrono::milliseconds;
 
 /// The longest time from a reset until a module is ready to reply (wire.md section 2).
 constexpr milliseconds kComingUp{100};
-/// The image processes a byte and updates its pins in less time.
+/// The image processes a byte and updates its pins in less than this time.
 constexpr microseconds kSettling{100};
 constexpr microseconds kBetweenEdges{40};
 constexpr milliseconds kFlashes{600};  ///< a flashing LED changes within this time

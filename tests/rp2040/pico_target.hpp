@@ -26,11 +26,12 @@ class PicoTarget final : public play::Target {
   void pulse_input(unsigned channel, std::uint32_t count) override;
   std::uint16_t outputs() override;
   play::step::Led::Shows led(play::step::Led::Shows expected) override;
-  /// Throws std::runtime_error if a bit was lost on the line, if the driver was on for too short or too long,
-  /// if two sides drove a pin to different levels, or if the watchdog has reset the chip.
+  /// Throws std::runtime_error if a character began while the driver was off, if the driver was switched off
+  /// too early or too late, if two sides drove a pin to different levels, or if the watchdog has reset the
+  /// chip.
   void end() override;
 
-  /// Returns the virtual time of all transcripts.
+  /// Returns the total virtual time of all transcripts that have ended.
   [[nodiscard]] std::chrono::nanoseconds played() const { return played_; }
 
  private:

@@ -24,7 +24,7 @@ struct Pipe {
 Pipe make_pipe() {
   std::array<int, 2> ends{};
   if (pipe2(ends.data(), O_CLOEXEC) != 0) {
-    throw std::runtime_error("pipe");
+    throw std::runtime_error("cannot create a pipe");
   }
   return {ends[0], ends[1]};
 }

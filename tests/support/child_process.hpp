@@ -30,7 +30,8 @@ class ChildProcess {
   /// Sends `signal` and waits until the program ends. Returns its exit status, or 128 plus the number of the
   /// signal that has ended it.
   int end(int signal);
-  /// Waits until the program ends. Returns the same value as `end`.
+  /// Waits until the program ends. Returns the same value as `end`. Call neither `end` nor `wait` again after
+  /// one of them has returned.
   int wait();
 
  private:
@@ -48,6 +49,7 @@ struct Finished {
 };
 
 /// Runs a command and waits until it ends. The first word is a path, or a name that is searched in PATH.
+/// Throws std::runtime_error if the command does not start.
 Finished run(const std::vector<std::string>& command, const std::string& directory = "/");
 
 }  // namespace ex9000::system

@@ -36,7 +36,8 @@ std::size_t ControlClient::offer(const std::string& bytes) {
 
 void ControlClient::close_writing() { shutdown(fd_, SHUT_WR); }
 
-/// Returns false if the connection has ended. The timeout only detects a program that hangs.
+/// Waits for bytes and stores them. Returns false if the connection has ended. Throws std::runtime_error
+/// after 60 s, which only detects a program that hangs.
 bool ControlClient::read_more() {
   constexpr int kHangMilliseconds = 60'000;
   pollfd ready{fd_, POLLIN, 0};

@@ -19,7 +19,8 @@ class ControlClient {
   std::string ask(const std::string& command);
   /// Sends a command and returns the text after `ok `. Throws std::runtime_error if the reply is an error.
   std::string ok(const std::string& command);
-  /// Sends `bytes` unchanged; adds no newline.
+  /// Sends `bytes` unchanged; adds no newline. Throws std::runtime_error if the simulator has closed the
+  /// connection.
   void send(const std::string& bytes);
   /// Sends as many bytes as possible without blocking. Returns their number.
   std::size_t offer(const std::string& bytes);
@@ -28,8 +29,9 @@ class ControlClient {
   /// Returns the next line without the newline. Throws std::runtime_error if the connection ends earlier, or
   /// if nothing arrives for 60 s.
   std::string line();
-  /// Returns whether the simulator has closed the connection and all its bytes have been read. Waits until
-  /// bytes arrive or the connection ends; throws std::runtime_error after 60 s.
+  /// Returns whether the simulator has closed the connection and all its bytes have been read. If no byte is
+  /// left to read, first waits for a byte or for the end of the connection. Throws std::runtime_error if
+  /// neither arrives within 60 s.
   bool at_end();
 
  private:

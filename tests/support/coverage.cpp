@@ -39,8 +39,8 @@ constexpr std::array<std::pair<Verdict, const char*>, 6> kVerdicts{{
     {Verdict::BadCheck, "BadCheck"},
     {Verdict::TooShort, "TooShort"},
     {Verdict::TooLong, "TooLong"},
-    // LineError, Overrun and NoRoom require a faulty line or a faulty master. See
-    // tests/firmware/line/*_assembler_test.cpp.
+    // Open and Ignored are not required. LineError, Overrun and NoRoom require a faulty line or a faulty
+    // master. See tests/firmware/line/*_assembler_test.cpp.
 }};
 
 std::string hex_code(unsigned code) {
@@ -63,7 +63,7 @@ std::string register_id(const char* kind, const Register& row, unsigned function
   return std::string(kind) + "/" + std::string(row.id) + "/" + hex_code(function);
 }
 
-/// Returns the codes of `functions` in ascending order. Function 0x10 is allowed for the same rows as 0x06.
+/// Returns the codes of `functions`. Function 0x10 is allowed for the same rows as 0x06.
 std::vector<unsigned> functions_of(modbus::Functions functions) {
   std::vector<unsigned> codes;
   for (unsigned code = 1; code < 16; ++code) {

@@ -13,8 +13,9 @@ namespace ex9000::runner {
 /// `register/address/06`, `refusal/OutOfRange` or `verdict/Foreign`.
 class Coverage {
  public:
-  /// Records the effect of the bytes `sent`, which were sent at the module's baud rate and which `module` has
-  /// processed. `heard` is its reply. A frame without a reply counts only if the module must not reply to it.
+  /// Records the verdict on the bytes `sent`, and the row or the refusal that they reach. `module` must have
+  /// received and processed them. `heard` is its reply. Without a reply, only the rows of host OK and `#**`
+  /// count as reached.
   void note(const Module& module, const play::Bytes& sent, const play::Bytes& heard);
 
   /// Returns the ids that a master can reach, but that no transcript has reached.

@@ -36,7 +36,8 @@ class Directory {
   /// Returns the path of the entry `name` in this directory.
   [[nodiscard]] std::string operator/(const std::string& name) const { return path_ + "/" + name; }
 
-  /// Returns a description of each entry, by its relative path. A test can compare it with a later one.
+  /// Returns a description of each entry, by its relative path. A test can compare two results to detect
+  /// changes.
   [[nodiscard]] std::map<std::string, std::string> contents() const {
     std::map<std::string, std::string> contents;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(path_)) {

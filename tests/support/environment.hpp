@@ -8,8 +8,9 @@
 
 namespace ex9000 {
 
-/// Returns the value of `variable`, or `otherwise` if it is not set. Throws std::runtime_error if it is not a
-/// decimal number of up to 18 digits, so that a mistake does not replace a long run by a short one.
+/// Returns the value of `variable`, or `otherwise` if the variable is not set. Throws std::runtime_error if
+/// the value is not a decimal number of up to 18 digits, so that a mistake does not replace a long run by a
+/// short one.
 inline std::uint64_t number_in_environment(const char* variable, std::uint64_t otherwise) {
   const char* const text = std::getenv(variable);  // NOLINT(concurrency-mt-unsafe): tests set none
   if (text == nullptr) {

@@ -17,7 +17,8 @@ class MasterPort {
   MasterPort& operator=(const MasterPort&) = delete;
   virtual ~MasterPort() = default;
 
-  /// Sends `bytes`. Blocks until the kernel has accepted all of them.
+  /// Sends `bytes`. Blocks until the kernel has accepted all of them. Throws std::runtime_error if that
+  /// fails.
   virtual void write(const std::vector<std::uint8_t>& bytes) = 0;
   /// Blocks until bytes arrive and returns them. Throws std::runtime_error if none arrive within 60 s, which
   /// only detects a simulator that hangs.

@@ -16,9 +16,10 @@ namespace ex9000::system {
 /// The results do not depend on real time: the simulator's time passes only during calls.
 class ProcessTarget final : public play::Target {
  public:
-  /// `number` identifies the module on the control socket. It must be the only module on the line `line`, and
-  /// `port` must be connected to that line. The module must have the state that `start` requires, except that
-  /// its supply is off. `control` must live as long as this object. The simulator must run with --speed step.
+  /// `number` identifies the module on the control socket. The module must be the only one on the line
+  /// `line`, and `port` must be connected to that line. The module must have the state that `start` requires,
+  /// except that its supply is off. `control` must live as long as this object. The simulator must run with
+  /// --speed step.
   ProcessTarget(std::unique_ptr<MasterPort> port, ControlClient& control, std::string line,
                 std::size_t number);
 

@@ -29,7 +29,8 @@ class PtyBridge {
 
   /// Returns the path of the master's end.
   [[nodiscard]] const std::string& tty() const { return tty_; }
-  /// Stops the bridge. Throws the error if the module has thrown one.
+  /// Stops the bridge. Then throws the error that `exchange` has thrown, if any. Throws std::runtime_error if
+  /// the terminal has not accepted a reply.
   void end();
 
  private:

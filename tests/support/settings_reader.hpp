@@ -39,15 +39,15 @@ class SettingsReader {
       : model_(model), frame_format_(frame_format), exchange_(std::move(exchange)) {}
 
   /// Reads all settings. Returns nullopt if the first reply is missing or has a wrong length. Throws
-  /// std::out_of_range if a later reply is missing or too short. Modbus has no register for the data format,
-  /// so the result of a Modbus module contains the argument `format` instead.
+  /// std::out_of_range or std::invalid_argument if a later reply is missing or too short. Modbus has no
+  /// register for the data format, so the result of a Modbus module contains the argument `format` instead.
   std::optional<Settings> read(std::uint8_t format);
 
   /// Sends a DCON command, given without its address: the delimiter and the text after the address. Returns
-  /// the reply without checksum and CR; empty if there is no reply.
+  /// the reply without checksum and CR; empty if the reply is missing or too short.
   std::string ask(const std::string& command);
   /// Sends a Modbus request, given without address and CRC. Returns the reply with its address, without CRC;
-  /// empty if there is no reply.
+  /// empty if the reply is missing or too short.
   Bytes ask(const Bytes& request);
 
  private:
@@ -59,7 +59,8 @@ class SettingsReader {
   Exchange exchange_;
 };
 
-/// Returns the value of the two hex digits at position `at`.
+/// Returns the value of the two hex digits at position `at`. Throws std::out_of_range or
+/// std::invalid_argument if there is no digit.
 std::uint8_t hex_byte(const std::string& text, std::size_t at);
 
 }  // namespace ex9000

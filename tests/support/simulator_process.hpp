@@ -22,10 +22,12 @@ class SimulatorProcess {
   explicit SimulatorProcess(const std::vector<std::string>& arguments,
                             const std::string& program = simulator_path());
 
-  /// Returns the working directory. The link `ex9000.tty` is there unless the arguments specify another path.
+  /// Returns the working directory. It contains the link `ex9000.tty` unless the arguments specify another
+  /// path or another port.
   [[nodiscard]] const std::string& directory() const { return directory_.path(); }
   [[nodiscard]] std::string tty() const { return directory() + "/ex9000.tty"; }
-  /// Returns the TCP port of a line. `position` counts the lines that have a TCP port, from 0.
+  /// Returns a TCP port of the simulator. `position` counts the ports for TCP and Modbus TCP in the greeting,
+  /// from 0.
   [[nodiscard]] std::uint16_t tcp_port(std::size_t position = 0) const;
   [[nodiscard]] int pid() const { return process_.pid(); }
 

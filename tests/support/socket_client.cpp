@@ -47,7 +47,7 @@ void SocketClient::abort() {
 
 void SocketClient::send(const std::vector<std::uint8_t>& bytes) {
   if (::send(fd_, bytes.data(), bytes.size(), MSG_NOSIGNAL) != static_cast<ssize_t>(bytes.size())) {
-    throw std::runtime_error("send");
+    throw std::runtime_error("cannot send");
   }
 }
 

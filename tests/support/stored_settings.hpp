@@ -77,8 +77,8 @@ inline void put_layout_2(const Model& model, const Settings& settings, std::uint
 inline std::uint8_t unknown_byte(std::size_t index) { return static_cast<std::uint8_t>(0xC1U ^ index); }
 
 /// Returns the number of bytes that a record without unknown settings uses for `settings`. The record ends
-/// after the last setting that differs from its factory value, or after `safe_value`, which is the minimum of
-/// 19 bytes.
+/// after the last setting that differs from its factory value, but not before the end of `safe_value`. The
+/// minimum is therefore 19 bytes.
 inline std::size_t bytes_of_settings(const Settings& settings) {
   if (settings.response_delay != 0) {
     return 55;
@@ -96,7 +96,8 @@ inline std::size_t bytes_of_settings(const Settings& settings) {
 inline constexpr std::size_t kSupportedSettings = 55;
 
 /// Extends the valid record of layout 3 at `place` to `length` bytes of settings. The settings that this
-/// firmware supports, but that the record lacks, get their factory values.
+/// firmware supports, but that the record lacks, get their factory values. The bytes after them get the
+/// values of `unknown_byte`.
 inline void lengthen(const Model& model, std::uint8_t* memory, std::size_t place, std::uint8_t length) {
   std::uint8_t* bytes = memory + place;
   for (std::size_t index = bytes[1]; index < length; ++index) {

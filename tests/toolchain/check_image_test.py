@@ -19,7 +19,7 @@ EXCEPTION = 36
 
 class Accepts(unittest.TestCase):
     def stack(self, verdict: Verdict) -> int:
-        """Returns the worst-case stack without the exception frames of HardFault and NMI, which use no stack."""
+        """Returns the worst-case stack without the exception frames of HardFault and NMI, whose handlers use none."""
         self.assertTrue(verdict.accepted, verdict.problems)
         match = re.search(r"(\d+) stack at worst", verdict.figures)
         assert match
@@ -51,7 +51,7 @@ class Accepts(unittest.TestCase):
         # The handler is alone on a separate level, and there is no handler on the shared level.
         self.assertEqual(self.stack(check(source, options="--level interrupt")), EXCEPTION + 40)
 
-    def test_a_processor_without_a_division_uses_that_of_libgcc(self) -> None:
+    def test_a_processor_without_a_divide_instruction_calls_the_function_of_libgcc(self) -> None:
         verdict = check(
             """
             extern volatile unsigned a, b;
@@ -153,7 +153,7 @@ class Accepts(unittest.TestCase):
         self.assertRegex(verdict.figures, r"main loop \d+: reset 8 -> program 40\n")
         self.assertTrue(verdict.accepted, verdict.problems)
 
-    def test_the_copy_functions_of_newlib_use_the_stack_in_the_table(self) -> None:
+    def test_the_copy_functions_of_newlib_use_no_more_stack_than_the_table_states(self) -> None:
         source = """
             #include <string.h>
             unsigned char a[999], b[999];

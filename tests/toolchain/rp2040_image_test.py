@@ -1,4 +1,4 @@
-"""Tests the checksum of the second stage and UF2 files."""
+"""Tests the checksum of the second stage, and the UF2 files."""
 
 from __future__ import annotations
 

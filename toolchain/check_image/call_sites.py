@@ -120,14 +120,14 @@ def parameters_of(readable: str) -> tuple[str, ...] | None:
 
 @dataclass(frozen=True)
 class _Shape:
-    """The part of a type that both notations contain."""
+    """The part of a type that the dump and the demangled name both contain."""
 
     kind: str  # "class", "number", or "named": a class or an enumeration
     name: str
     indirections: str  # `*` and `&`
 
 
-# Numeric types in both notations, and newlib's definitions of the types in <cstdint>.
+# The words of numeric types in the dump and in demangled names, and newlib's definitions of the types in <cstdint>.
 _NUMBERS = {"bool", "char", "short", "int", "long", "signed", "unsigned", "float", "double", "wchar_t"}
 _ALIASES = {
     "int8_t": "signed char",

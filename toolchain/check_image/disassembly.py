@@ -40,8 +40,8 @@ class Instruction:
 
     @property
     def is_indirect(self) -> bool:
-        """Returns whether this calls or jumps to a function whose address is in a register or in memory. False for a
-        return."""
+        """Returns whether the instruction calls or jumps to a function whose address is in a register or in memory.
+        Returns False for a return."""
         if self.is_call:
             return self.branch_target is None
         if self.mnemonic.startswith("bx"):
@@ -121,7 +121,8 @@ def stack_of(code: list[Instruction]) -> int:
     """Returns the maximum number of bytes that a function itself has on the stack, without the functions that it calls.
 
     Follows the code along its branches. The code after a table jump is reachable only through the table, so it starts
-    with the stack depth of the jump.
+    with the stack depth of the jump. Raises StackPointerUnknown if an instruction moves the stack pointer by an amount
+    that is known only at run time, or if a loop pushes.
     """
     following = {a.address: b.address for a, b in zip(code, code[1:])}
     by_address = {instruction.address: instruction for instruction in code}

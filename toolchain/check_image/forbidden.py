@@ -53,11 +53,11 @@ def problems(elf: Elf, records: Iterable[Record], disassembly: Disassembly) -> l
                 found.append(
                     f"section {section.name}: contains the text '{text.decode()}'; an image must not contain it"
                 )
-    # A linker script without .init_array would silently discard these.
+    # A linker script without .init_array silently discards these functions, but the compiler's records contain them.
     for record in records:
         if _what(record.title.name) == "globals initialised at run time":
             found.append(f"{record.location}: globals initialised at run time")
-    # Such a unit would also make an exception frame longer than this tool calculates.
+    # With a floating-point unit, an exception frame can also be longer than this tool calculates.
     if any(each.mnemonic.startswith("v") and each.operands for each in disassembly.instructions.values()):
         found.append("instructions of a floating-point unit: floating point; compile with -mfloat-abi=soft")
     return found

@@ -72,7 +72,11 @@ class Functions:
         return self._globals.get(name)
 
     def local_named(self, name: str, file: str) -> Function | None:
-        """Returns the static function of a source file. Symbols contain only the name of the file, not its folder."""
+        """Returns the static function of a source file, or None if there is none.
+
+        If only one static function has this name, returns this function without a comparison of the files. Symbols
+        contain only the name of the file, not its folder.
+        """
         there = self._locals.get(name, [])
         if len(there) == 1:
             return there[0][1]
@@ -128,6 +132,6 @@ def _function_symbols(elf: Elf) -> list[Symbol]:
 
 
 def _holds(symbol: Symbol) -> bool:
-    """Returns whether code or data follows a label. Symbols of a linker script are also at the end of a section."""
+    """Returns whether code or data follows a label. A symbol of a linker script can be at the end of a section."""
     section = symbol.section
     return section is not None and section.address <= symbol.address < section.address + section.size

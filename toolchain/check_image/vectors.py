@@ -46,7 +46,7 @@ class Vectors:
         levels can be active at the same time.
 
         `named`: interrupts with a separate priority, one level for each entry. The other interrupts form one level. A
-        fault in a fault handler is a HardFault, and NMI can interrupt that.
+        fault in a fault handler is a HardFault, and NMI can interrupt the HardFault.
         """
         own: list[Level] = []
         left = {

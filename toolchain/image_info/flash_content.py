@@ -17,7 +17,10 @@ class NotAnImage(Exception):
 
 
 def flash_content(file: bytes) -> bytes:
-    """Returns the bytes of the flash from its first used address on. Gaps are FFh, as in an erased flash."""
+    """Returns the bytes of the flash from its first used address on. Gaps are FFh, as in an erased flash.
+
+    Raises NotAnImage if the file is damaged, contains no data, or would fill more than 16 MiB.
+    """
     if file.startswith(_ELF):
         pieces = _elf(file)
     elif file.startswith(_UF2):

@@ -6,7 +6,7 @@ import struct
 
 from image_info.flash_content import NotAnImage
 
-# The place after the vector table, from the first address of the flash on. The linker scripts check it.
+# The offset of the information from the first address of the flash. The linker scripts check this offset.
 PLACES = {"Stellaris and Tiva": 0xC0, "RP2040": 0x1A8}
 
 MARK = b"EX9INFO1"
@@ -14,7 +14,7 @@ _FIELDS = struct.Struct("<8s8s24s16s40s")
 
 
 def info_of(flash: bytes) -> dict[str, str]:
-    """Returns version, board, model and commit."""
+    """Returns version, board, model and commit. Raises NotAnImage if the information is missing or damaged."""
     for place in PLACES.values():
         if flash[place : place + len(MARK)] == MARK:
             return _fields(flash[place : place + _FIELDS.size])

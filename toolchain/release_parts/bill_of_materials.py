@@ -77,7 +77,8 @@ PRODUCTS = (
 
 
 def bill_of_materials(version: str, commit: str, seconds: int, versions: Mapping[str, str]) -> str:
-    """Returns the document. `versions` has the version of each Debian package, `seconds` is the date of the release."""
+    """Returns the document. `seconds`: the date of the release, in seconds since 1970. `versions`: the version of each
+    Debian package."""
     created = datetime.datetime.fromtimestamp(seconds, datetime.timezone.utc).strftime("%Y-%m-%dT%H:%M:%SZ")
     relationships = []
     for product in PRODUCTS:

@@ -23,7 +23,10 @@ class Section:
 
 
 def section_of(version: str, changelog: str, unreleased: bool) -> Section:
-    """Returns the section of a version; `unreleased` selects the section of changes after the last release."""
+    """Returns the section of a version. If `unreleased` is true, returns the section "Unreleased" instead.
+
+    Raises NoSection if the changelog does not have this section.
+    """
     lines = changelog.splitlines()
     for number, line in enumerate(lines):
         release = _RELEASE.match(line)

@@ -20,7 +20,7 @@ _MANIFEST_TYPE = "application/vnd.oci.image.manifest.v1+json"
 
 
 def container_image(program: bytes, licence: bytes, version: str, commit: str, seconds: int) -> bytes:
-    """Returns the archive. `seconds` is the date of all files, since 1970."""
+    """Returns the archive. `seconds`: the date of all files, in seconds since 1970."""
     layer = _tar([
         ("ex9000-sim", program, 0o755, 0),
         ("LICENSE", licence, 0o644, 0),

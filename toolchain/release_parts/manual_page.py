@@ -11,7 +11,8 @@ from help_text import Help, Option
 _ENTRY = re.compile(r"^  (\S+(?: \S+)*) {2,}(\S.*)$")
 _CONTINUED = re.compile(r"^ {10,}(\S.*)$")
 
-# Without these, a reader would see typographic characters that a shell does not understand. The backslash is first.
+# Without these escapes, a reader would see typographic characters that a shell does not understand. The backslash is
+# first, because the other escapes contain it.
 _ESCAPES = {"\\": "\\e", '"': "\\(dq", "-": "\\-", "'": "\\(aq", "`": "\\(ga"}
 
 
@@ -106,7 +107,7 @@ def _without_examples(notes: list[str]) -> tuple[list[str], list[str]]:
 
 
 def _notes(notes: list[str]) -> list[str]:
-    """Converts paragraphs, lists and commands of the notes."""
+    """Converts the paragraphs, lists and commands of the notes to mdoc."""
     lines: list[str] = []
     kind = ""
     for index, note in enumerate(notes):

@@ -109,7 +109,7 @@ class Machine:
         """Sends queued bytes if the module's driver is off. Bytes that the module does not receive are lost, as on a
         real line.
 
-        Must be called even if nothing is queued: if the module hangs, QEMU's virtual time may stop until QEMU gets a
+        Call this even if nothing is queued: if the module hangs, QEMU's virtual time may stop until QEMU gets a
         command. Without such a command, the watchdog would not reset the module.
         """
         speaking = self._word_at(_DRIVER_ENABLE)

@@ -81,7 +81,7 @@ class Machine:
 
     @property
     def carry_within(self) -> float:
-        """Returns the time in seconds within which `carry` must be called. It is shorter after a recent byte."""
+        """Returns the time in seconds within which `carry` must be called. It is shorter in the second after a byte."""
         return 0.002 if time.monotonic() - self._last_byte < 1 else 0.02
 
     def carry(self, requests: bytes, _ready: list[int]) -> bytes:

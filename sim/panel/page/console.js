@@ -12,7 +12,8 @@ const mostWords = 125;
 
 let models = null;
 
-/// Returns the description of each model by its name, as `ex9000-sim describe --format json` prints it.
+/// Resolves to a map from the name of each model to its description, as `ex9000-sim describe --format json` prints it.
+/// If the request fails, resolves to an empty map.
 function described() {
   models ??= fetch("/models.json").then((response) => response.json()).then((all) =>
     new Map(all.models.map((model) => [model.model, model]))).catch(() => {
@@ -72,7 +73,8 @@ export class Console {
       make("summary", {}, make("h3", {}, several ? line.name : "Send a request")), form, this.replies);
   }
 
-  /// Fills the lists when the user opens the console, because addresses and protocols can change before.
+  /// Fills the lists when the user opens the console, because addresses and protocols can change before that. Stops
+  /// polling when the user closes the console.
   open() {
     if (!this.element.open) {
       this.poll.checked = false;

@@ -1,5 +1,6 @@
-// The values of a module: present, power-on and safe value, its settings, and the bytes of all stored copies. The
-// elements are created once and only their texts change, so that the reader's position and selection are kept.
+// The values of a module: the present, power-on and safe value of each output, the settings, and the bytes of all
+// stored copies. The elements are created once and only their texts change, so that the reader's position and
+// selection are kept.
 
 import {bit, hexByte, make, setAttribute, setText} from "/element.js";
 
@@ -68,7 +69,8 @@ export class Drawer {
     });
   }
 
-  /// Returns the labels of the inputs with a value, and a text for each value; "none" if there are no such inputs.
+  /// Returns the label of each input for which `read` returns a value that is not 0 or false, followed by the text of
+  /// this value; "none" if there is no such input.
   ofInputs(read, textOf) {
     const labels = this.inputs.flatMap((label, channel) =>
       read(channel) ? [`${label}${textOf(read(channel))}`] : []);

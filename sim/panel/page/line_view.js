@@ -35,7 +35,8 @@ export class LineView {
     }
   }
 
-  /// Returns the modules that match `words`, all in lower case. If the line itself matches, all of them match.
+  /// Returns the modules that match all of `words`, which must be in lower case. If the name of the line matches,
+  /// returns all modules of the line.
   matches(words) {
     const its = this.line.name.toLowerCase();
     const contains = (text) => words.every((word) => text.includes(word));

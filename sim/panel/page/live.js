@@ -10,7 +10,7 @@ const tooMany = 1013;
 
 export class Live {
   /// `take(message)` gets each message. It must call `answer` with each reply after it has shown the changes.
-  /// `lost(why)` is called with a reason when the connection is lost, and with "" when it is restored.
+  /// `lost(why)` is called with a reason when the connection is lost, and with "" when a connection is established.
   constructor(take, lost) {
     this.take = take;
     this.lost = lost;

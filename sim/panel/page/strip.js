@@ -99,7 +99,7 @@ export class Strip {
   drawAll(entries) {
     const width = this.canvas.clientWidth;
     const span = Number(this.span.value);
-    // Lanes outside the scrolled area are not drawn, and the scale is at the bottom of the visible area.
+    // Only the lanes in the visible area are drawn, and the scale is at the bottom of this area.
     const top = this.frame.scrollTop;
     const bottom = Math.min(this.canvas.clientHeight, top + this.frame.clientHeight) - scaleHeight;
     this.pen.clearRect(0, 0, width, this.canvas.clientHeight);

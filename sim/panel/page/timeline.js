@@ -9,8 +9,8 @@ import {Strip} from "/strip.js";
 /// by one would be slower.
 const mostKept = 1700;
 const trimmedFrom = 2000;
-/// The same limits for entries that wait during a pause. They are lower, so that older entries remain when these are
-/// added.
+/// The same limits for entries that wait during a pause. These limits are lower, so that older entries remain in the
+/// list when the waiting entries are added.
 const mostWaiting = 1000;
 const waitingTrimmedFrom = 1200;
 /// The minimum time between two drawings of the list, in ms. Without it, a busy line would redraw the list at each
@@ -71,7 +71,8 @@ export class Timeline {
   add(frames) {
     const fresh = [];
     for (const {line, entries} of frames) {
-      // After a lost connection, entries may arrive twice or be missing.
+      // After a lost connection, entries may arrive twice or be missing. Entries are also missing if there are more
+      // than the simulator sends in one message.
       const next = this.next.get(line) ?? entries[0].number;
       const missed = entries[0].number - next;
       if (missed > 0) {

@@ -1,4 +1,4 @@
-"""The boards whose images are counted."""
+"""The boards for whose images the tool counts instructions."""
 
 import collections
 import pathlib
@@ -24,7 +24,7 @@ BOARDS = {
         record=FOLDER / "recorded_instructions",
         capacity=capacity,
     ),
-    # On its first start, the module erases the sectors of its flash.
+    # On its first start, the module erases the sectors of its flash, so the start takes longer.
     "pico": Board(
         emulator=PicoEmulator,
         interrupts=RP2040,

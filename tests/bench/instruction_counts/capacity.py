@@ -44,8 +44,8 @@ class Found:
                 mine[key] = max(mine.get(key, 0), count)
 
     def edges_at_once(self, edges):
-        """Returns the instructions of an interrupt that serves this many edges. Interpolates linearly between the count
-        for one edge and the count for the largest measured number of edges."""
+        """Returns the instructions of an interrupt that serves this many edges. Calculates them linearly from the
+        counts for one edge and for the largest measured number of edges."""
         most = max(self.edges)
         one = self.edges[1]
         return one + (edges - 1) * (self.edges[most] - one) / (most - 1)

@@ -23,8 +23,8 @@ class Highest:
 
 
 class Median:
-    """Keeps all passes and returns the median. A tick occurs during some passes. Its instructions cannot be separated
-    completely if the same turn of the main loop also does other work."""
+    """Keeps all passes and returns the median. A single pass is not exact: a tick can occur during the pass, and its
+    instructions cannot be separated completely if the same turn of the main loop also does other work."""
 
     def __init__(self):
         self._passes = []
@@ -78,7 +78,7 @@ class Counter:
         self._pass = None  # addresses of the current pass; None between passes
         self.answered = False  # the driver enable has been switched off
         self.nothing_happens = False  # nothing except ticks happens
-        self.at_rest = False  # the main loop has gone to sleep, and no interrupt has occurred since
+        self.at_rest = False  # the main loop has gone to sleep, and no interrupt except the tick has occurred since
         self.requests = {}
         self.edges_at_once = 0
         self.forget()
@@ -104,7 +104,8 @@ class Counter:
         self._pass = None
 
     def wait_until_seen(self, patience):
-        """Waits until the log contains the line of Emulator.write_sync_line. Call write_sync_line first."""
+        """Waits until the log contains the line of Emulator.write_sync_line. Call write_sync_line first. Raises
+        RuntimeError after `patience` seconds."""
         if not self._seen.wait(patience):
             raise RuntimeError("the emulator's log has ended")
         self._seen.clear()

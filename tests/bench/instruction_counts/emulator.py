@@ -76,7 +76,8 @@ class Emulator:
         self.log = None
 
     def power_up(self, pins):
-        """Starts the emulator with these pin levels and the stored EEPROM content, before the first instruction."""
+        """Starts the emulator with these pin levels and the stored EEPROM content. The emulator executes no instruction
+        before `run_for`."""
         folder = self._directory.name
         names = ("uart", "qmp", "qtest", "gate")
         listeners = [self._listen(f"{folder}/{name}") for name in names]
@@ -153,7 +154,8 @@ class Emulator:
             told += piece
 
     def put(self, byte):
-        """Puts a byte on the line. The image receives it when the emulator continues."""
+        """Puts a byte on the line. The image receives it when the emulator continues. Raises RuntimeError if the image
+        has not read the previous byte."""
         if not self._read(UART_FLAGS) & RECEIVER_EMPTY:
             raise RuntimeError("the image has not read the previous byte")
         self.line.sendall(bytes([byte]))
@@ -168,7 +170,7 @@ class Emulator:
             return b""
 
     def mark(self):
-        """Writes a line to the log that the image cannot cause. See execution.py."""
+        """Writes to the log a line that the image cannot cause. See execution.py."""
         self._ask_bus(f"readl {UART_IDENTIFICATION:#x}")
 
     def write_sync_line(self):

@@ -11,7 +11,7 @@ MAIN = 0
 TICK = 15
 ALARM = 51  # alarm interrupt of this tool: see emulator.py. The RP2040 has no such interrupt
 
-# Exception numbers of a board. `edges`: of the ports.
+# Exception numbers of a board. `edges`: those of the ports with inputs.
 Interrupts = collections.namedtuple("Interrupts", "edges line i2c silence line_end wake")
 LM3S6965 = Interrupts(edges=range(16, 21), line=21, i2c=24, silence=35, line_end=37, wake=39)
 RP2040 = Interrupts(edges=[29], line=36, i2c=39, silence=16, line_end=17, wake=18)

@@ -132,7 +132,7 @@ def main(arguments):
         "--profile", default="", metavar="TEXT",
         help="print the instructions of each function in results whose names contain TEXT"
     )
-    parser.add_argument("--passes", type=int, default=100)
+    parser.add_argument("--passes", type=int, default=100, help="maximum number of passes of each request (100)")
     parser.add_argument(
         "--gate",
         default=os.path.join(ROOT, "build/host-debug/tests/qemu/libex9000_gate.so"),
@@ -169,5 +169,5 @@ def main(arguments):
         return 0
     grown = [name for name, count in counts.items() if name in before and count > GROWTH * before[name]]
     if grown:
-        print(f"grown by more than 5 %: {'; '.join(grown)}; if that is right, run it with --record", file=sys.stderr)
+        print(f"grown by more than 5 %: {'; '.join(grown)}; if this is intended, repeat the command with --record", file=sys.stderr)
     return 1 if grown else 0

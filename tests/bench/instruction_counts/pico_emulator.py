@@ -25,7 +25,8 @@ class PicoEmulator:
         self.log = None
 
     def power_up(self, pins):
-        """Starts the emulator with these pin levels and the stored settings, before the first instruction."""
+        """Starts the emulator with these pin levels and the stored settings. The emulator executes no instruction
+        before `run_for`."""
         reader, writer = os.pipe()
         self._process = subprocess.Popen(
             ["node", ROOT / "tests/rp2040/emulator.js"],
@@ -58,7 +59,7 @@ class PicoEmulator:
         return bytes.fromhex(self._ask("heard"))
 
     def mark(self):
-        """Writes a line to the log that the image cannot cause. See execution.py."""
+        """Writes to the log a line that the image cannot cause. See execution.py."""
         self._ask(f"note {MARK}")
 
     def write_sync_line(self):

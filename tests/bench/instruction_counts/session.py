@@ -23,7 +23,7 @@ QUIET = 0.004  # after a byte; then all frames have ended, and the module has pr
 
 
 class Session:
-    """Sends requests to one image. ASCII sessions use checksums, because they require more instructions."""
+    """Sends requests to one image. ASCII sessions use checksums, because checksums require more instructions."""
 
     def __init__(self, board, image, gate, model, is_ascii):
         self._board = board  # a boards.Board

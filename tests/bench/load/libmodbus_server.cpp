@@ -1,7 +1,7 @@
-// A typical Modbus RTU server that uses libmodbus: unit 1 with 13 coils. It runs until it is terminated.
+// A typical Modbus RTU server that uses libmodbus: unit 1 with 13 coils.
 //
-//     libmodbus_server        on a pseudo-terminal; prints its path
-//     libmodbus_server tcp    RTU frames over TCP, one client at a time; prints the port
+//     libmodbus_server        on a pseudo-terminal; prints its path and runs until it is terminated
+//     libmodbus_server tcp    RTU frames over TCP; prints the port and ends when its only client disconnects
 #include <fcntl.h>
 #include <modbus/modbus.h>
 #include <netinet/in.h>

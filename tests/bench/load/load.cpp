@@ -1,6 +1,6 @@
 // Compares the processor time that the simulator uses for a transaction with that of servers that use
-// libmodbus and pymodbus on the same transport. Then measures the cost of many modules, of many lines and of
-// memory.
+// libmodbus and pymodbus on the same transport. Then measures the cost of many modules and of many lines, and
+// the memory of a module.
 //
 //     load [--without pymodbus] [MILLISECONDS]    duration of each measurement; default 1000
 //

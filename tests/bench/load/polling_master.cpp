@@ -79,23 +79,23 @@ PollingMaster::~PollingMaster() {
 
 void PollingMaster::ask(const std::vector<std::uint8_t>& request, std::uint8_t unit) {
   if (write(fd_, request.data(), request.size()) != static_cast<ssize_t>(request.size())) {
-    fail("a request");
+    fail("cannot send a request");
   }
   std::array<std::uint8_t, kReply> reply{};
   for (std::size_t size = 0; size < reply.size();) {
     constexpr int kHangMilliseconds = 60'000;  // reached only if the server hangs
     pollfd waits{fd_, POLLIN, 0};
     if (poll(&waits, 1, kHangMilliseconds) != 1) {
-      throw std::runtime_error("no answer within 60 s");
+      throw std::runtime_error("no reply within 60 s");
     }
     const ssize_t count = read(fd_, reply.data() + size, reply.size() - size);
     if (count <= 0) {
-      fail("an answer");
+      fail("cannot receive a reply");
     }
     size += static_cast<std::size_t>(count);
   }
   if (reply[0] != unit || reply[1] != kReadCoils || reply[2] != 2) {
-    throw std::runtime_error("a wrong answer");
+    throw std::runtime_error("wrong reply");
   }
 }
 

@@ -1,4 +1,4 @@
-// A master that repeats the same request as fast as the server replies.
+// A master that sends its next request as soon as the server has replied.
 #pragma once
 
 #include <chrono>

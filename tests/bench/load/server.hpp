@@ -47,7 +47,8 @@ inline double processor_seconds(int pid) {
 }
 
 /// Returns the time that all processors together have been busy since the machine started, in seconds.
-/// Includes all programs and the time that a hypervisor has given to other machines.
+/// Includes all programs and the time that a hypervisor has given to other machines. Throws
+/// std::runtime_error if the system does not report the time.
 inline double busy_seconds() {
   std::ifstream file("/proc/stat");
   std::string name;

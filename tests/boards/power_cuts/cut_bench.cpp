@@ -106,7 +106,7 @@ FrameFormat CutBench::speak_as(const Settings& settings, bool init_mode) {
   return init_mode ? FrameFormat::init_mode() : FrameFormat::of(settings);
 }
 
-/// Sends `frame` after a sufficient silence.
+/// Waits for longer than T3.5, and then sends `frame`.
 void CutBench::send(const Bytes& frame) {
   bench_.run_for(40 * bench_.line.bit_time() + microseconds(1800));
   bench_.line.heard.clear();
@@ -114,7 +114,7 @@ void CutBench::send(const Bytes& frame) {
   bench_.line.send(frame);
 }
 
-/// Returns the reply; empty if none begins in time.
+/// Waits for the reply and returns it. Returns nothing if no reply begins within kRepliesWithin.
 CutBench::Bytes CutBench::hear() {
   while (bench_.line.sending()) {
     bench_.run_for(microseconds(500));
@@ -221,7 +221,7 @@ void CutBench::carry_out(const FrameFormat& frame_format, const StoringCommand& 
       << "the command does not program the expected number of pages";
   if (command.answered) {
     const Bytes reply = hear();
-    ASSERT_GE(reply.size(), 3U) << "no answer";
+    ASSERT_GE(reply.size(), 3U) << "no reply";
     EXPECT_TRUE(frame_format.protocol == Protocol::Ascii ? reply[0] == '!' : reply[1] < 0x80U) << "refused";
   }
   bench_.run_for(milliseconds(10));  // the module reads back what it has stored
@@ -349,7 +349,7 @@ AfterReset CutBench::reset_after(Instant time, const Contents& contents, const S
   const std::uint16_t outputs_before_it = bench_.outputs();
   shown_ = Outputs();
   bench_.reset();
-  // A reset switches all outputs off, and no code runs yet.
+  // A reset switches all outputs off before any code runs.
   EXPECT_EQ(shown_.ever_on & ~outputs_before_it, 0);
   EXPECT_EQ(bench_.outputs(), 0);
   shown_ = Outputs();

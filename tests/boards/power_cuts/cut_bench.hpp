@@ -24,7 +24,7 @@ using Contents = std::array<std::uint8_t, kStoredMemory>;
 
 /// The results of power cuts during one command.
 struct Cuts {
-  std::size_t points = 0;  ///< on the bus, and within each byte that is programmed
+  std::size_t points = 0;  ///< of cuts: each event on the bus, and each byte that is being programmed
   std::size_t cuts = 0;    ///< each point counts once for each effect that a cut may have on the page
   /// Each of the resulting contents, once. The value is true if the command was certainly done after at least
   /// one of these cuts, because the reply had begun, or because enough time had passed for a command without
@@ -75,8 +75,9 @@ class CutBench {
   /// module replies correctly and drives the correct outputs at the correct time.
   Cuts cut_everywhere(const Contents& contents, const Settings& before, const StoringCommand& command);
 
-  /// Executes the command in the same way, but resets the microcontroller at `time` after the beginning of
-  /// the command, while the EEPROM keeps its supply. Returns the state after the restart.
+  /// Starts a module with `contents`, which store `before`, and sends the command. Resets the microcontroller
+  /// at `time` after the beginning of the command, while the EEPROM keeps its supply. Returns the state after
+  /// the restart.
   AfterReset reset_after(Instant time, const Contents& contents, const Settings& before,
                          const StoringCommand& command);
 

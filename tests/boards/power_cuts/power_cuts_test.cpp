@@ -44,7 +44,7 @@ class PowerCutsOf : public testing::TestWithParam<ImageName> {
   /// Starts the image from `contents`, in which StoredCopy has already found `settings`.
   void come_up(const Contents& contents, const Settings& settings, const Settings& otherwise) {
     const Found found = bench_.come_up(contents, {settings, otherwise}, all_cases_requested());
-    ASSERT_TRUE(found.settings) << "it does not answer";
+    ASSERT_TRUE(found.settings) << "the module does not reply";
     ASSERT_TRUE(*found.settings == settings);
     expect_outputs(found.outputs, settings);
     ++booted_;
@@ -115,10 +115,11 @@ class PowerCutsOf : public testing::TestWithParam<ImageName> {
     return command.stores_from(settings, bench_.outputs_before(settings));
   }
 
-  /// Checks up to `pairs` pairs of contents that `first` may leave and a second command that is cut
-  /// everywhere. If `first` was the first store after an update, the module finishes the update before the
-  /// second command, and is cut everywhere while it does that. With EX9000_CUTS=all, uses each second command
-  /// that can store something.
+  /// Checks up to `pairs` pairs. A pair consists of the contents that a cut during `first` may leave, and of
+  /// a second command, which is cut everywhere. If `first` was the first store after an update, the module
+  /// finishes the update before the second command, and the test cuts the power everywhere during that time.
+  /// If `pairs` is SIZE_MAX, uses each second command that changes the settings; otherwise one for each
+  /// contents.
   void cut_twice(const State& state, const StoringCommand& first, std::size_t pairs) {
     const Cuts cuts = bench_.cut_everywhere(state.contents, state.settings, first);
     const Settings unfinished = first.done_to(state.settings, cuts.outputs);
@@ -224,7 +225,7 @@ TEST_P(PowerCutsOf, DuringTwoSuccessiveMultiPageStoresLeaveEachCommandStoredOrNo
 
 /// Resets only the microcontroller, during traffic on the bus. After the reset, the EEPROM may be busy with
 /// programming.
-TEST_P(PowerCutsOf, ThatOnlyResetTheMicrocontrollerLeaveCommandsStoredOrNotAtAll) {
+TEST_P(PowerCutsOf, AResetOfTheMicrocontrollerLeavesEachCommandStoredOrNotAtAll) {
   const std::size_t one_in = all_cases_requested() ? 1 : 28;
   for_each_command([this, one_in](const State& state, const StoringCommand& command) {
     const Cuts cuts = bench_.cut_everywhere(state.contents, state.settings, command);

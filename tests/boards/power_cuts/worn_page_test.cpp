@@ -24,13 +24,13 @@ struct Stuck {
   std::uint8_t bits;
   std::uint8_t at;
 };
-/// The bytes belong to the sequence number, the address, the name and the check, which has three of them. One
-/// bit, several bits or all bits of a byte are stuck.
+/// In a record of one page, these bytes belong to the sequence number (2), the address (4), the name (14) and
+/// the check (23 to 25). One bit, several bits or all bits of the byte are stuck.
 constexpr Stuck kStuck[] = {{23, 0xFF, 0x00}, {4, 0x80, 0x80},  {25, 0xFF, 0xFF},
                             {2, 0x03, 0x03},  {24, 0x55, 0xAA}, {14, 0xFF, 0x00}};
 
-/// Returns the number of pages of a record with these settings. The settings of firmware/extensions.md are in
-/// the second page.
+/// Returns the number of pages of a record with these settings. A record that contains settings of
+/// firmware/extensions.md has two pages.
 unsigned pages_of(const Settings& settings) { return bytes_of_settings(settings) > 19 ? 2 : 1; }
 
 class WornPageOf : public testing::TestWithParam<ImageName> {
@@ -52,7 +52,7 @@ class WornPageOf : public testing::TestWithParam<ImageName> {
     }
     ASSERT_TRUE(settings_in(model_, attempt.behind.back()) == found);
     if (answers) {
-      ASSERT_GE(attempt.reply.size(), 3U) << "no answer";
+      ASSERT_GE(attempt.reply.size(), 3U) << "no reply";
       const bool ascii = command.protocol == Protocol::Ascii;
       ASSERT_EQ(ascii ? attempt.reply[0] == '!' : attempt.reply[1] < 0x80U, done);
       if (!done) {
@@ -64,7 +64,7 @@ class WornPageOf : public testing::TestWithParam<ImageName> {
     ASSERT_EQ(attempt.outputs,
               drives ? command.drive(wanted, attempt.outputs_before) : attempt.outputs_before);
     const Found up = bench_.come_up(attempt.behind.back(), {found}, false);
-    ASSERT_TRUE(up.settings) << "it does not answer";
+    ASSERT_TRUE(up.settings) << "the module does not reply";
     ASSERT_TRUE(*up.settings == found);
     ASSERT_EQ(up.outputs.now, outputs_from_reset(found));
     ASSERT_EQ(up.outputs.ever_on, up.outputs.now);

@@ -77,7 +77,7 @@ class Visits {
   /// Waits for the next event of this kind.
   void wait_for(std::uint32_t kind) {
     pollfd ready{fd_, POLLIN, 0};
-    inotify_event event{};  // of a file, so without a name
+    inotify_event event{};  // without a name, because the watch is on a file
     do {
       ASSERT_EQ(poll(&ready, 1, std::chrono::milliseconds(kHang).count()), 1);
       ASSERT_EQ(read(fd_, &event, sizeof event), static_cast<ssize_t>(sizeof event));
@@ -139,7 +139,7 @@ TEST(Run, SettingsPersistInTheFileOfTheMemory) {
     EXPECT_TRUE(has(written.output, "Written 1 references.")) << written.error;
     const int emulator = image.emulator();
     image.process().end(SIGKILL);
-    EXPECT_TRUE(ends(emulator));  // it has locked the file
+    EXPECT_TRUE(ends(emulator));  // the emulator has locked the file until now
   }
   {
     const RunningImage image("EX9042D-M", options);
@@ -179,7 +179,7 @@ TEST(Run, TheEmulatorEndsWhenTheProgramIsKilled) {
     RunningImage image("EX9042D", options);
     const int emulator = image.emulator();
     master.emplace(image.tty(),
-                   9600);  // while it is open, no other terminal of this machine receives the same name
+                   9600);  // while `master` is open, no other terminal of this machine receives the same name
     image.process().end(SIGKILL);
     EXPECT_TRUE(ends(emulator));
   }
@@ -222,7 +222,7 @@ TEST(Run, RefusesAFileOfTheMemoryThatItCannotUse) {
                   std::to_string(kMemorySize), "remove"});
   expect_refusal(directory, {image, kMemory, "/"}, {kMemory + " /: Is a directory", "name a file"});
   expect_refusal(directory, {image, kMemory, "none/memory"}, {kMemory + " none/memory: No such file"});
-  const Directory others;  // its module may write to the file at any time
+  const Directory others;  // the other run may write to its file at any time
   const std::string taken = others / "taken";
   const RunningImage other("EX9042D", {kMemory, taken});
   expect_refusal(directory, {image, kMemory, taken},

@@ -1,4 +1,4 @@
-// The program boards/BOARD/run, as a user starts it: the shipped image on a pseudo-terminal.
+// The program boards/BOARD/run, as a user starts it: the image on a pseudo-terminal.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -107,7 +107,8 @@ inline bool has_ended(int pid) {
   return !status || state == "Z";
 }
 
-/// Waits for the end of a process, which need not be a child of this one.
+/// Waits up to kHang for the end of a process, which need not be a child of this one. Returns whether the
+/// process has ended.
 inline bool ends(int pid) {
   const int process = static_cast<int>(syscall(SYS_pidfd_open, pid, 0));
   pollfd over{process, POLLIN, 0};
@@ -117,7 +118,7 @@ inline bool ends(int pid) {
 }
 
 /// Repeats a request until its reply arrives, as a master does, because a module receives nothing while it
-/// sends or hangs.
+/// sends or hangs. Returns false if the reply does not arrive within kHang.
 inline bool gets(const RunningImage& image, const std::string& command, const std::string& reply) {
   constexpr std::chrono::seconds kRepeats{1};  // a busy machine can only cause more requests
   Terminal terminal(image.tty(), 9600);

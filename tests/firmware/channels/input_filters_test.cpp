@@ -40,7 +40,7 @@ TEST_F(InputFiltersTest, ALevelIsAcceptedAfterTheFilterTimeAndNeverEarlier) {
     const std::uint32_t counted = inputs_.long_counter(kChannel);
     edge(level);
     pass(milliseconds(time));
-    EXPECT_NE(high(), level) << time;  // the edge may have been up to 1 us late
+    EXPECT_NE(high(), level) << time;  // the edge may have occurred up to 1 us after its recorded time
     EXPECT_EQ(until_settled().microseconds(), 1U);
     pass(Duration(1));
     EXPECT_EQ(high(), level) << time;
@@ -49,7 +49,7 @@ TEST_F(InputFiltersTest, ALevelIsAcceptedAfterTheFilterTimeAndNeverEarlier) {
   }
 }
 
-TEST_F(InputFiltersTest, EveryEdgeRestartsTheFilterTimeEvenIfItsPulseIsOver) {
+TEST_F(InputFiltersTest, APulseThatEndsBeforeTheNextCollectionRestartsTheFilterTime) {
   use_filter(10);
   edge(true);
   pass(milliseconds(9));
@@ -64,7 +64,7 @@ TEST_F(InputFiltersTest, EveryEdgeRestartsTheFilterTimeEvenIfItsPulseIsOver) {
   EXPECT_EQ(inputs_.latched_low(), 0U);
 }
 
-TEST_F(InputFiltersTest, APulseThatIsShorterThanTheFilterDoesNotCount) {
+TEST_F(InputFiltersTest, APulseThatIsShorterThanTheFilterTimeDoesNotCount) {
   use_filter(10);
   edge(true);
   pass(milliseconds(9));

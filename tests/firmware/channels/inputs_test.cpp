@@ -10,7 +10,7 @@ constexpr unsigned kAll = kMaxInputs;
 
 class InputsTest : public testing::Test {
  protected:
-  /// Starts with these levels at reset.
+  /// Sets the levels of the inputs at reset.
   void begin(std::uint16_t levels) {
     edges_.begin(levels);
     inputs_.begin(levels);
@@ -155,7 +155,8 @@ TEST_F(InputsTest, UpTo65535EdgesBetweenTwoCollectionsAreCounted) {
   EXPECT_EQ(inputs_.levels(), 0);
 }
 
-// The interrupt delivers a single count; the main loop uses the level to find out which edge came first.
+// The interrupt counts rising and falling edges together. The main loop uses the previous level to find out
+// which edge came first.
 TEST_F(InputsTest, RisingAndFallingEdgesAreDistinguishedAtAnyLevelAndForAnyNumber) {
   for (const bool count_rising : {true, false}) {
     for (const bool high : {true, false}) {
@@ -182,7 +183,7 @@ TEST_F(InputsTest, RisingAndFallingEdgesAreDistinguishedAtAnyLevelAndForAnyNumbe
   }
 }
 
-TEST_F(InputsTest, TheLevelsAtResetAreReadBeforeAnythingIsCollected) {
+TEST_F(InputsTest, TheLevelsAtResetAreKnownBeforeTheFirstCollection) {
   begin(0x00A5);
   EXPECT_EQ(inputs_.levels(), 0x00A5);
 }
@@ -233,7 +234,7 @@ TEST_F(InputsTest, AModbusCounterWrapsFrom65535To0) {
   EXPECT_EQ(inputs_.counter(0), 7U);
 }
 
-TEST_F(InputsTest, AWrapLeavesTheOtherCountersAlone) {
+TEST_F(InputsTest, AWrapDoesNotChangeTheOtherCounters) {
   inputs_.configure(Inputs::CounterRange::SixteenBits, false);
   pulse_and_collect(1, 3);
   pulse_and_collect(0, 65'536);
@@ -251,7 +252,7 @@ TEST_F(InputsTest, LatchesStayUntilTheyAreCleared) {
   EXPECT_EQ(inputs_.latched_low(), 0);
 }
 
-TEST_F(InputsTest, ClearedLatchesStayClearAtAnyLevelThatDoesNotChange) {
+TEST_F(InputsTest, ClearedLatchesStayClearWhileTheLevelDoesNotChange) {
   rise(0);
   collect();
   inputs_.clear_latches();
@@ -271,7 +272,7 @@ TEST_F(InputsTest, AClearedLatchIsSetByTheNextEdge) {
   EXPECT_EQ(inputs_.latched_low(), 0x0001);
 }
 
-TEST_F(InputsTest, ClearingLatchesLeavesCountersAndLevels) {
+TEST_F(InputsTest, ClearingLatchesDoesNotChangeCountersAndLevels) {
   pulse(0, 3);
   rise(1);
   collect();
@@ -280,7 +281,7 @@ TEST_F(InputsTest, ClearingLatchesLeavesCountersAndLevels) {
   EXPECT_EQ(inputs_.levels(), 0x0002);
 }
 
-TEST_F(InputsTest, ACounterIsClearedAndTheOthersStay) {
+TEST_F(InputsTest, ClearingTwoCountersDoesNotChangeTheOthers) {
   for (unsigned channel = 0; channel < kAll; ++channel) {
     pulse(channel, 9);
   }
@@ -291,7 +292,7 @@ TEST_F(InputsTest, ACounterIsClearedAndTheOthersStay) {
   }
 }
 
-TEST_F(InputsTest, ClearingCountersLeavesTheLatches) {
+TEST_F(InputsTest, ClearingCountersDoesNotChangeTheLatches) {
   pulse(0, 1);
   collect();
   inputs_.clear_counters(0x00FF);

@@ -7,8 +7,8 @@ namespace ex9000 {
 namespace {
 
 constexpr Duration kLong = milliseconds(10'000);
-/// A timer runs this many microseconds longer than its units, because the main loop switches the output on
-/// later in the same pass.
+/// A timer runs this many microseconds longer than its units, because the main loop starts the timer before
+/// it switches the output on, in the same pass.
 constexpr std::uint32_t kLate = 300;
 
 class OutputTimersTest : public testing::Test {

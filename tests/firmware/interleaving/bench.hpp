@@ -81,7 +81,7 @@ class Bench {
 
   // --- external events; they may also occur in the middle of a turn of the main loop ---
 
-  /// Completes the next byte on the line, one character time later.
+  /// Lets one character time pass, and then delivers a byte to the UART.
   void byte(std::uint8_t value) {
     pass_time_until(chip_.now + Chip::kCharacter);
     interrupt([&] {
@@ -89,7 +89,7 @@ class Bench {
       serve_uart();
     });
   }
-  /// Keeps the line silent until the silence timer expires.
+  /// Keeps the line silent until the silence timer expires. Does nothing if this timer does not run.
   void silence() {
     if (chip_.silence_due != Chip::kNever) {
       pass_time_until(chip_.silence_due);
@@ -128,14 +128,14 @@ class Bench {
 
   /// For each expected reply, the time at which the last byte of its request was complete.
   std::map<std::string, std::uint32_t> asked;
-  /// Receives a whole frame whose reply is known.
+  /// Delivers all bytes of a request, and stores in `asked` the time of the last byte for the expected reply.
   void asks(const std::string& frame, const std::string& reply) {
     bytes(frame);
     asked[reply] = chip_.now;
   }
   void is_asked(const std::string& reply) { asked[reply] = chip_.now; }
 
-  /// Does the same as `rest`, and also wakes the main loop every 10 microseconds.
+  /// Lets time pass, and runs a turn of the main loop every 10 microseconds, even if there is no work.
   void rest_restlessly(Duration length) {
     constexpr std::uint32_t kStep = 10;
     for (std::uint32_t passed = 0; passed < length.microseconds(); passed += kStep) {
@@ -206,8 +206,8 @@ class Bench {
       serve_pending();
     }
   }
-  /// Serves the transmit interrupt: the first byte of a reply leaves the holding register before the main
-  /// loop has finished the turn.
+  /// Serves the pending interrupts of the UART. The transmit interrupt for the first byte of a reply occurs
+  /// before the main loop has finished the turn.
   void serve_pending() {
     interrupt([&] { serve_uart(); });
   }

@@ -44,8 +44,8 @@ class Interleaver {
     }
   }
 
-  /// For each point, first tries all steps at this point. Then tries the first step at this point and each
-  /// further step at the next point.
+  /// For each point, first tries all steps at this point. If there are several steps, then tries the first
+  /// step at this point and each further step one point after the previous step.
   void at_every_point() {
     for (int point = 0; point < static_cast<int>(points_); ++point) {
       check(Places(steps_, point));
@@ -60,7 +60,8 @@ class Interleaver {
     counted_.points += points_;
   }
 
-  /// Tries random pairs of points: some steps at one point, the others at another.
+  /// Tries random pairs of points: the first steps at one point, the others at the same or a later point.
+  /// Tries nothing if there is only one step.
   void at_pairs(std::mt19937& random, unsigned samples) {
     std::uniform_int_distribution<int> any_point(kBeforeTheTurn, static_cast<int>(points_));
     std::uniform_int_distribution<std::size_t> any_step(1, steps_ - 1);

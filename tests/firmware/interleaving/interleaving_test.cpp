@@ -1,11 +1,12 @@
 // Tests interrupts at every point at which the main loop accesses data that it shares with interrupts.
 //
 // The core's own sources and hal/device.hpp run here with crossings, a clock and registers that report every
-// access (observed/). The test runs an interrupt before and after each access. Each part of the outcome must
-// be one that also occurs if no step of the script happens during the turn: the first steps come before the
-// turn, and the others after it. interleaver.hpp chooses the points, and scenarios.cpp lists the scripts.
+// access (tests/support/interleaving/observed/). The test runs an interrupt before and after each access.
+// Each part of the outcome must be one that also occurs if no step of the script happens during the turn: the
+// first steps come before the turn, and the others after it. interleaver.hpp chooses the points, and
+// scenarios.cpp lists the scripts.
 //
-// Both sides also access the following data outside the crossings. It is handed over as follows:
+// The interrupts and the main loop also share the following data outside the crossings:
 //  - FrameQueue::frames_: the waiting frame belongs to the main loop from `completed_` to `dropped_`;
 //  - Uart::rest_, a HandedToInterrupt: it belongs to the main loop until `begun_`, to the interrupts until
 //    `ended_`;
@@ -13,7 +14,7 @@
 //  - Receiver::protocol_, DconAssembler::checksum_, RtuAssembler::timing_: `listen` writes them before
 //    `open`;
 //  - InputEdges::levels_: `begin` writes them before interrupts are enabled;
-//  - the driver's pin: both sides write it through the mask in the address, which needs no read.
+//  - the driver's pin: the mask in the address selects the pin, so that a write needs no read.
 // Only the main loop uses EventTally::collected_; the interrupt only writes `total_`.
 //
 // Time passes as on a line: a byte takes 87 us even if it arrives in the middle of a turn, so interrupts may

@@ -38,7 +38,7 @@ inline Parts settled_inputs(Bench& bench) {
   return inputs(bench);
 }
 
-/// Requires that a timed output has been switched off.
+/// Lets 2 ms pass and requires that all outputs are off. Returns the outputs and the name.
 inline Parts switched_off(Bench& bench) {
   bench.rest(milliseconds(2));
   require(bench.hardware().outputs == 0, "a timed output stays on");

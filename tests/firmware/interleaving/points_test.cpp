@@ -1,5 +1,5 @@
-// Tests that interrupts at every point reveal typical errors in data that the main loop shares with
-// interrupts.
+// Tests that interrupts at every point reveal typical errors in code that shares data between the main loop
+// and interrupts.
 #include "tests/support/interleaving/points.hpp"
 
 #include <gtest/gtest.h>

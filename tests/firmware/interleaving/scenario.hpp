@@ -17,12 +17,12 @@ struct Scenario {
   const char* model;
   std::function<void(Settings&)> settings;
   Step before;               ///< prepares the module for the turn
-  std::vector<Step> script;  ///< the events, in this order, during, before or after the turn
-  /// Each permitted list of replies, from the start of the turn until the module is idle.
+  std::vector<Step> script;  ///< the events in their order; each occurs before, during or after the turn
+  /// The permitted lists of replies, from the start of the turn until the module is idle.
   std::vector<std::vector<std::string>> replies;
   std::function<std::vector<std::string>(Bench&)> comes_to;
-  std::string probe;          ///< a request after everything else
-  std::string probe_reply;    ///< the expected reply to it
+  std::string probe;          ///< a request that is sent at the end
+  std::string probe_reply;    ///< the expected reply to `probe`
   std::uint32_t turn_around;  ///< the minimum time before each reply, in microseconds
   bool restless = false;      ///< after the turn, the main loop is woken every 10 us for 5 ms
 };

@@ -22,7 +22,7 @@ inline Step edge(unsigned channel, bool level) {
   return [=](Bench& bench) { bench.edge(channel, level); };
 }
 
-/// Returns steps that send a request byte by byte, and the silence after it.
+/// Returns one step for each byte of a request, and a last step for the silence after the request.
 inline std::vector<Step> frame(const std::string& request, const std::string& reply) {
   std::vector<Step> steps;
   for (std::size_t i = 0; i < request.size(); ++i) {
@@ -62,7 +62,7 @@ inline Step storing(const std::string& request, const std::string& reply) {
 /// Prepares a turn that begins while a reply is being sent.
 inline Step replying(const std::string& request, const std::string& reply) { return storing(request, reply); }
 
-/// Prepares a turn that begins `before` the host watchdog expires.
+/// Prepares a turn that begins when the host watchdog has `before` left until it expires.
 inline Step until_expiry(Duration before) {
   return [=](Bench& bench) {
     const Duration remaining = bench.module().host_watchdog_expiry().remaining(Time(bench.hardware().now));

@@ -52,7 +52,7 @@ TEST_F(DconAssemblerTest, BetweenFramesAllCharactersExceptDelimitersAndLeadsAreI
   }
 }
 
-TEST_F(DconAssemblerTest, ALineFeedAndATurnAroundBetweenFramesAreNoise) {
+TEST_F(DconAssemblerTest, ALineFeedAndATurnAround00BetweenFramesAreIgnored) {
   EXPECT_EQ(put("$012\r"), Verdict::Accepted);
   EXPECT_EQ(taken(), "$012");
   EXPECT_EQ(put(std::string_view("\n\0$01M\r", 7)), Verdict::Accepted);
@@ -68,14 +68,14 @@ TEST_F(DconAssemblerTest, ADelimiterWithALineErrorOpensNoFrame) {
   }
 }
 
-TEST_F(DconAssemblerTest, ALeadWithALineErrorIsNoise) {
+TEST_F(DconAssemblerTest, ALeadWithALineErrorIsIgnored) {
   for (const char lead : kLeads) {
     EXPECT_EQ(put(lead, ByteStatus::FramingError), Verdict::Open);
     expect_hunting();
   }
 }
 
-TEST_F(DconAssemblerTest, NoiseWithALineErrorIsNoise) {
+TEST_F(DconAssemblerTest, BetweenFramesACharacterWithALineErrorIsIgnored) {
   EXPECT_EQ(put('\0', ByteStatus::Break), Verdict::Open);
   EXPECT_EQ(put('\r', ByteStatus::FramingError), Verdict::Open);
   expect_hunting();
@@ -134,7 +134,7 @@ TEST_F(DconAssemblerTest, ALineErrorInAnyCharacterAfterTheDelimiterSpoilsTheFram
   }
 }
 
-TEST_F(DconAssemblerTest, ACarriageReturnWithALineErrorEndsNoFrameAndSpoilsIt) {
+TEST_F(DconAssemblerTest, ACarriageReturnWithALineErrorSpoilsTheFrameAndDoesNotEndIt) {
   for (const ByteStatus status : {ByteStatus::FramingError, ByteStatus::Break, ByteStatus::Overrun}) {
     put("$01M");
     EXPECT_EQ(put('\r', status), Verdict::Open);
@@ -144,7 +144,7 @@ TEST_F(DconAssemblerTest, ACarriageReturnWithALineErrorEndsNoFrameAndSpoilsIt) {
   }
 }
 
-TEST_F(DconAssemblerTest, ADelimiterWithALineErrorWithinAFrameSpoilsIt) {
+TEST_F(DconAssemblerTest, ADelimiterWithALineErrorWithinAFrameSpoilsTheFrame) {
   put("$01");
   EXPECT_EQ(put('$', ByteStatus::FramingError), Verdict::Open);
   EXPECT_EQ(put("01M\r"), Verdict::LineError);
@@ -223,7 +223,7 @@ TEST_F(DconAssemblerTest, AFrameOf32CharactersIsAccepted) {
   EXPECT_EQ(taken(), frame_of(32));
 }
 
-TEST_F(DconAssemblerTest, AFrameLongerThan32CharactersIsDroppedAndTheNextOneAnswered) {
+TEST_F(DconAssemblerTest, AFrameLongerThan32CharactersIsDroppedAndTheNextOneAccepted) {
   for (const std::size_t characters : {33U, 34U, 64U, 255U, 256U, 257U, 1000U}) {
     EXPECT_EQ(put(frame_of(characters) + "\r"), Verdict::TooLong) << characters;
     EXPECT_EQ(taken(), "nothing");
@@ -272,7 +272,7 @@ TEST_F(DconAssemblerTest, AForeignFrameIsRecognisedWhileTheQueueIsFull) {
   EXPECT_EQ(taken(), "$01M");
 }
 
-// --- forget ---
+// --- discarding a frame (`forget`) ---
 
 TEST_F(DconAssemblerTest, AnOpenFrameCanBeDiscarded) {
   put("$01");

@@ -1,4 +1,4 @@
-// A DCON assembler that receives text, for its tests.
+// A fixture for tests of the DCON assembler: it passes text to the assembler.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -55,7 +55,7 @@ class DconAssemblerTest : public testing::Test {
   Time now_;
 };
 
-/// Returns a frame of `characters` characters that begins with `$01`, without CHK and CR.
+/// Returns a frame of `characters` characters that begins with `$01`, without checksum and CR.
 inline std::string frame_of(std::size_t characters) { return "$01" + std::string(characters - 3, 'X'); }
 
 }  // namespace ex9000

@@ -37,7 +37,7 @@ TEST_F(DconAssemblerTest, TheSumIsTakenModulo256) {
   EXPECT_EQ(taken(), "~01O~~~~~~");
 }
 
-TEST_F(DconAssemblerTest, AWrongChecksumIsDropped) {
+TEST_F(DconAssemblerTest, AFrameWithAWrongChecksumIsDropped) {
   assembler_.use_checksum(true);
   for (const char* text : {"$012B8\r", "$012C7\r", "$01200\r", "$0127B\r"}) {
     EXPECT_EQ(put(text), Verdict::BadCheck) << text;
@@ -45,14 +45,14 @@ TEST_F(DconAssemblerTest, AWrongChecksumIsDropped) {
   }
 }
 
-TEST_F(DconAssemblerTest, AChecksumInLowerCaseOrOfNoDigitsIsWrong) {
+TEST_F(DconAssemblerTest, AChecksumThatIsNotTwoUpperCaseHexDigitsIsWrong) {
   assembler_.use_checksum(true);
   for (const char* text : {"$012b7\r", "$012 7\r", "$012B:\r"}) {
     EXPECT_EQ(put(text), Verdict::BadCheck) << text;
   }
 }
 
-TEST_F(DconAssemblerTest, AMissingChecksumIsDropped) {
+TEST_F(DconAssemblerTest, AFrameWithoutAChecksumIsDropped) {
   assembler_.use_checksum(true);
   EXPECT_EQ(put("$0120\r"), Verdict::BadCheck);
   EXPECT_NE(put("$012\r"), Verdict::Accepted);
@@ -83,7 +83,7 @@ TEST_F(DconAssemblerTest, TheChecksumIsCheckedBeforeTheAddress) {
   EXPECT_EQ(put("$022B8\r"), Verdict::Foreign);
 }
 
-TEST_F(DconAssemblerTest, The32CharactersIncludeTheChecksum) {
+TEST_F(DconAssemblerTest, TheLimitOf32CharactersIncludesTheChecksum) {
   assembler_.use_checksum(true);
   const std::string longest = with_checksum(frame_of(30));
   ASSERT_EQ(longest.size(), 32U);
@@ -102,7 +102,7 @@ TEST_F(DconAssemblerTest, AnotherAddressIsForeign) {
   }
 }
 
-TEST_F(DconAssemblerTest, AnAddressOfNoHexDigitsIsForeign) {
+TEST_F(DconAssemblerTest, AnAddressThatIsNotTwoHexDigitsIsForeign) {
   for (const char* text : {"$G1M\r", "$ 1M\r", "$1 M\r", "$0*M\r", "$*1M\r"}) {
     EXPECT_EQ(put(text), Verdict::Foreign) << text;
   }

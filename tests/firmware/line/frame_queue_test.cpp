@@ -29,14 +29,14 @@ TEST(FrameQueue, AFrameWaitsUntilItIsDropped) {
   EXPECT_FALSE(queue.has_frame());
 }
 
-TEST(FrameQueue, TheWaitingFrameStaysAsItIsWhileTheNextOneIsAssembled) {
+TEST(FrameQueue, TheWaitingFrameDoesNotChangeWhileTheNextOneIsAssembled) {
   FrameQueue queue;
   ASSERT_TRUE(put(queue, 0x11));
   queue.assembling().storage[0] = 0x22;
   EXPECT_EQ(queue.waiting().bytes()[0], 0x11);
 }
 
-TEST(FrameQueue, AFrameThatIsBeingAssembledStaysWhileTheWaitingOneIsDropped) {
+TEST(FrameQueue, AFrameThatIsBeingAssembledIsKeptWhenTheWaitingOneIsDropped) {
   FrameQueue queue;
   ASSERT_TRUE(put(queue, 0x11));
   const Frame& open = queue.assembling();

@@ -1,4 +1,4 @@
-// A receiver on a line with a clock, for its tests.
+// A receiver on a line with a clock, for tests of the receiver.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -62,7 +62,7 @@ class ReceiverTest : public testing::Test {
       byte(static_cast<std::uint8_t>(character));
     }
   }
-  /// Lets a silence pass that is long enough to end every frame.
+  /// Lets a silence of 50 ms pass, which ends every frame.
   void silence() {
     now_ = now_ + milliseconds(50);
     while (!(receiver_.on_silence() == Duration())) {

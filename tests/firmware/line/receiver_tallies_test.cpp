@@ -118,13 +118,13 @@ TEST_F(ReceiverTest, AFrameThatIsLostBecauseTheQueueIsFullIsCountedOnce) {
 
 TEST_F(ReceiverTest, InAsciiEachCompleteFrameIsABusMessageOrABusError) {
   listen(Protocol::Ascii, true);
-  text("$01MD2\r");  // right
+  text("$01MD2\r");  // correct checksum
   EXPECT_EQ(counts(), (Counts{1, 0, 1, 0, 0}));
   text("$02MD3\r");  // for another module
   EXPECT_EQ(counts(), (Counts{1, 0, 0, 0, 0}));
-  text("~**D2\r#**77\r$**78\r");  // host OK, a sample for which there is no room, no command
+  text("~**D2\r#**77\r$**78\r");  // host OK; sample, but the queue is full; no command
   EXPECT_EQ(counts(), (Counts{3, 0, 2, 2, 1}));
-  text("$01MD3\r$0\r$01M78901234567890123456789012345\r");  // wrong, missing, too long
+  text("$01MD3\r$0\r$01M78901234567890123456789012345\r");  // wrong checksum, none, too long
   EXPECT_EQ(counts(), (Counts{0, 3, 0, 0, 0}));
   byte('$');
   byte('0', ByteStatus::Overrun);

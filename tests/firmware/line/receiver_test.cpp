@@ -54,7 +54,7 @@ TEST_F(ReceiverTest, ARequestForThisModuleRestartsTheHostWatchdogIfThatIsSelecte
   text("$01M\r");
   EXPECT_EQ(restarts(), 0U);
   receiver_.restart_by_requests(true);
-  text("$01M\r");  // the first one still waits, so there is no room
+  text("$01M\r");  // the first request still waits, so the queue is full
   EXPECT_EQ(restarts(), 1U);
   EXPECT_EQ(receiver_.host_oks().last().microseconds(), now_.microseconds());
   took_frame();
@@ -62,7 +62,7 @@ TEST_F(ReceiverTest, ARequestForThisModuleRestartsTheHostWatchdogIfThatIsSelecte
   EXPECT_EQ(restarts(), 1U);
   text("~**\r");
   EXPECT_EQ(restarts(), 1U);
-  text("$02M\r#**\r$**M\r$0\r!01\r$01M");  // incomplete at the end
+  text("$02M\r#**\r$**M\r$0\r!01\r$01M");  // the last frame is incomplete
   EXPECT_EQ(restarts(), 0U);
   receiver_.restart_by_requests(false);
   text("\r");
@@ -78,7 +78,7 @@ TEST_F(ReceiverTest, AModbusRequestForThisModuleRestartsTheHostWatchdogAtTheEndO
   silence();
   EXPECT_EQ(restarts(), 1U);
   expect_host_ok_between(end, now_);
-  frame(with_crc({kOwn, 0x77}));  // an unknown function, and no room
+  frame(with_crc({kOwn, 0x77}));  // an unknown function, and the queue is full
   EXPECT_EQ(restarts(), 1U);
   frame(with_crc({0x00, 0x05, 0x00, 0x00, 0xFF, 0x00}));
   frame(with_crc({0x02, 0x01, 0x00, 0x00, 0x00, 0x01}));

@@ -14,14 +14,15 @@ namespace {
 
 class RtuAssemblerTest : public testing::Test {
  protected:
-  /// Sends one frame, with silence before and after it. Returns the verdict.
+  /// Sends one frame and the silence after it. Checks that there is exactly one verdict, and returns the
+  /// verdict.
   Verdict verdict_of(const FrameBytes& bytes) {
     wire_.verdicts.clear();
     wire_.frame(bytes);
     EXPECT_EQ(wire_.verdicts.size(), 1U);
     return wire_.verdicts.empty() ? Verdict::Open : wire_.verdicts.front();
   }
-  /// Like the other overload, but with a line error in byte `errored`.
+  /// Does the same as the other overload, but byte `errored` has the status `status`.
   Verdict verdict_of(const FrameBytes& bytes, std::size_t errored, ByteStatus status) {
     wire_.verdicts.clear();
     for (std::size_t i = 0; i < bytes.size(); ++i) {
@@ -67,7 +68,7 @@ TEST_F(RtuAssemblerTest, SilenceWithoutAFrameHasNoVerdict) {
   EXPECT_EQ(assembler_.silence(queue_), Verdict::Open);
 }
 
-TEST_F(RtuAssemblerTest, AWrongCrcIsDropped) {
+TEST_F(RtuAssemblerTest, AFrameWithAWrongCrcIsDropped) {
   EXPECT_EQ(verdict_of({0x01, 0x05, 0x00, 0x00, 0xFF, 0x00, 0x8C, 0x3B}), Verdict::BadCheck);
   EXPECT_EQ(verdict_of({0x01, 0x05, 0x00, 0x00, 0xFF, 0x00, 0x3A, 0x8C}), Verdict::BadCheck);
   EXPECT_TRUE(wire_.frames.empty());

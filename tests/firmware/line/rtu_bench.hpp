@@ -45,8 +45,8 @@ inline Nanoseconds silence_of_half_characters(int halves, std::uint32_t baud, Na
 inline Nanoseconds t15(std::uint32_t baud) { return silence_of_half_characters(3, baud, 750'000); }
 inline Nanoseconds t35(std::uint32_t baud) { return silence_of_half_characters(7, baud, 1'750'000); }
 
-/// The assembler's clock counts whole microseconds, and the assembler compares rounded times. Tests keep this
-/// distance from a limit.
+/// The assembler's clock counts whole microseconds, and the assembler compares rounded times. A gap that must
+/// be shorter or longer than a limit therefore differs from the limit by this time.
 inline constexpr Nanoseconds kClock = 5'000;
 
 /// A wire at one baud rate, with its silence timer. A byte takes ten bits in 8N1 and eleven in the other

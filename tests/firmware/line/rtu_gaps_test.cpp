@@ -45,7 +45,8 @@ std::string name_of(const testing::TestParamInfo<RtuGaps::ParamType>& mode) {
   return "Baud" + std::to_string(baud) + "Format" + kNames.at(static_cast<std::size_t>(format));
 }
 
-// The silences are the same in every format: they are multiples of a character of 11 bits.
+// T1.5 and T3.5 are the same in every format: up to 19200 baud they are multiples of half a character of 11
+// bits, and above 19200 baud they are fixed.
 INSTANTIATE_TEST_SUITE_P(AllRatesAndFormats, RtuGaps,
                          testing::Combine(testing::ValuesIn(kBaudRates), testing::ValuesIn(kFormats)),
                          name_of);
@@ -91,7 +92,7 @@ TEST_P(RtuGaps, AFrameT35AfterAnotherIsSeparate) {
   }
 }
 
-TEST_P(RtuGaps, AFrameT35AfterABrokenOneIsSeparate) {
+TEST_P(RtuGaps, AFrameT35AfterAnInvalidFrameIsSeparate) {
   wire_.bytes({0x01, 0x05, 0x00, 0x00, 0xFF, 0x00, 0x8C, 0x3B});
   wire_.silence(t35(baud_));
   wire_.frame(kChannel0On);
@@ -99,7 +100,7 @@ TEST_P(RtuGaps, AFrameT35AfterABrokenOneIsSeparate) {
 }
 
 // A timer that is some microseconds late must not join a frame to the invalid frame before it.
-TEST_P(RtuGaps, AFrameT35AfterABrokenOneIsSeparateEvenIfTheTimerIsLate) {
+TEST_P(RtuGaps, AFrameT35AfterAnInvalidFrameIsSeparateEvenIfTheTimerIsLate) {
   Time now(1'000'000);
   const auto byte = [&](std::uint8_t value) { return assembler_.byte(queue_, value, ByteStatus::Good, now); };
   const auto character = static_cast<std::uint32_t>(wire_.character() / 1000);
@@ -140,7 +141,7 @@ TEST_P(RtuGaps, AWrongCrcAtT35ExtendsTheWaitForAByteBeingReceived) {
   EXPECT_EQ(assembler_.silence(queue_), Verdict::Open);
 }
 
-TEST_P(RtuGaps, AByteThatStartedBeforeT35ContinuesABrokenFrame) {
+TEST_P(RtuGaps, AByteThatStartsBeforeT35ContinuesAnIncompleteFrame) {
   wire_.bytes({0x01, 0x05, 0x00});
   wire_.silence(t35(baud_) - wire_.character() / 2);
   wire_.byte(0x00);
@@ -186,7 +187,8 @@ TEST_P(RtuGaps, TheSilenceEndsT35AfterTheLastByteAndNeverEarlier) {
   }
 }
 
-// The UART reports a byte half a bit before its end, so silences that begin there are half a bit longer.
+// A UART that reports a byte in the stop bit reports it half a bit before its end, so a silence that begins
+// at the report is half a bit longer.
 TEST_P(RtuGaps, SilencesAreHalfABitLongerIfTheUartReportsBytesInTheStopBit) {
   const LineTiming end = LineTiming::at(baud_, format_);
   const LineTiming middle = LineTiming::reported_in_stop_bit(baud_, format_);
@@ -199,6 +201,15 @@ TEST_P(RtuGaps, SilencesAreHalfABitLongerIfTheUartReportsBytesInTheStopBit) {
   // The time from the last byte to the end of the next one is the same.
   EXPECT_TRUE(middle.rtu_silence + middle.rtu_grace == end.rtu_silence + end.rtu_grace);
   EXPECT_TRUE(middle.rtu_slack == end.rtu_slack);
+}
+
+// The UART reports a byte at the end of its first stop bit; only 8N2 has a second one. A reply to a request
+// with a response delay begins this time after the delay.
+TEST_P(RtuGaps, TheTimeToTheEndOfTheLastStopBitIsRoundedUp) {
+  const std::uint32_t rest = LineTiming::at(baud_, format_).rest_of_stop_bit.microseconds();
+  const std::uint32_t exact = format_ == LineFormat::k8N2 ? 1'000'000 : 0;  // in microseconds x baud
+  EXPECT_GE(rest * baud_, exact);
+  EXPECT_LE(rest * baud_, exact + baud_);
 }
 
 TEST_P(RtuGaps, StrictTimingKeepsItsGapsIfTheUartReportsBytesInTheStopBit) {

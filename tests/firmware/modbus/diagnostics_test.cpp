@@ -68,7 +68,7 @@ class Diagnosed : public testing::Test, protected CoreBench {
   }
 };
 
-TEST_F(Diagnosed, ClearingSetsEveryCounterToZero) {
+TEST_F(Diagnosed, EachEventIncreasesItsCountersAndClearingSetsThemToZero) {
   struct Cause {
     const char* what;
     std::function<void()> happens;
@@ -126,7 +126,7 @@ TEST_F(Diagnosed, EveryCounterHas16BitsAndWraps) {
       silence();
     }
     const auto wrapped = [](unsigned count) { return count % 65'536U; };
-    const unsigned messages = wrapped(2 * rounds + asked);  // the earlier reading requests count too
+    const unsigned messages = wrapped(2 * rounds + asked);  // earlier requests that read a counter count too
     EXPECT_EQ(counts(), (Counts{messages, wrapped(rounds), wrapped(rounds), messages, wrapped(rounds),
                                 wrapped(rounds)}))
         << rounds;

@@ -169,8 +169,8 @@ Bytes Crowd::a_request(std::size_t module) {
   return {text.begin(), text.end()};
 }
 
-/// Passes the pulses to the reference. They are counted between requests only, because during a request the
-/// timing decides which edges a reply includes.
+/// Passes the pulses to the reference model of the pulsed module. Call this only between requests, because
+/// during a request the timing decides which edges a reply includes.
 void Crowd::account_for_pulses() {
   const std::uint32_t pulses = pulser_.take();
   pulses_ += pulses;
@@ -183,7 +183,8 @@ void Crowd::exchange() {
   const std::size_t module = random_.below(kModules);
   const Bytes request = a_request(module);
   const VirtualTime takes = line_.master().takes(request.size());
-  // Requests that read counters and latches are sent while no input changes.
+  // No pulses arrive during a request to the pulsed module, because most of these requests read inputs. The
+  // pulses continue during function 06, which reads no input.
   if (module == 0 && request[1] != 6) {
     pulser_.pause();
   }
@@ -227,7 +228,7 @@ void Crowd::exchange() {
       }
     }
   }
-  // The next request follows as early as possible. The silence after a broadcast is over.
+  // The next request follows as early as possible: when the silence after the reply or the broadcast is over.
   line_.bus().run_for(line_.rtu_silence() + microseconds(10));
   expect_outputs_as_described();
   pulser_.resume();

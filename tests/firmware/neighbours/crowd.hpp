@@ -26,7 +26,7 @@ class Pulser final : public sim::Station {
   }
   void pause() { wake_at(sim::kNever); }
   void resume();
-  /// Returns the pulses on each input since the last call.
+  /// Returns the number of pulses on each input since the last call.
   std::uint32_t take() { return std::exchange(pulses_, 0); }
 
   // --- sim::Station ---
@@ -57,8 +57,8 @@ class Crowd final : public sim::BusObserver {
 
   [[nodiscard]] sim::VirtualTime now() { return line_.clock().virtual_now(); }
   Pulser& pulser() { return pulser_; }
-  /// Sends one request to a random module, or a broadcast, and checks the replies. The next request may
-  /// follow immediately. Reports failures through GoogleTest.
+  /// Sends one request to a random module, or a broadcast. Waits for the reply. Checks the reply and the
+  /// outputs of all modules. The next request may follow immediately. Reports failures through GoogleTest.
   void exchange();
 
   [[nodiscard]] std::uint64_t replies() const { return replies_; }

@@ -1,9 +1,9 @@
 // Tests a full line: 32 modules of both protocols receive one request after another without a pause. Each
-// module replies only to its own requests, does not treat another module's reply as a request, keeps
-// receiving, and counts its pulses.
+// module replies only to its own requests, does not treat another module's reply as a request, and keeps
+// receiving. The first module also counts pulses.
 //
-//     EX9000_VIRTUAL_SECONDS=N    duration at 9600 baud; default 60; 86400 is a day.
-//                                 At 115200 baud the duration is N/15, at most 600.
+//     EX9000_VIRTUAL_SECONDS=N    duration at 9600 baud in seconds; default 60; 86400 is a day.
+//                                 At 115200 baud the duration is N/15 seconds, at most 600.
 //     EX9000_SEED=N               default 1
 #include <gtest/gtest.h>
 

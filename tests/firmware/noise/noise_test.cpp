@@ -47,8 +47,8 @@ TEST_P(Checks, MissAsManyDamagedFramesAsTheTheoryExpects) {
         static_cast<unsigned long long>(tally.in_data), static_cast<unsigned long long>(tally.taken_in_data),
         seen.low, seen.high, tally.expected, static_cast<unsigned long long>(tally.taken_otherwise));
     std::fflush(stdout);
-    // After such a command, the test sets up the module again, because the theory does not consider a module
-    // with another address. More such commands than this limit are very unlikely.
+    // After a command that stores something, the test sets up the module again, because the theory does not
+    // consider a module with another address. More such commands than the limit below are very unlikely.
     std::printf("  %llu stored something\n", static_cast<unsigned long long>(tally.storing));
     EXPECT_LE(tally.storing, 1 + tally.sent / 10'000);
     // The limits are twice as wide as the 95 % interval. With the interval itself, about every second run

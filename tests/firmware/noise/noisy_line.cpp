@@ -20,7 +20,7 @@ using std::chrono::milliseconds;
 constexpr std::size_t kModule = 1;
 constexpr unsigned kOutputs = 13;
 /// The time from the last byte of a request until the next request may follow. It is long enough for a reply
-/// of at most 9 characters.
+/// of at most 10 characters.
 constexpr VirtualTime kReplies = milliseconds(6);
 /// Longer than a store, or any other effect of a frame, takes.
 constexpr VirtualTime kLongest = milliseconds(300);

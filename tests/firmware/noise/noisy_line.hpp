@@ -49,9 +49,10 @@ class NoisyLine final : public sim::Disturbance, public sim::Station {
     return *station;
   }
 
-  /// Returns a request that the master may send: it reads or writes outputs.
+  /// Returns a random request that reads or writes outputs.
   FrameBytes a_request();
-  /// Sends `request` while noise flips each bit with the probability `flipped_bit`, and checks all effects.
+  /// Sends `request` while noise flips each bit with the probability `flipped_bit`, checks all effects, and
+  /// adds the results to `tally`. If the module has stored something, restores its settings and restarts it.
   /// Reports failures through GoogleTest.
   void exchange(const FrameBytes& request, double flipped_bit, Tally& tally);
   /// Ends the noise, waits, and sends a CR if frames end with one. Then checks that the module replies

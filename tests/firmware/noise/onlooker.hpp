@@ -18,8 +18,8 @@ namespace ex9000::noise {
 /// Reports failures through GoogleTest.
 class Onlooker final : public sim::BusObserver {
  public:
-  /// All arguments must live as long as the bus is used. Nothing else may observe the module's outputs.
-  /// `station`: the module's number on the bus.
+  /// `module` and this object must live as long as the bus is used. Nothing else may observe the module's
+  /// outputs. `station`: the module's number on the bus.
   Onlooker(sim::Bus& bus, sim::SimulatedModule& module, std::size_t station)
       : clock_(bus.clock()),
         module_(module),

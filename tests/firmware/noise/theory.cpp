@@ -139,7 +139,7 @@ double dcon_misses(const std::string& frame, bool checksum, double flipped_bit) 
   const double untouched = std::pow(1 - flipped_bit, 8 * (frame.size() + 1));
   const double cr_stays = becomes('\r', '\r', flipped_bit);
   double taken = 0;
-  double hunting = 1;  // the probability that no character so far was a delimiter or the lead of a reply
+  double hunting = 1;  // the probability that no character so far was a delimiter or a lead character
   for (std::size_t begin = 0; begin + (checksum ? 5 : 3) <= frame.size() + 1; ++begin) {
     const std::string rest = frame.substr(begin);
     double opens = 0;

@@ -279,7 +279,7 @@ TEST(HostWatchdog, ExpiryReturnsTheTimeOfTheTimeout) {
   }
 }
 
-TEST(HostWatchdog, ARestartGivesItItsFullTimeAgain) {
+TEST(HostWatchdog, ARestartStartsTheFullTimeoutAgain) {
   for (const Time start : kStarts) {
     HostWatchdog watchdog;
     watchdog.restart(start);
@@ -289,7 +289,7 @@ TEST(HostWatchdog, ARestartGivesItItsFullTimeAgain) {
   }
 }
 
-TEST(HostWatchdog, ARestartLaterThanTheTimeOfTheMainLoopDoesNotExpireIt) {
+TEST(HostWatchdog, ARestartLaterThanTheTimeOfTheMainLoopCausesNoExpiry) {
   for (const Time start : kStarts) {
     for (const std::uint32_t ahead : {1U, 1'000U, 99'000U, 500'000U}) {
       HostWatchdog watchdog;

@@ -1,4 +1,5 @@
-// Tests the outcome of a request: it holds exactly the requested effects, and none after it is cleared.
+// Tests the outcome of a request: an outcome has exactly the requested effects, and a cleared outcome has
+// none.
 #include "firmware/request/outcome.hpp"
 
 #include <gtest/gtest.h>
@@ -59,7 +60,7 @@ TEST(Outcome, HasTheEffectsThatWereRequestedAndNoOthers) {
   }
 }
 
-TEST(Outcome, AnOutcomeThatDrivesOutputsHasNoEffectAndNoSettingsChange) {
+TEST(Outcome, DrivingOutputsRequestsNoEffectAndChangesNoSettings) {
   Outcome outcome;
   outcome.drive({0x0003, 0x0002});
   EXPECT_FALSE(outcome.has_effects());
@@ -68,7 +69,7 @@ TEST(Outcome, AnOutcomeThatDrivesOutputsHasNoEffectAndNoSettingsChange) {
   EXPECT_EQ(outcome.outputs_to_drive().value, 0x0002);
 }
 
-TEST(Outcome, AnOutcomeThatChangesSettingsHasNoEffectAndDrivesNoOutputs) {
+TEST(Outcome, ChangingSettingsRequestsNoEffectAndDrivesNoOutputs) {
   Outcome outcome;
   outcome.change().address = 0x2A;
   outcome.change().watchdog_timeout = 0x64;

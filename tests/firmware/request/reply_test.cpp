@@ -1,4 +1,4 @@
-// Tests how a reply is written: it never exceeds its buffer, even if a handler appends too much.
+// Tests how a reply is written: a reply never exceeds its buffer, even if a handler appends too much.
 #include "firmware/request/reply.hpp"
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@ namespace {
 
 std::string text_of(const Reply& reply) { return {reply.bytes().begin(), reply.bytes().end()}; }
 
-TEST(Reply, IsEmptyAtFirstAndOnceItIsCleared) {
+TEST(Reply, IsEmptyAtFirstAndAfterItIsCleared) {
   Reply reply;
   EXPECT_TRUE(reply.empty());
   reply.put('!');
@@ -21,7 +21,7 @@ TEST(Reply, IsEmptyAtFirstAndOnceItIsCleared) {
   EXPECT_EQ(reply.bytes().size, 0U);
 }
 
-TEST(Reply, HasItsContentInTheOrderItWasPut) {
+TEST(Reply, HasItsContentInTheOrderOfThePuts) {
   Reply reply;
   reply.put('!');
   reply.put_hex(0x1A5);  // only the low byte
@@ -30,7 +30,7 @@ TEST(Reply, HasItsContentInTheOrderItWasPut) {
   EXPECT_EQ(text_of(reply), "!A5BCD01");
 }
 
-TEST(Reply, AByteCanBeOverwrittenButNoneAdded) {
+TEST(Reply, PatchOverwritesAByteAndNeverAddsOne) {
   Reply reply;
   reply.put(std::string_view("0123"));
   reply.patch(2, 'x');

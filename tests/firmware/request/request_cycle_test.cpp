@@ -51,7 +51,7 @@ TEST_F(RequestCycleTest, IsIdleAtFirstAndHasNoReply) {
   EXPECT_EQ(take_reply(), "");
 }
 
-TEST_F(RequestCycleTest, ARequestThatChangesNoSettingsIsAnsweredOnceItIsFinished) {
+TEST_F(RequestCycleTest, ARequestThatChangesNoSettingsIsAnsweredAfterItIsFinished) {
   EXPECT_FALSE(judge("$01M").changes_settings());
   EXPECT_EQ(cycle_.phase(), Phase::Idle);
   EXPECT_EQ(take_reply(), "");
@@ -108,7 +108,7 @@ TEST_F(RequestCycleTest, AStoreThatFailsIsRefusedInBothProtocols) {
   EXPECT_EQ(take_reply(), std::string(exception.begin(), exception.end()));
 }
 
-TEST_F(RequestCycleTest, ABroadcastThatCannotBeStoredStaysWithoutAReply) {
+TEST_F(RequestCycleTest, ABroadcastThatCannotBeStoredGetsNoReply) {
   judge_modbus({0x00, 0x06, 0x01, 0xE8, 0x00, 0x05});
   cycle_.store_begun();
   cycle_.refuse_store();
@@ -140,7 +140,7 @@ TEST_F(RequestCycleTest, ATimeoutBeforeAClearCommandIsCleared) {
 }
 
 // wire.md D18.
-TEST_F(RequestCycleTest, TheNextReplyStartsAfterASilenceSinceThePreviousOne) {
+TEST_F(RequestCycleTest, TheNextReplyStartsAfterTheGapSinceThePreviousReply) {
   judge("$01M");
   cycle_.finish();
   take_reply();

@@ -21,7 +21,7 @@ std::optional<StoredSettings> read(const Model& model, const std::vector<std::ui
 
 /// Reads each file with the firmware and with an independent reader, and compares both results with the
 /// settings that were stored.
-TEST(StoredBytes, AreTheSettingsThatWereStored) {
+TEST(StoredBytes, AreReadAsTheSettingsThatWereStored) {
   for (const StoredBytes& stored : all_stored_bytes()) {
     FakeMemory memory;
     memory.cells = stored.memory;
@@ -84,6 +84,12 @@ TEST(OldLayouts, CopiesWithTheInvalidatingZerosAreNotRead) {
       EXPECT_FALSE(read(*stored.model, memory, place)) << stored.file;
     }
   }
+}
+
+/// The check is in bytes 21 to 24 of layout 1 and in bytes 24 to 27 of layout 2.
+TEST(OldLayouts, TheInvalidatingZerosIncludeTheChecksOfBothLayouts) {
+  EXPECT_LE(kOldInvalidatedFrom, 21U);
+  EXPECT_GE(kOldInvalidatedFrom + kOldInvalidatedSize, 28U);
 }
 
 TEST(OldLayouts, ACopyOfLayout2WithImpossibleSettingsIsNotRead) {

@@ -22,7 +22,8 @@ struct Stored {
   std::uint16_t sequence;
 };
 
-/// Returns settings in which every field differs from its factory value.
+/// Returns settings for an EX9042D-M. Every field up to the safe value, except the protocol, differs from its
+/// factory value.
 inline Stored changed_settings() {
   Settings settings;
   settings.address = 0xF7;
@@ -91,7 +92,7 @@ inline std::uint32_t seed(const Model& which) {
   return crc;
 }
 
-/// Sets a correct check, so that a test can store contents that no module would store.
+/// Returns the record with a correct check, so that a test can use contents that no module stores.
 inline Record with_check(const Model& which, Record record) {
   const std::size_t check_at = record.size() - 4;
   std::uint32_t crc = seed(which);

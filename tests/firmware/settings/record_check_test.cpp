@@ -30,9 +30,9 @@ std::uint32_t word_at(const Record& record, std::size_t at) {
 
 std::uint32_t check_in(const Record& record) { return word_at(record, record.size() - 4); }
 
-/// The inverse of `taken_in`: returns the exclusive or of CRC and data from which `taken_in` computed
-/// `result`. The highest bit of `kReflectedPolynomial` is 1, so the highest bit of `result` shows whether the
-/// last step applied the polynomial.
+/// Inverts `taken_in`: returns the exclusive or of CRC and data from which `taken_in` computed `result`. The
+/// highest bit of `kReflectedPolynomial` is 1, so the highest bit of `result` shows whether the last step
+/// applied the polynomial.
 std::uint32_t undone(std::uint32_t result, int bits) {
   for (int bit = 0; bit < bits; ++bit) {
     const bool divided = result >> 31U != 0;
@@ -100,8 +100,8 @@ TEST(Record, AnyFourAdjacentBytesAreDeterminedByTheCheckAndTheOtherBytes) {
   }
 }
 
-// Follows from the property that the previous test checks. Compares more than 1000 records for each group of
-// adjacent settings.
+// This follows from the property that the previous test checks. Here, more than 1000 records are compared for
+// each group of adjacent settings.
 TEST(Record, RecordsThatDifferInUpToFourAdjacentBytesHaveDifferentChecks) {
   OfOneKind lines("address, baud code, format and protocol", 4);
   OfOneKind watchdogs("watchdog and timeout status", 8);
@@ -176,7 +176,7 @@ TEST(Record, EveryDoubleBitErrorIsDetected) {
   }
 }
 
-TEST(Record, TripleBitErrorsAreDetected) {
+TEST(Record, RandomTripleBitErrorsAreDetected) {
   std::mt19937 random(5);
   const Record good = record_of(changed_settings());
   for (int i = 0; i < 100'000; ++i) {

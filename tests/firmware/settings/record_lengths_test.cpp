@@ -31,7 +31,7 @@ Record with_length(const Stored& stored, std::size_t length) {
   return with_check(the_model(), record);
 }
 
-TEST(Record, HasRoomFor96BytesOfSettingsAndMore) {
+TEST(Record, HasRoomForUpTo120BytesOfSettings) {
   for (std::size_t length = kSettingsSize; length <= 120; ++length) {
     const std::optional<StoredSettings> found = read(the_model(), with_length(changed_settings(), length));
     ASSERT_TRUE(found) << length;
@@ -84,7 +84,7 @@ TEST(Record, ARecordWrittenOverALongerOneKeepsTheUnknownSettings) {
   }
 }
 
-TEST(Record, EndsAfterTheLastSettingThatDiffersFromItsFactoryValue) {
+TEST(Record, EndsAfterTheLastExtensionThatDiffersFromItsFactoryValue) {
   Stored stored = factory();
   EXPECT_EQ(record_of(stored).size(), kRecordSize);
   stored.settings.fed_by_requests = true;

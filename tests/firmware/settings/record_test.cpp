@@ -55,7 +55,7 @@ TEST(Record, EachFlagIsReadBackAlone) {
   expect_round_trip(the_model(), stored);
 }
 
-TEST(Record, EverySequenceNumberIsReadBack) {
+TEST(Record, SequenceNumbersOfTheWholeRangeAreReadBack) {
   Stored stored = factory();
   for (unsigned sequence = 0; sequence < 0x10000; sequence += 0xFF) {
     stored.sequence = static_cast<std::uint16_t>(sequence);

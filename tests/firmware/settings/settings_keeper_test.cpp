@@ -12,7 +12,7 @@ class SettingsKeeperTest : public testing::Test {
  protected:
   SettingsKeeperTest() { drive_memory(); }
 
-  /// Runs until the memory has no more jobs.
+  /// Runs all memory jobs of the keeper.
   void drive_memory() {
     for (int jobs = 0; keeper_.busy(); ++jobs) {
       ASSERT_LT(jobs, 100) << "the store never finishes";
@@ -33,7 +33,7 @@ class SettingsKeeperTest : public testing::Test {
   Time now_{1000};
 };
 
-TEST(SettingsKeeperAtReset, LoadsUntilTheMemoryIsRead) {
+TEST(SettingsKeeperAtReset, IsLoadingAndBusyAtFirst) {
   FakeMemory memory;
   SettingsKeeper keeper(the_model());
   EXPECT_TRUE(keeper.loading());
@@ -49,7 +49,7 @@ TEST_F(SettingsKeeperTest, ABlankMemoryHasFactorySettingsAndIsNotUnreadable) {
 TEST_F(SettingsKeeperTest, WritesNothingAsLongAsNothingHasChanged) {
   keeper_.poll(keeper_.stored(), now_);
   EXPECT_FALSE(keeper_.busy());
-  keeper_.settings_changed();  // changed, and changed back
+  keeper_.settings_changed();  // the settings have changed and changed back
   keeper_.poll(keeper_.stored(), now_);
   EXPECT_FALSE(keeper_.busy());
   EXPECT_EQ(writes(), 0U);
@@ -108,6 +108,25 @@ TEST_F(SettingsKeeperTest, RetriesEverySecondUntilTheChangeIsStored) {
   EXPECT_FALSE(keeper_.retry().armed());
 }
 
+// wire.md D15.
+TEST_F(SettingsKeeperTest, ACommandThatCannotBeStoredDoesNotPostponeTheRetry) {
+  constexpr std::size_t kWritesOfAFailure =
+      4;  // three attempts, and the write that would invalidate the copy
+  keeper_.settings_changed();
+  memory_.unanswered_writes = 2 * kWritesOfAFailure;
+  keeper_.poll(numbered(5), now_);
+  drive_memory();
+  keeper_.save(numbered(6), now_);  // the command has waited for the end of the first save
+  pass(milliseconds(50));
+  drive_memory();
+  ASSERT_FALSE(keeper_.saved());
+  keeper_.poll(numbered(5), now_);
+  EXPECT_FALSE(keeper_.busy()) << "too early";
+  pass(milliseconds(950));
+  keeper_.poll(numbered(5), now_);
+  EXPECT_TRUE(keeper_.busy()) << "a second after the first failure";
+}
+
 // A record may take four pages of 10 ms each. Three failed attempts of the keeper and three of the command
 // would take more than the 200 ms within which the reply to the command must begin.
 TEST_F(SettingsKeeperTest, ASaveForWhichACommandWaitsEndsAtItsNextFailure) {
@@ -130,7 +149,7 @@ TEST_F(SettingsKeeperTest, TheSaveOfACommandIsNotShortened) {
   EXPECT_TRUE(keeper_.saved());
 }
 
-TEST_F(SettingsKeeperTest, ACopyThatMayHoldRefusedSettingsIsMadeInvalid) {
+TEST_F(SettingsKeeperTest, ACopyThatMayHoldRefusedSettingsIsInvalidated) {
   store(numbered(5));
   memory_.unanswered_writes = 4;
   memory_.unanswered_but_done = true;
@@ -145,7 +164,7 @@ TEST_F(SettingsKeeperTest, ACopyThatMayHoldRefusedSettingsIsMadeInvalid) {
   EXPECT_TRUE(Boot(memory_).stored() == numbered(5));
 }
 
-// wire.md section 8: the power failed in the first store after an update, before the old copies were
+// wire.md section 8: the power failed during the first store after an update, before the old copies were
 // invalidated.
 TEST_F(SettingsKeeperTest, AnUpdateIsFinishedWithoutACommandAndNotRetriedForever) {
   FakeMemory memory;

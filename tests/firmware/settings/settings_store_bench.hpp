@@ -20,7 +20,7 @@ inline constexpr std::size_t kPage = 32;
 inline constexpr std::size_t kAttempts = 3;
 /// Three reads at the first place, and one at each of the other three places.
 inline constexpr std::size_t kReadsOfASilentMemory = kAttempts + 3;
-inline constexpr std::size_t kStuckCell = 4;  // offset in a page; a record stores the address there
+inline constexpr std::size_t kStuckCell = 4;  // offset in a page; a record stores the module's address there
 
 inline const Model& model(std::string_view designation) { return *find_model(designation); }
 
@@ -37,7 +37,7 @@ inline Settings numbered(unsigned number) {
   return settings;
 }
 
-/// A few pages of memory that can fail in every way in which a real memory can.
+/// A memory of a few pages. Its public members determine how it fails, and record what it has done.
 class FakeMemory {
  public:
   enum class Garbage { None, Zeroes, Ones, MixedWithOld, MixedWithNew };
@@ -154,7 +154,7 @@ class Boot {
   explicit Boot(FakeMemory& memory, const Model& which = the_model()) : memory_(memory), store_(which) {
     drive(store_, memory_);
   }
-  /// Returns whether the store reported success.
+  /// Saves `settings`. Returns whether the store reported success; false if the power failed.
   bool save(const Settings& settings) {
     store_.begin_saving(settings);
     return drive(store_, memory_) && store_.saved();
@@ -193,7 +193,7 @@ inline void put_longer(FakeMemory& memory, std::size_t copy, const Settings& set
 
 inline void corrupt(FakeMemory& memory, std::size_t copy) { memory.cells[kCopies[copy] + 5U] ^= 0x01U; }
 
-/// Every way in which a save can fail three times.
+/// Each function makes at least the next three attempts of a save fail, each function in another way.
 inline const std::vector<void (*)(FakeMemory&)> kFailures{
     [](FakeMemory& memory) { memory.noisy_reads = kAttempts; },
     [](FakeMemory& memory) { memory.failing_reads = kAttempts; },

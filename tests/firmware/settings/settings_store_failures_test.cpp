@@ -1,4 +1,5 @@
-// Tests saves that the memory rejects: wire.md section 8, "A reply means that it is stored."
+// Tests saves during which the memory fails: wire.md section 8, "A valid reply means that the settings are
+// stored."
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -90,7 +91,7 @@ TEST(SettingsStore, ASaveAfterAFailedSaveSucceeds) {
   }
 }
 
-TEST(SettingsStore, AFailedSaveDoesNotTouchTheCopyThatHoldsTheOldSettings) {
+TEST(SettingsStore, AFailedSaveDoesNotWriteTheCopyThatHoldsTheOldSettings) {
   FakeMemory memory;
   put(memory, 0, numbered(5), 7);
   Boot run(memory);
@@ -101,8 +102,8 @@ TEST(SettingsStore, AFailedSaveDoesNotTouchTheCopyThatHoldsTheOldSettings) {
   }
 }
 
-/// Ends `count` jobs of the store, one after the other. If `answered` is false, the memory does not answer
-/// them.
+/// Ends `count` jobs of the store, one after the other. If `answered` is true, reads return garbage; if it is
+/// false, the memory does not answer.
 void end_jobs(SettingsStore& store, bool answered, int count) {
   for (int i = 0; i < count; ++i) {
     const MemoryJob job = store.job();

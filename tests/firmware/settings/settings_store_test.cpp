@@ -1,4 +1,5 @@
-// Tests how the settings are loaded and saved: wire.md section 8, "A reply means that it is stored."
+// Tests how the settings are loaded and saved: wire.md section 8, "A valid reply means that the settings are
+// stored."
 #include "firmware/settings/store.hpp"
 
 #include <gtest/gtest.h>
@@ -146,7 +147,7 @@ TEST(SettingsStore, AReadOfInvalidDataIsTriedUpToThreeTimes) {
   }
 }
 
-TEST(SettingsStore, ACopyThatCannotBeReadLeavesTheOtherOne) {
+TEST(SettingsStore, TheOtherCopyIsUsedIfACopyCannotBeRead) {
   FakeMemory memory;
   put(memory, 0, numbered(5), 8);
   put(memory, 1, numbered(6), 7);
@@ -238,7 +239,7 @@ TEST(SettingsStore, SavesAlternateAcrossResetsToo) {
   }
 }
 
-TEST(SettingsStore, ASaveLeavesTheCopyThatHoldsTheOldSettings) {
+TEST(SettingsStore, ASaveDoesNotWriteTheCopyThatHoldsTheOldSettings) {
   for (const std::size_t current : {0U, 1U}) {
     FakeMemory memory;
     put(memory, current, numbered(5), 8);

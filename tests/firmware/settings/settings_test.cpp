@@ -121,7 +121,7 @@ TEST_F(Possible, OnlyMModelsAllowModbus) {
   }
 }
 
-TEST_F(Possible, BaudCodesAre03To0A) {
+TEST_F(Possible, TheLowSixBitsOfABaudCodeAre03To0A) {
   for (unsigned code = 0; code < 256; ++code) {
     settings_.baud_code = static_cast<std::uint8_t>(code);
     EXPECT_EQ(possible(), (code & 0x3F) >= 0x03 && (code & 0x3F) <= 0x0A) << code;
@@ -191,7 +191,7 @@ TEST_F(Possible, ATimeoutOf0RequiresADisabledWatchdog) {
   EXPECT_TRUE(possible());
 }
 
-TEST_F(Possible, TheTimeoutStatusIsPossibleWithAndWithoutTheWatchdogArmedAgain) {
+TEST_F(Possible, TheTimeoutStatusIsPossibleWithAnEnabledAndADisabledWatchdog) {
   settings_.timeout_status = true;
   EXPECT_TRUE(possible());
   settings_.watchdog_enabled = true;
@@ -214,7 +214,8 @@ struct FieldChange {
   Settings expected;
 };
 
-/// Returns one change for each field. Each change sets another value than `from` has.
+/// Returns one change for each field, except for the fields of the extensions. `from` must be the factory
+/// settings of an EX9042D-M, so that each change sets a value that `from` does not have.
 std::vector<FieldChange> changes_of_each_field(const Settings& from) {
   std::vector<FieldChange> changes;
   const auto add = [&](const char* field, auto name, auto mutate) {
@@ -310,7 +311,7 @@ TEST(SettingsChange, TheLastValueOfAFieldCounts) {
   EXPECT_EQ(twice.applied_to(factory).address, 8);
 }
 
-TEST(SettingsChange, AShorterNameLeavesNothingOfALongerOne) {
+TEST(SettingsChange, AShorterNameReplacesALongerOneCompletely) {
   Settings settings = Settings::factory(model("EX9068D-M"));
   settings.name = Name("ABCDEFG");
   Settings expected = settings;
@@ -386,18 +387,20 @@ TEST(Settings, AreAllZerosAtFirst) {
 }
 
 // firmware/extensions.md.
-TEST_F(Possible, AFilterTakesUpTo2000MsAndOnlyOnAnInputOfTheModel) {
+TEST_F(Possible, AFilterTimeIsAtMost2000MsAndOnlyForAnInputOfTheModel) {
   use("EX9052D");
-  settings_.input_filters.set(7, 2000);
-  EXPECT_TRUE(possible());
-  settings_.input_filters.set(7, 2001);
-  EXPECT_FALSE(possible());
-  settings_.input_filters.set(7, 0);
+  for (const unsigned channel : {0U, 7U}) {
+    settings_.input_filters.set(channel, 2000);
+    EXPECT_TRUE(possible()) << channel;
+    settings_.input_filters.set(channel, 2001);
+    EXPECT_FALSE(possible()) << channel;
+    settings_.input_filters.set(channel, 0);
+  }
   settings_.input_filters.set(8, 1);
   EXPECT_FALSE(possible());
 }
 
-TEST_F(Possible, OnlyInputsOfTheModelAreInverted) {
+TEST_F(Possible, OnlyInputsOfTheModelCanBeInverted) {
   use("EX9052D");
   settings_.inverted_inputs = 0x00FF;
   EXPECT_TRUE(possible());

@@ -40,7 +40,8 @@ std::vector<Beginning> beginnings() {
           {"two longer records", two_longer, numbered(6)}};
 }
 
-/// Starts a module: it loads the settings, and saves them again if an update is unfinished.
+/// Loads the settings as a module does at its start, saves them again if an update is unfinished, and returns
+/// them.
 Settings come_up(FakeMemory& memory) {
   SettingsStore store(the_model());
   if (drive(store, memory) && store.update_unfinished()) {
@@ -58,8 +59,8 @@ std::size_t bytes_of(FakeMemory memory, const Settings& to) {
   return memory.bytes_written;
 }
 
-/// Saves `to` with a power cut after `bytes` bytes. Returns whether the store reported success before the
-/// cut.
+/// Starts a module and saves `to`, with a power cut after `bytes` written bytes. Returns whether the store
+/// reported success before the cut.
 bool cut(FakeMemory& memory, const Settings& to, std::size_t bytes, FakeMemory::Garbage garbage) {
   memory.power = bytes;
   memory.garbage = garbage;
@@ -116,7 +117,8 @@ TEST(UpdateCuts, TwoCutsInARowLeaveTheOldOrTheNewSettings) {
       ASSERT_TRUE(between == numbered(200) || (!saved && between == beginning.settings));
       const bool saved_again = cut(memory, numbered(300), second, garbage());
       const Settings found = come_up(memory);
-      // A page with a single wrong byte becomes valid as soon as the next store writes that byte.
+      // The first cut may leave a page with a single wrong byte. This page becomes valid when the second
+      // store writes that byte, so the settings of the first store may be found.
       ASSERT_TRUE(found == numbered(300) || (!saved_again && (found == between || found == numbered(200))))
           << beginning.what << ", cut after byte " << first << ", then " << second << " (seed " << kSeed
           << ")";

@@ -1,5 +1,5 @@
-// Tests a module after a firmware update. It finds copies of an older layout, or of a newer layout that has
-// more settings.
+// Tests the settings store after a change of the firmware. The memory contains copies of an older layout, or
+// records that have more settings than this firmware supports.
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -78,7 +78,7 @@ TEST(SettingsAfterAnUpdate, OldCopiesAreNeverUsedAgainEvenIfAllNewCopiesFail) {
   EXPECT_TRUE(next.stored() == factory());
 }
 
-TEST(SettingsAfterAnUpdate, AFirstStoreThatFailsLeavesTheOldCopies) {
+TEST(SettingsAfterAnUpdate, AFirstStoreThatFailsKeepsTheOldCopies) {
   for (std::size_t failure = 0; failure < kFailures.size(); ++failure) {
     FakeMemory memory = updated();
     Boot run(memory);
@@ -172,7 +172,7 @@ TEST(SettingsAfterAnUpdate, InvalidatingAnOldCopyIsRetried) {
   SettingsStore store(the_model());
   drive(store, memory);
   store.begin_saving(numbered(9));
-  // The new copy is written and verified. The memory does not answer the next three writes.
+  // Two jobs write and verify the new copy. Then the memory does not answer the next three writes.
   for (int jobs = 0; jobs < 2; ++jobs) {
     store.done(*memory.run(store.job()));
   }

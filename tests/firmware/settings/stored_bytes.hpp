@@ -79,7 +79,8 @@ inline StoredBytes read_stored_bytes(const std::filesystem::path& path) {
   return stored;
 }
 
-/// Reads all files. Checks that there are at least `kAtLeast`; increase it when you add files.
+/// Reads all files. Checks that there are at least `kAtLeast` files; increase `kAtLeast` when you add files.
+/// Throws std::runtime_error if a file names an unknown model.
 inline std::vector<StoredBytes> all_stored_bytes() {
   constexpr std::size_t kAtLeast = 62;
   std::vector<StoredBytes> all;

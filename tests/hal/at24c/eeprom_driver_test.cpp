@@ -1,5 +1,5 @@
-// Tests the EEPROM driver together with the I2C driver, bit by bit on two wires, with all faults that the
-// wires can have.
+// Tests the EEPROM driver together with the I2C driver, bit by bit on two wires, with faults of the EEPROM
+// and of the wires.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -304,7 +304,7 @@ TYPED_TEST(Eeprom, AFreeBusGetsAtMostOneClockBeforeTheFirstStart) {
 
 TYPED_TEST(Eeprom, ADataLineHeldLowForUpToNineClocksIsFreed) {
   for (unsigned held = 1; held <= 9; ++held) {
-    unsigned falls = 0;  // these must outlive the wires
+    unsigned falls = 0;  // `falls` and `released` must outlive the wires
     bool released = false;
     typename TestFixture::TheBench bench(TypeParam::kBehaviour);
     bench.mcu.reset();

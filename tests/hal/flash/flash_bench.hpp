@@ -13,7 +13,7 @@
 
 namespace ex9000::hal::flash {
 
-/// Passes the calls of the store to a chip that outlives it.
+/// Passes the calls of the store to a chip, which must outlive the store.
 struct FlashPort {
   FlashChip* chip = nullptr;
 
@@ -45,7 +45,7 @@ inline Page numbered(unsigned number) {
 class Session {
  public:
   explicit Session(FlashChip& chip) : chip_(chip) { store_.flash().chip = &chip; }
-  /// Continues with a copy of `store` on a copy of its chip.
+  /// Continues with a copy of `store`. `chip` is the chip of `store` or a copy of that chip.
   Session(FlashChip& chip, const Store& store) : chip_(chip), store_(store) { store_.flash().chip = &chip; }
 
   bool read(std::size_t address, std::vector<std::uint8_t>& into) {

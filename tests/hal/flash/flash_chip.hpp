@@ -164,8 +164,8 @@ class FlashChip {
   std::vector<std::uint8_t> cells = std::vector<std::uint8_t>(std::size_t{kSectorsOfStore} * kSector, 0xFF);
   Times times;
   bool hangs = false;  ///< the flash is always busy
-  /// The index of the first broken byte. The lowest bit of a broken byte stays 0. If `broken_keeps` is true,
-  /// programming changes no bit of it.
+  /// The index of the first broken byte. If `broken_keeps` is false, the lowest bit of each broken byte is 0
+  /// after every operation.
   std::size_t broken = SIZE_MAX;
   std::size_t broken_size = 1;
   bool broken_keeps = false;  ///< programming does not change the broken bytes

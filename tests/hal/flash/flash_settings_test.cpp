@@ -138,8 +138,8 @@ std::vector<Tear> tears(FlashChip::Operation operation) {
 }
 
 /// Starts a module, saves `to`, and runs the module for `after` more microseconds. Cuts the power at the end
-/// of `operation`, or at the end of the run if it has not ended by then. Returns whether the module reported
-/// success.
+/// of `operation`, or at the end of the run if `operation` has not ended by then. Returns whether the module
+/// reported that `to` is stored.
 bool cut(FlashChip& chip, const Settings& to, std::uint64_t after, std::size_t operation, const Tear& tear) {
   bool saved = false;
   try {

@@ -1,5 +1,5 @@
 // Cuts the power at every program operation and every erase of the page store. After each cut, the page that
-// was being written has its old or its new content, and all other pages are unchanged.
+// was being written must have its old or its new content, and all other pages must be unchanged.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -73,7 +73,7 @@ class PageStoreCuts : public testing::Test {
     state.chip.cut(operation, tear);
     bool reported = false;
     if (carry_out(state, write, reported)) {
-      state.chip.power_off(tear);  // in the middle of the operation
+      state.chip.power_off(tear);  // the selected operation has not ended
     }
     ++cuts_;
     Session next(state.chip);

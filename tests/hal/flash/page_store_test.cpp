@@ -125,7 +125,7 @@ TEST(PageStore, AReadAcrossPagesReturnsTheBytesOfEach) {
   EXPECT_EQ(bytes, expected);
 }
 
-TEST(PageStore, RejectsBytesThatItDoesNotHaveAndWritesAcrossPages) {
+TEST(PageStore, RejectsAddressesBeyondItsEndAndWritesAcrossPages) {
   FlashChip chip;
   Session run(chip);
   run.settle();
@@ -274,7 +274,7 @@ TEST(PageStore, AWriteIntoAWornOutSectorFailsOnceAndThenSucceedsElsewhere) {
     ASSERT_EQ(run.page(i % 2), numbered(i));
     run.run(2'000);
   }
-  EXPECT_LE(failures, 4U) << "once in each round through the sectors";
+  EXPECT_LE(failures, 4U) << "at most one failure in each round through the sectors";
 }
 
 TEST(PageStore, ASectorThatCannotBeMarkedIsNotErasedRepeatedly) {

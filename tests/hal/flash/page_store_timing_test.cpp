@@ -9,8 +9,8 @@
 namespace ex9000::hal::flash {
 namespace {
 
-constexpr std::uint64_t kLongestReadEver = 5'000;    // us; PageStore states this
-constexpr std::uint64_t kLongestWriteEver = 14'000;  // us; PageStore states this
+constexpr std::uint64_t kLongestReadEver = 5'000;    // us; hal/flash/page_store.hpp
+constexpr std::uint64_t kLongestWriteEver = 14'000;  // us; hal/flash/page_store.hpp
 
 /// Returns a chip with the given times. All its free sectors are erased.
 FlashChip settled(const FlashChip::Times& times) {
@@ -21,7 +21,8 @@ FlashChip settled(const FlashChip::Times& times) {
 }
 
 /// Writes pages at most `most` times, one every `period` microseconds. If a write takes longer than `period`,
-/// the next one follows immediately. Returns the number of writes before the first one that fails.
+/// the next one follows immediately. Returns the number of writes before the first one that fails, or `most`
+/// if none fails.
 unsigned writes_without_failure(Session& run, FlashChip& chip, std::uint64_t period, unsigned most) {
   for (unsigned writes = 0; writes < most; ++writes) {
     const std::uint64_t next = chip.now + period;
@@ -92,7 +93,7 @@ TEST(PageStoreTiming, WritesAtTheDocumentedRateNeverWaitForAnErase) {
   EXPECT_EQ(writes_without_failure(run, chip, 12'000, kWrites), kWrites);
 }
 
-TEST(PageStoreTiming, WritesAtAnyRateNeverWaitForAnEraseWithTypicalTimes) {
+TEST(PageStoreTiming, WritesEvery4MsNeverWaitForAnEraseWithTypicalTimes) {
   constexpr unsigned kWrites = 20'000;
   FlashChip chip = settled({});
   Session run(chip);
@@ -106,7 +107,7 @@ TEST(PageStoreTiming, TheSectorsErasedInAdvanceHaveRoomForABurst) {
   Session run(chip);
   const unsigned writes = writes_without_failure(run, chip, 0, 10 * kBurst);
   EXPECT_GE(writes, kBurst);
-  EXPECT_LE(run.latency, Store::kLongestWrite.microseconds() + 2'000) << "a write that fails";
+  EXPECT_LE(run.latency, Store::kLongestWrite.microseconds() + 2'000) << "a failing write must end in time";
 }
 
 TEST(PageStoreTiming, AWriteThatWaitsForAnEraseSucceedsWhenTheEraseEndsInTime) {

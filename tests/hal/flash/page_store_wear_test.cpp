@@ -23,7 +23,8 @@ class PageStoreWear : public testing::Test {
     ASSERT_TRUE(run_.write(page, numbered(content_++)));
     run_.settle();
   }
-  /// Puts the entry of `page` into a sector of its own, which it keeps until the page is written again.
+  /// Writes `page` so that its entry is the only valid entry of a sector. The entry stays there until the
+  /// page is written again.
   void pin(std::size_t page) {
     write(page);
     for (unsigned i = 0; i < kSlotsOfASector; ++i) {
@@ -52,7 +53,7 @@ class PageStoreWear : public testing::Test {
     const double stores = kStores * kCycles / most;
     std::printf("%s: %u stores, %u erases of %u sectors, at most %u of one; %.1f million stores\n", what,
                 kStores, all, sectors, most, stores / 1e6);
-    EXPECT_LE(most, all / sectors + 2) << "one sector wears out before the others";
+    EXPECT_LE(most, all / sectors + 2) << "one sector is erased more often than the others";
     EXPECT_GE(stores, kRequired);
     return stores;
   }

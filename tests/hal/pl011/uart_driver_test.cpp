@@ -102,15 +102,15 @@ class Sending : public testing::TestWithParam<std::tuple<bool, std::uint32_t, Li
   [[nodiscard]] int bits() const { return format() == LineFormat::k8N1 ? 10 : 11; }
   [[nodiscard]] Instant character() const { return Instant(bits() * 1'000'000'000'000 / baud()); }
 
-  /// Checks the conditions that must always hold: all bytes are on the line with right parity and stop bits,
-  /// and the driver is on from before the first byte until after the last stop bit.
+  /// Checks the conditions that must always hold: all bytes are on the line with correct parity and stop
+  /// bits, and the driver is on from before the first byte until after the last stop bit.
   void expect_whole(const UartBench& bench, const std::vector<std::uint8_t>& bytes) {
     ASSERT_EQ(bench.line.heard.size(), bytes.size());
     for (std::size_t i = 0; i < bytes.size(); ++i) {
       EXPECT_EQ(bench.line.heard[i].byte, bytes[i]);
       EXPECT_TRUE(bench.line.heard[i].good);
     }
-    ASSERT_EQ(bench.line.drives.size(), 1U) << "the RS-485 driver is switched on and off once";
+    ASSERT_EQ(bench.line.drives.size(), 1U) << "the RS-485 driver must be switched on and off exactly once";
     EXPECT_LT(bench.line.drives[0].from, bench.line.heard.front().started);
     EXPECT_EQ(bench.line.bits_lost, 0U);
     // The clock of the microcontroller determines the length of the last stop bit.

@@ -1,4 +1,4 @@
-// Must not compile: the store does not begin with a sector.
+// Must not compile: the store does not begin at the start of a sector.
 #include "hal/flash/page_store.hpp"
 
 namespace ex9000::hal {

@@ -109,7 +109,8 @@ class Chip {
   std::vector<std::uint8_t> bytes_;
 };
 
-/// A model of the chip-select pin and of the SSI, in the mode that sends and receives each frame of 8 bits.
+/// A model of the chip-select pin and of the SSI, in the mode that receives a byte for each byte that it
+/// sends.
 class Ssi final : public rp2040_model::Bus {
  public:
   std::uint32_t read(std::uint32_t address) override {

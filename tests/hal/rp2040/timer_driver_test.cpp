@@ -62,7 +62,7 @@ class TimerModel final : public rp2040_model::Bus {
     }
   }
   [[nodiscard]] bool interrupt() const { return (raw_ && enabled_) || forced_; }
-  /// Lets time pass in steps that skip no microsecond.
+  /// Lets `duration` nanoseconds pass, in steps that skip no microsecond.
   void pass(std::uint64_t duration) {
     constexpr std::uint64_t kStep = 100;
     for (const std::uint64_t end = nanoseconds + duration; nanoseconds < end;) {
@@ -75,7 +75,7 @@ class TimerModel final : public rp2040_model::Bus {
       }
     }
   }
-  /// Delays access number `access` by `duration`, like an interrupt.
+  /// Delays a later access by `duration` nanoseconds, as an interrupt would. `access` 0 is the next access.
   void delay(int access, std::uint64_t duration) {
     delayed_ = accesses_ + access;
     delay_ = duration;

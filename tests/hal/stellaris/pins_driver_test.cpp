@@ -1,4 +1,5 @@
-// Tests outputs, inputs and switches on pins, in both polarities, including those that no board uses.
+// Tests outputs, inputs, INIT* and the LED on pins. Tests outputs and inputs in both polarities, even if no
+// board uses one of them.
 #include <gtest/gtest.h>
 
 #include <array>

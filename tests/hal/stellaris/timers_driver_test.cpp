@@ -42,7 +42,7 @@ class Clock : public testing::Test {
     const Instant before = bench.now();
     const std::uint32_t shown = timer.now().microseconds();
     const Instant after = bench.now();
-    // The result lies between the call and the return, in whole microseconds.
+    // The clock must return a time between the call and the return, in whole microseconds.
     const auto least =
         static_cast<std::uint32_t>(std::chrono::duration_cast<microseconds>(before - began_).count());
     const auto most =
@@ -114,7 +114,7 @@ TEST_F(Clock, WrapsWithoutAJump) {
     look();
     bench.mcu.run_for(microseconds(97));
   }
-  EXPECT_LT(last_, 100'000U) << "it has wrapped";
+  EXPECT_LT(last_, 100'000U) << "the clock must have wrapped";
 }
 
 // --- one-shot timers ---
@@ -180,7 +180,7 @@ TYPED_TEST(OneShot, ARestartCancelsAPendingInterrupt) {
   for (int clocks = -12; clocks <= 12; ++clocks) {
     OneShotBench<TypeParam> bench;
     TypeParam::restart(Duration(100));
-    bench.mcu.core.hold(true);  // as in the interrupt that restarts it
+    bench.mcu.core.hold(true);  // as in the interrupt that restarts the timer
     bench.timeline.advance(bench.now() + microseconds(100) + clocks * nanoseconds(20));
     const Instant begun = bench.now();
     TypeParam::restart(Duration(300));
@@ -249,13 +249,13 @@ TEST(ReasonOfAReset, IsKnownForEachCauseOnBothChips) {
   }
 }
 
-TEST(ReasonOfAReset, IsTheSupplyIfThePinIsLowForLongerOrTheSupplyDips) {
+TEST(ReasonOfAReset, IsPowerOnIfTheSupplyIsOneOfSeveralCauses) {
   EXPECT_EQ(taken_after(kTm4c123, {ResetCause::PowerOn, ResetCause::Pin}), ResetReason::PowerOn);
   EXPECT_EQ(taken_after(kLm3s6965, {ResetCause::PowerOn, ResetCause::BrownOut}), ResetReason::PowerOn);
   EXPECT_EQ(taken_after(kLm3s6965, {ResetCause::Watchdog, ResetCause::BrownOut}), ResetReason::PowerOn);
 }
 
-TEST(ReasonOfAReset, IsThePinIfAnEarlierResetHasLeftItsBit) {
+TEST(ReasonOfAReset, IsTheResetPinEvenIfAWatchdogResetHasLeftItsBit) {
   for (const Chip* chip : {&kLm3s6965, &kTm4c123}) {
     EXPECT_EQ(taken_after(*chip, {ResetCause::Watchdog, ResetCause::Pin}), ResetReason::ResetPin);
   }

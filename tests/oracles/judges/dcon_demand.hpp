@@ -99,7 +99,7 @@ constexpr Demand demand_of_tilde(Bytes text, unsigned outputs) {
 }  // namespace detail
 
 /// Returns the effects of `command` on a module with `outputs` outputs. `command` has delimiter and address,
-/// but no checksum and CR.
+/// but no checksum and no CR.
 constexpr Demand dcon_demand(Bytes command, unsigned outputs) {
   const Bytes text = command.from(3);
   Demand demand;
@@ -132,8 +132,8 @@ constexpr bool may_set_delay_by_dcon(Bytes command) {
   return command.size > 4 && command[0] == '~' && (command[3] == 'R' || command[3] == 'X');
 }
 
-/// Returns the address in characters 3 and 4 of a `%` command. They are hex digits in every command that gets
-/// a reply.
+/// Returns NN, the new address in `%AANNTTCCFF`. NN is two hex digits in every `%` command that the module
+/// executes.
 constexpr std::uint8_t new_address(Bytes command) {
   const auto value = [](unsigned digit) { return digit > '9' ? digit - 'A' + 10 : digit - '0'; };
   return static_cast<std::uint8_t>(value(command[3]) * 16 + value(command[4]));

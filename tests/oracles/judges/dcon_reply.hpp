@@ -12,7 +12,7 @@
 
 namespace ex9000::judges {
 
-/// The state that replies depend on besides the request.
+/// The state of the module on which a reply depends in addition to the request.
 struct DconRules {
   std::uint8_t address = 0;
   bool init_mode = false;  ///< `$002` returns the stored address

@@ -17,8 +17,8 @@ struct Finding {
 
   Kind kind = Kind::Nothing;
   Bytes frame{};           ///< without its check; valid until the judge receives the next byte
-  Microseconds first = 0;  ///< report of its first byte
-  Microseconds last = 0;   ///< report of its last byte
+  Microseconds first = 0;  ///< time of the report of its first byte
+  Microseconds last = 0;   ///< time of the report of its last byte
   bool doubtful = false;   ///< the module may have seen other frames in these bytes
 };
 

@@ -17,7 +17,8 @@ struct Request {
   std::array<std::uint8_t, 256> bytes;
   std::size_t size;
   Microseconds last;
-  /// The time at which the bytes became a frame: the silence after them ended, or the module replied.
+  /// The time at which the bytes became a frame. In Modbus, the silence after the bytes ended, or the module
+  /// replied. In ASCII, the turn-around time ended.
   Microseconds over;
   Demand demand;
   bool broadcast;

@@ -12,7 +12,8 @@ namespace ex9000::judges {
 namespace detail {
 
 /// Returns the effects of a write to `count` coils from `first` on. Bit n of `levels` is the level of the nth
-/// coil, counted from 0. Returns no effects unless all coils are outputs.
+/// coil, counted from 0. Returns no effects unless all coils are outputs, bits of the safe value or bits of
+/// the power-on value.
 constexpr Demand demand_of_coils(unsigned first, unsigned count, std::uint32_t levels, unsigned outputs) {
   const unsigned row = first & 0xFFE0U;
   const unsigned channel = first % 0x20;

@@ -25,13 +25,14 @@ class TimedOutputs {
     }
   }
 
-  /// Call this when the timers of these channels have started, and after it `may_be_started_by` for each
-  /// request that the module may have executed. A timer that no request starts may end at any time.
+  /// Call this when the timers of these channels have started. Then call `may_be_started_by` for each request
+  /// that the module may have executed. A timer that no request starts may end at any time.
   void started(std::uint16_t channels) {
     for (unsigned channel = 0; channel < ends_.size(); ++channel) {
       ends_[channel] = (channels >> channel & 1U) != 0 ? kAnyTime : ends_[channel];
     }
   }
+  /// Call this after `started`, for a request that may have started the timers. The request ended at `last`.
   /// `channels`: the same as for `started`.
   void may_be_started_by(const Demand& demand, Microseconds last, std::uint16_t channels) {
     for (unsigned channel = 0; channel < ends_.size(); ++channel) {

@@ -5,8 +5,9 @@
 
 namespace ex9000::reference {
 
-/// The command does not exist on this model, its arguments have a wrong format or range, or it requires
-/// INIT*. Nothing changes, and the reply is `?AA` or, with `bare`, `?`.
+/// The module refuses the command, for example because the command does not exist on this model, because its
+/// arguments have a wrong format or range, or because it requires INIT*. Nothing changes, and the reply is
+/// `?AA` or, with `bare`, `?`.
 struct Refused {
   std::string rule;
   bool bare = false;

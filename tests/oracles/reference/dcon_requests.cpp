@@ -30,7 +30,7 @@ std::string noise(Random& random, unsigned longest) {
   return text;
 }
 
-/// Returns CC with a rate in or just out of range.
+/// Returns a CC whose rate is in range or just out of range.
 std::string baud_code(const Module& module, Random& random) {
   return hex(baud_code_with(random.between(0x02, 0x0B), module, random), 2);
 }
@@ -101,8 +101,8 @@ std::string extension(const Module& module, Random& random) {
   return hex(address, 4) + (random.once_in(3) ? hex(extension_content(module, address, random), 4) : "");
 }
 
-/// Returns the number of one of the cases in `command`. For a module without extensions,
-/// never returns a case of an extension.
+/// Returns the number of one of the cases in `command`. For a module without extensions, never returns a case
+/// of an extension.
 unsigned kind_of_command(const Module& module, Random& random) {
   constexpr unsigned kAll = 39;
   constexpr unsigned kFirstExtension = 29;
@@ -257,7 +257,7 @@ Bytes dcon_request(const Module& module, Random& random) {
     case 2:
       sent = random.one_of<std::string>({"\n", std::string(1, '\0'), "\r", " ", "\n\r"}) + sent;
       break;
-    case 3:  // another module replies to another master
+    case 3:  // begins like another module's reply
       sent = random.one_of<std::string>({"!", ">", "?"}) + noise(random, 4) + sent +
              (random.once_in(2) ? sent : "");
       break;

@@ -32,7 +32,8 @@ struct ExtensionRow {
   bool wide;       ///< values of 32 bits, each in two registers
 };
 
-/// Looks up a register in the table for this model. Rows of length 0 do not exist on the model.
+/// Returns the row of the table that contains this register. Returns a row with Extension::None if the model
+/// has no such register.
 ExtensionRow extension_row(const ModelRow& model, unsigned address);
 
 }  // namespace ex9000::reference

@@ -15,7 +15,8 @@ inline std::string hex(unsigned value, std::size_t digits) {
   return text;
 }
 
-/// Returns no value if `text` is empty or has a character that is not an upper-case hex digit.
+/// Returns the value of the hex digits in `text`; no value if `text` is empty or has a character that is not
+/// an upper-case hex digit.
 inline std::optional<unsigned> number(const std::string& text) {
   if (text.empty() || text.find_first_not_of("0123456789ABCDEF") != std::string::npos) {
     return std::nullopt;

@@ -43,14 +43,15 @@ void Module::pulse_input(unsigned channel, std::uint32_t count, Time now) {
   }
 }
 
-/// Accepts the raw level, which is an edge.
+/// Accepts the new raw level of an input and processes the edge.
 void Module::take_level(unsigned channel) {
   levels_ ^= 1U << channel;
   edge(channel, (levels_ >> channel & 1U) != 0, 1);
 }
 
 /// A new filter time applies from the last edge at the terminal. If that time is already over, the module
-/// accepts the level as soon as the setting is stored. This may have to wait for the store of a timeout.
+/// accepts the level as soon as the setting is stored. The setting may have to wait for the store of a
+/// timeout.
 void Module::set_filter(unsigned channel, unsigned milliseconds) {
   if (settling_[channel] && milliseconds != stored_.filters[channel]) {
     const Time settled = last_edges_[channel] + std::chrono::milliseconds(milliseconds);

@@ -22,12 +22,12 @@ bool known_function(const ModelRow& model, unsigned function) {
 }  // namespace
 
 /// Processes a complete frame of any content. Returns the reply with its CRC, or nothing. Function 08 counts
-/// as in Modbus Application Protocol V1.1b3, 6.8. If that specification is unclear, it follows Modbus over
-/// Serial Line V1.02: a frame too short for a CRC is a CRC error, and a broadcast is a message without
-/// response. `bad`: which bytes have a line error.
+/// as in Modbus Application Protocol V1.1b3, 6.8. If that specification is unclear, the counters follow
+/// Modbus over Serial Line V1.02: a frame too short for a CRC is a CRC error, and a broadcast is a message
+/// without response. `bad`: which bytes have a line error.
 Bytes Module::modbus_frame(Bytes frame, std::vector<bool> bad) {
   const auto spoiled = [&] { return std::find(bad.begin(), bad.end(), true) != bad.end(); };
-  // A turn-around 00 before a frame, with or without a line error, does not invalidate it.
+  // A turn-around 00 before a frame, with or without a line error, does not invalidate the frame.
   if (frame.size() > 4 && (spoiled() || !crc_is_right(frame)) && frame[0] == 0x00) {
     if (frame.size() > 256) {
       left_open_ = "whether a frame of 256 bytes may have a turn-around 00 before it";

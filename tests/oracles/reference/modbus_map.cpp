@@ -35,7 +35,8 @@ struct CoilRow {
   bool by_01, by_05, by_0f;
 };
 
-/// Looks up a coil in the table for this model. Rows of length 0 do not exist on the model.
+/// Returns the row of the table that contains this coil. Returns a row with Row::None if the model has no
+/// such coil.
 CoilRow coil_row(const ModelRow& model, unsigned address) {
   const unsigned outputs = model.outputs;
   const unsigned inputs = model.inputs;
@@ -65,8 +66,8 @@ bool coil_listed(const CoilRow& row, unsigned function) {
   return function == 0x01 ? row.by_01 : function == 0x05 ? row.by_05 : row.by_0f;
 }
 
-/// Returns the row of a range of coils, which must lie within one row. Throws exception 02 for holes, for
-/// coils that the model does not have, and for coils that are not listed for the function.
+/// Returns the row of a range of coils, which must lie within one row. Throws Exception 02 if the range
+/// extends beyond the row, or if the table does not list the coils for this model and this function.
 CoilRow listed_coils(const ModelRow& model, unsigned first, unsigned quantity, unsigned function) {
   const CoilRow row = coil_row(model, first);
   if (!coil_listed(row, function) || first + quantity > row.first + row.count) {

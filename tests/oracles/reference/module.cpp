@@ -11,7 +11,8 @@ namespace {
 constexpr std::chrono::milliseconds kTimeoutUnit{100};  // wire.md 6: VV x 0.1 s
 /// One tick and the time until the module executes a received request.
 constexpr std::chrono::milliseconds kTick{3};
-/// The silence that ends a frame, wire.md 7, at 1200 baud. A host OK stores nothing.
+/// The longest time from the last byte of a frame to its execution, if the frame stores nothing: the silence
+/// that ends a frame at 1200 baud (wire.md 7).
 constexpr std::chrono::milliseconds kLongestSilence{33};
 
 auto members(const Stored& s) {
@@ -108,8 +109,8 @@ void Module::reset(Time now) {
 }
 
 void Module::come_up(Time now) {
-  // wire.md 2: INIT* is sampled only at reset. If asserted, the module uses ASCII, address 00, 9600 baud,
-  // 8N1 and no checksum.
+  // wire.md 2: INIT* is sampled only at reset. If INIT* is asserted, the module uses ASCII, address 00, 9600
+  // baud, 8N1 and no checksum.
   init_mode_ = init_asserted_;
   runs_modbus_ = !init_mode_ && stored_.modbus;
   address_ = init_mode_ ? 0x00 : stored_.address;
@@ -171,8 +172,8 @@ void Module::restart_host_watchdog() {
 
 void Module::restart_host_watchdog_by_host_ok() {
   if (stored_.enabled) {
-    // The module may still be storing a command that restarts the host watchdog. The restart by this command
-    // then happens later.
+    // The module may still be storing a command that restarts the host watchdog. The restart by that command
+    // then happens after the restart by the host OK.
     const Time latest = now_ + kLongestSilence + stored_.timeout * kTimeoutUnit;
     expiry_ =
         Moment{now_ + stored_.timeout * kTimeoutUnit, expiry_ ? std::max(expiry_->latest, latest) : latest};
@@ -247,7 +248,7 @@ unsigned Module::timed_outputs() const {
 }
 
 /// Returns the latest time at which the module executes a request that it has received at `now_`, if the
-/// request itself stores nothing. It may wait while something else is being stored.
+/// request itself stores nothing. The request may wait while something else is being stored.
 Time Module::executed_by() const { return std::max({now_ + kLongestSilence, stored_by_, timeout_stored_}); }
 
 void Module::replied(Time now) {
@@ -328,7 +329,7 @@ Answer Module::on_bytes(const Bytes& bytes, LineFormat sent_in, Time now) {
   if (runs_modbus_) {
     answer.reply = modbus_frame(bytes, bad);
   } else {
-    // wire.md 3: the first delimiter, or the first lead of a reply, decides. A CR ends any frame.
+    // wire.md 3: the first delimiter of a command or of a reply decides. A CR ends any frame.
     for (std::size_t i = 0; i < bytes.size(); ++i) {
       const char character = static_cast<char>(bytes[i]);
       // If one of several frames restarts the host watchdog, the restart happens at the end of that frame.

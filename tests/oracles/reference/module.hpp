@@ -1,7 +1,8 @@
 // A second implementation of a module, written from the specification alone and as simply as possible. It
 // processes all bytes of a request in one call, has no interrupts, and stores settings immediately. It shares
-// no code with the firmware, except the names of the line formats. If both agree on a random session, two
-// independent readings of the specification agree. Section, E and D numbers refer to wire.md.
+// no code with the firmware, except the names of the line formats. If this module and the firmware agree on a
+// random session, two independent readings of the specification agree. Section, E and D numbers refer to
+// wire.md.
 #pragma once
 
 #include <array>
@@ -79,8 +80,8 @@ class Module {
     stored_ = stored;
     blank_memory_ = false;
   }
-  /// Switches the supply. A module that is switched on has 100 ms to start; its reset is at an unknown time
-  /// within them.
+  /// Switches the supply. A module that is switched on has 100 ms to start. Its reset is at an unknown time
+  /// within these 100 ms.
   void power(bool on, Time now);
   /// Resets the module, which has 100 ms to start.
   void reset(Time now);
@@ -110,8 +111,8 @@ class Module {
   [[nodiscard]] bool led_flashes() const { return stored_.timed_out; }
   [[nodiscard]] unsigned rate() const;
   [[nodiscard]] LineFormat format() const { return format_of(baud_code_); }
-  /// Returns the response delay that applies to the next request: its reply starts no earlier than this after
-  /// the last stop bit. It is 0 in INIT mode.
+  /// Returns the response delay that applies to the next request: its reply starts no earlier than this time
+  /// after the last stop bit. The delay is 0 in INIT mode.
   [[nodiscard]] Time reply_delay() const { return std::chrono::milliseconds(init_mode_ ? 0 : stored_.delay); }
   [[nodiscard]] bool runs_modbus() const { return runs_modbus_; }
   [[nodiscard]] bool checksum() const { return checksum_; }
@@ -228,7 +229,7 @@ class Module {
   Stored stored_;
   bool blank_memory_ = true;  ///< nothing has been stored yet
 
-  // State that is not stored. A reset sets most of it anew.
+  // State that is not stored. A reset sets most of this state anew.
   bool powered_ = false;
   bool init_asserted_ = false;
   bool init_mode_ = false;

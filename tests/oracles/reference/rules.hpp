@@ -1,4 +1,4 @@
-// Counts which rows, refusals and exceptions random sessions have reached.
+// Counts how often random sessions reach each row, refusal and exception of the specification.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@ class Rules {
   /// Without extensions, the list has only the rules of what the manuals describe.
   explicit Rules(Extensions extensions = Extensions::Present);
 
-  /// Throws std::logic_error if `rule` is not in the list.
+  /// Counts `rule`. Throws std::logic_error if `rule` is not in the list.
   void reached(const std::string& rule);
   /// Returns the rules that were never reached, in the order of the list.
   [[nodiscard]] std::vector<std::string> missing() const;

@@ -15,9 +15,11 @@ namespace {
 using std::chrono::milliseconds;
 
 /// The session decides, sends and compares nothing within this time before or after a moment at which the
-/// module changes by itself. It covers one tick, and the time until the module executes a received request.
+/// module changes by itself. This time covers one tick, and the time until the module executes a received
+/// request.
 constexpr milliseconds kMargin{3};
-/// wire.md 6: after the expiry, the status and the enable are stored.
+/// Longer than the store of a command (wire.md 3), or of the timeout status and the enable after an expiry
+/// (wire.md 6).
 constexpr milliseconds kStored{250};
 /// wire.md 3: the reply to a request that stores nothing starts within 20 ms.
 constexpr milliseconds kAnswers{20};

@@ -31,7 +31,8 @@ struct SendInAnotherFormat {
 struct Wait {
   std::chrono::milliseconds time;
 };
-/// Waits until `before` before the host watchdog expires, if it is running.
+/// Waits until the host watchdog expires in the time `before`. Does not wait if the host watchdog is not
+/// running.
 struct WaitForExpiry {
   std::chrono::milliseconds before;
 };

@@ -1,4 +1,4 @@
-// The command line of ex9000-sim: modules and options of a run.
+// Tests the command line of ex9000-sim: the modules and the options of a run.
 #include "sim/app/arguments.hpp"
 
 #include <gtest/gtest.h>
@@ -184,7 +184,7 @@ TEST(Arguments, ASerialLineCannotBeCombinedWithAnotherPort) {
   expect_error({"EX9042D", "--serial", "/dev/ttyUSB0", "--modbus-tcp", "502"}, "--serial: ", mend);
 }
 
-TEST(Arguments, EchoRequiresASerialLineWhichCannotBeInstant) {
+TEST(Arguments, EchoRequiresASerialLineAndASerialLineCannotBeInstant) {
   EXPECT_FALSE(accepted({"EX9042D", "--serial", "/dev/ttyUSB0"}).echo);
   EXPECT_TRUE(accepted({"EX9042D", "--serial", "/dev/ttyUSB0", "--echo"}).echo);
   expect_error({"EX9042D", "--echo"}, "--echo: ", "requires --serial; add it");
@@ -214,7 +214,7 @@ TEST(Arguments, TheLineAcceptsEveryBaudRateOfTheModules) {
   }
 }
 
-TEST(Arguments, NoModuleIsRefusedWithAnExample) {
+TEST(Arguments, AMissingModuleIsRefusedWithAnExample) {
   expect_error({}, "no module", "EX9042D-M");
   expect_error({"--log"}, "no module", "--help");
 }

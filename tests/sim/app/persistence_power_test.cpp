@@ -1,5 +1,5 @@
-// Modules whose EEPROM is a file: a reply means that the settings are stored, and the power may fail or the
-// program may be killed at any time (wire.md section 8).
+// Tests modules whose EEPROM is a file. The power may fail or the program may be killed at any time. If the
+// module has replied to a command that stores, its settings are stored (wire.md section 8).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -81,8 +81,8 @@ class PowerFailureChecker {
 
   [[nodiscard]] std::string module() const { return "EX9042D" + image_in(directory_); }
 
-  /// Call this after a start. The last command must be executed completely or not at all, and completely if
-  /// it got a reply.
+  /// Expects that the last command was executed completely or not at all, and completely if the module has
+  /// replied to it. Call this after each start of the module.
   void check(Simulator& simulator) {
     Answers answers;
     for (const auto& [question, answer] : before_) {
@@ -91,8 +91,8 @@ class PowerFailureChecker {
     EXPECT_TRUE(answers == after_ || (!acknowledged_ && answers == before_))
         << testing::PrintToString(answers) << "\nbefore: " << testing::PrintToString(before_)
         << "\nafter: " << testing::PrintToString(after_);
-    // If the first write to a blank memory was interrupted, the memory is neither blank nor readable (wire.md
-    // D8).
+    // Before anything is stored, the LED may flash: if the first write to a blank memory was interrupted, the
+    // memory is neither blank nor readable (wire.md D8).
     EXPECT_TRUE(!anything_stored_ || simulator.tell("1 led") == "on");
     ++(acknowledged_ ? acknowledged_count_ : answers == after_ ? done_count_ : not_done_count_);
     before_ = after_ = answers;

@@ -1,4 +1,4 @@
-// Modules whose EEPROM is a file: tests which files the program rejects.
+// Tests which files the program rejects as the EEPROM of a module.
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
@@ -31,8 +31,8 @@ void expect_refused(const Arguments& modules, const std::string& file, const Dir
   EXPECT_EQ(directory.contents(), before) << finished.error;
 }
 
-/// Tests the file as the EEPROM of a single module, and as the EEPROM of the second of two modules. In the
-/// second case, the program must not create the file of the first module.
+/// Expects that the program rejects the file as the EEPROM of a single module, and as the EEPROM of the
+/// second of two modules. In the second case, the program must not create the file of the first module.
 void expect_refused(const std::string& file, const Directory& directory) {
   expect_refused({"EX9042D,name=NEW,eeprom=" + file}, file, directory);
   expect_refused({"EX9052D@02,eeprom=beside", "EX9042D,eeprom=" + file}, file, directory);

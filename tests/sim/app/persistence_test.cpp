@@ -1,5 +1,5 @@
-// Modules whose EEPROM is a file: tests how the program creates and uses the file, and what it does with a
-// file that contains no settings of the module.
+// Tests how the program creates and uses the file of a module's EEPROM, and what it does with a file that
+// contains no settings of the module.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -42,7 +42,7 @@ TEST(Persistence, AMissingFileIsCreatedFromThePresetsAndKeptAfterTheProgramEnds)
 }
 
 // Each image contains what this firmware or an earlier version of it has stored.
-TEST(Persistence, AFileOfEarlierFirmwareGivesAllItsSettingsAndIsNotWritten) {
+TEST(Persistence, AFileOfEarlierFirmwareGivesItsAddressRateAndProtocolAndIsNotWritten) {
   for (const StoredBytes& stored : all_stored_bytes()) {
     const Directory directory;
     std::string image(kImageSize, '\xFF');

@@ -61,7 +61,7 @@ class Simulator {
     tell("1 power on");
     while (has(tell("1 status"), "mode=starting")) {
     }
-    // Discards the replies that the module sent before.
+    // Discards the replies that the module sent before the power failed.
     while (terminal_.received() < std::stoull(tell("sent")) && !terminal_.read(kHang).empty()) {
     }
   }

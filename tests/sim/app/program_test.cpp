@@ -91,8 +91,9 @@ TEST(Program, AFullDiskForStandardOutputIsReported) {
   }
 }
 
-/// Waits until at least 7/8 of a pipe is in use. A page of a pipe may contain only whole lines, so the
-/// pipe may never be full. Returns false after 60 s, which happens only if the program has ended.
+/// Waits until at least 7/8 of a pipe is in use. A page of a pipe may contain only whole lines, so the pipe
+/// may never be full. Returns false if this takes more than 60 s, which happens only if the program has ended
+/// or hangs.
 bool wait_until_full(int pipe) {
   constexpr std::chrono::seconds kHang{60};
   const int capacity = fcntl(pipe, F_GETPIPE_SZ);
@@ -106,7 +107,7 @@ bool wait_until_full(int pipe) {
   return true;
 }
 
-TEST(Program, ASignalEndsItIfThePipeOfItsLogIsFull) {
+TEST(Program, ASignalEndsTheProgramIfThePipeOfItsLogIsFull) {
   for (const int signal : {SIGINT, SIGTERM}) {
     SimulatorProcess simulator({"EX9042D@01", "--tcp", "0", "--line", "instant", "--log"});
     SocketClient master(simulator.tcp_port());
@@ -124,7 +125,7 @@ TEST(Program, ASignalEndsItIfThePipeOfItsLogIsFull) {
   }
 }
 
-TEST(Program, ASignalEndsItIfItsGreetingIsNotRead) {
+TEST(Program, ASignalEndsTheProgramIfItsGreetingIsNotRead) {
   for (const std::string log : {"off", "json"}) {  // with json, the greeting is on standard error
     const Directory directory;
     std::ofstream bus(directory / "bus.json");
@@ -160,7 +161,7 @@ TEST(Program, AFileSizeLimitForStandardOutputIsReported) {
 
 TEST(Program, ALinkInUseByAnotherUsersSimulatorIsNotTakenOver) {
   if (geteuid() != 0) {
-    GTEST_SKIP() << "another user's simulator can be started by root only";
+    GTEST_SKIP() << "only root can start a simulator as another user";
   }
   SimulatorProcess process({"EX9042D"});
   fs::permissions(process.directory(), fs::perms::all);
@@ -261,15 +262,15 @@ TEST(Program, WaitingForAnEventInTheFarFutureUsesNoProcessorTime) {
       return used;
     };
     const unsigned long before = ticks();
-    // The period in which the processor time is measured. A program that polls would use most of it.
+    // The period in which the processor time is measured. A program that polls would use most of this time.
     std::this_thread::sleep_for(std::chrono::milliseconds(500));
     EXPECT_LT(ticks() - before, 5U) << "processor time, in units of 10 ms, within 500 ms";
     EXPECT_EQ(process.end(SIGTERM), 0);
   }
 }
 
-/// Returns the seconds from the start to the end of a run of the program. A program that hangs is ended after
-/// ten minutes with a status other than 0.
+/// Returns the seconds from the start to the end of a run of the program. `timeout` ends a program that hangs
+/// after ten minutes, with a status other than 0.
 double seconds_of_a_run(const std::string& speed, const std::string& lasts) {
   const Directory directory;
   const auto began = std::chrono::steady_clock::now();
@@ -280,10 +281,10 @@ double seconds_of_a_run(const std::string& speed, const std::string& lasts) {
 }
 
 TEST(Program, RunDurationIsMeasuredInLineTime) {
-  // A slow line: load on the machine can extend this time, but nothing can shorten it.
+  // Load on the machine can extend a run, but nothing can shorten it.
   EXPECT_GE(seconds_of_a_run("0.01", "5ms"), 0.5);
   EXPECT_GE(seconds_of_a_run("1", "400ms"), 0.4);
-  // A fast line: 30 minutes on the line take 1.8 s on the wall clock.
+  // At 1000 times the speed, 30 minutes of line time take 1.8 s on the wall clock.
   EXPECT_GE(seconds_of_a_run("1000", "30min"), 1.8);
 }
 

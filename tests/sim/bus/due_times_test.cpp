@@ -10,7 +10,7 @@
 namespace ex9000::sim {
 namespace {
 
-/// Returns the stations that are due, in the order in which they run.
+/// Runs the stations that are due. Returns them in the order in which they ran.
 std::vector<std::size_t> due(DueTimes& times, VirtualTime now) {
   std::vector<std::size_t> ran;
   times.run_due(now, [&](std::size_t station) { ran.push_back(station); });

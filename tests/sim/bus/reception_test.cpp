@@ -1,5 +1,5 @@
-// Compares what stations receive with receivers that sample every bit of the whole traffic. The bus itself
-// samples only the bits that it must sample.
+// Compares the bytes that stations receive with the bytes of receivers that sample every bit of the whole
+// traffic. The bus itself samples only the bits that it must sample.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -31,16 +31,16 @@ struct Received {
   }
 };
 
-/// The disturbances in the traffic of a test. Each number is a probability.
+/// The disturbances in the traffic of a test. Each `double` is a probability.
 struct Trouble {
   const char* name;
-  double noise = 0;         ///< that a byte arrives with other levels
-  double collision = 0;     ///< that a station begins although another one sends
-  double cut_off = 0;       ///< that a driver is disabled in the middle of a byte
-  double other_rate = 0;    ///< that a station sends, or a receiver listens, at another rate
-  double stray = 0;         ///< that a byte appears although its station drives nothing, as noise does
-  double other_format = 0;  ///< that a station sends, or a receiver listens, in another line format
-  std::uint32_t times_faster = 1;
+  double noise = 0;                ///< that a byte arrives with other levels
+  double collision = 0;            ///< that a station begins although another one sends
+  double cut_off = 0;              ///< that a driver is disabled in the middle of a byte
+  double other_rate = 0;           ///< that a station sends, or a receiver listens, at another rate
+  double stray = 0;                ///< that noise adds a byte, whose station does not enable its driver
+  double other_format = 0;         ///< that a station sends, or a receiver listens, in another line format
+  std::uint32_t times_faster = 1;  ///< the factor of all rates of the line
 
   friend std::ostream& operator<<(std::ostream& out, const Trouble& trouble) { return out << trouble.name; }
 };
@@ -90,7 +90,7 @@ class Recorder final : public Disturbance {
   const Trouble& trouble_;
 };
 
-/// Sends bursts of random bytes with random gaps between them, and always listens.
+/// Sends bursts of random bytes with random gaps between the bursts, and always listens.
 class Talker final : public Station {
  public:
   Talker(Bus& bus, Recorder& recorder, Random& random, const Trouble& trouble)
@@ -149,7 +149,7 @@ class Talker final : public Station {
   std::size_t wave_ = 0;
 };
 
-/// Puts bytes on the wire without driving it, as noise does.
+/// Puts bytes on the wire without enabling its driver. The effect is that of noise.
 class Stray final : public Station {
  public:
   Stray(Bus& bus, Random& random, const Trouble& trouble)
@@ -171,7 +171,7 @@ class Stray final : public Station {
   const Trouble& trouble_;
 };
 
-/// Receives, and changes its rate and format at random times.
+/// Receives bytes. Changes its rate and format, or stops listening, at random times.
 class RetunedListener final : public Station {
  public:
   struct Period {
@@ -200,7 +200,8 @@ class RetunedListener final : public Station {
   std::vector<Period> periods;
 
  private:
-  /// A receiver ignores a second stop bit, so a change between 8N1 and 8N2 does not begin a new period.
+  /// Returns whether the change begins a new period. A change between 8N1 and 8N2 does not, because a
+  /// receiver ignores a second stop bit.
   static bool begins_anew(hal::SerialMode from, hal::SerialMode to) {
     const bool parity = has_parity(from.format) || has_parity(to.format);
     return from.baud != to.baud || (parity && from.format != to.format);
@@ -272,8 +273,8 @@ class SamplingReceiver {
     return true;
   }
 
-  /// Returns the first time from `from` on and before `until` with this level. Forgets the waves before
-  /// `from`.
+  /// Returns the first time with this level, from `from` on and before `until`; nullopt if there is none.
+  /// Forgets the waves that end at `from` or earlier.
   std::optional<VirtualTime> find(bool wanted, VirtualTime from, VirtualTime until) {
     while (first_ < waves_.size() && waves_[first_].end() <= from) {
       ++first_;
@@ -286,7 +287,7 @@ class SamplingReceiver {
     return std::nullopt;
   }
 
-  /// Returns the first time after `at` at which the level can change.
+  /// Returns the first time after `at` at which the level can change; kNever if there is none.
   [[nodiscard]] VirtualTime edge_after(VirtualTime at) const {
     VirtualTime edge = kNever;
     for (std::size_t i = first_; i < waves_.size() && waves_[i].start < edge; ++i) {
@@ -318,7 +319,8 @@ std::vector<Received> sampled(const Recorder& recorder, const Trouble& trouble, 
 
 class Reception : public testing::TestWithParam<Trouble> {};
 
-/// Returns the number of received bytes that were compared.
+/// Compares the bytes that all stations receive in random traffic with those of sampling receivers. Returns
+/// the number of compared bytes.
 std::size_t compare(const Trouble& trouble, std::uint64_t seed) {
   Random random(seed);
   VirtualClock clock;
@@ -357,7 +359,7 @@ std::size_t compare(const Trouble& trouble, std::uint64_t seed) {
   return compared;
 }
 
-/// EX9000_RECEPTION_SEEDS sets the number of seeds.
+/// The environment variable EX9000_RECEPTION_SEEDS sets the number of seeds; the default is 1.
 TEST_P(Reception, StationsReceiveTheSameAsReceiversThatSampleEveryBit) {
   const std::uint64_t seeds = number_in_environment("EX9000_RECEPTION_SEEDS", 1);
   for (std::uint64_t seed = 1; seed <= seeds && !HasFailure(); ++seed) {

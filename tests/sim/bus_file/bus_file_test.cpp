@@ -1,4 +1,4 @@
-// Tests files that describe lines and their modules.
+// Tests bus files, which describe lines and their modules.
 #include "sim/bus_file/bus_file.hpp"
 
 #include <gtest/gtest.h>
@@ -189,17 +189,16 @@ TEST_P(WrongBusFile, IsRefusedWithFileLineKeyAndRemedy) {
 
 INSTANTIATE_TEST_SUITE_P(
     Json, WrongBusFile,
-    testing::Values(Wrong{"", "bus.json:1: syntax error"},
-                    Wrong{"{\n\"lines\": [\n}\n", "bus.json:3: syntax error"},
-                    Wrong{"{\n\"seed\" 1}", "bus.json:2: syntax error"},
-                    Wrong{"{\"log\": true}\n{}", "bus.json:2: syntax error"},
-                    Wrong{"{\n\n\"seed\": 1e999}", "bus.json:3: number overflow"},
-                    Wrong{"{\n\"log\": true,\n\"log\": false}",
-                          "bus.json:3: 'log' is given twice; leave out one of them"},
-                    Wrong{"{\"control\":\n\"a\\u0000b\"}",
-                          "bus.json:2: a text contains NUL; leave out \\u0000"},
-                    Wrong{"[[[[[[[[[[[[[[[[[\n]]]]]]]]]]]]]]]]]",
-                          "bus.json:1: is nested deeper than any bus file; see 'ex9000-sim --schema'"}));
+    testing::Values(
+        Wrong{"", "bus.json:1: syntax error"}, Wrong{"{\n\"lines\": [\n}\n", "bus.json:3: syntax error"},
+        Wrong{"{\n\"seed\" 1}", "bus.json:2: syntax error"},
+        Wrong{"{\"log\": true}\n{}", "bus.json:2: syntax error"},
+        Wrong{"{\n\n\"seed\": 1e999}", "bus.json:3: number overflow"},
+        Wrong{"{\n\"log\": true,\n\"log\": false}",
+              "bus.json:3: 'log' is given twice; leave out one of them"},
+        Wrong{"{\"control\":\n\"a\\u0000b\"}", "bus.json:2: a text contains NUL; leave out \\u0000"},
+        Wrong{"[[[[[[[[[[[[[[[[[\n]]]]]]]]]]]]]]]]]",
+              "bus.json:1: has too many levels of lists and objects; see 'ex9000-sim --schema'"}));
 
 INSTANTIATE_TEST_SUITE_P(
     Whole, WrongBusFile,

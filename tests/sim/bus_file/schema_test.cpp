@@ -1,4 +1,4 @@
-// Tests that the JSON Schema and the documentation of bus files contain the keys of the reader.
+// Tests that the JSON Schema of bus files has exactly the keys of the reader, with their meanings.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>

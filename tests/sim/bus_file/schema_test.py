@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Tests that the JSON Schema of bus files and the program reject the same files."""
+"""Tests that the JSON Schema of bus files and the program accept and reject the same files."""
 
 import copy
 import json
@@ -56,7 +56,7 @@ RIGHT = {
     },
 }
 REQUIRED = {"": "lines", "lines[0]": "modules", "lines[0].modules[0]": "model"}
-# One value of each JSON type. Each key accepts some of them.
+# One value of each JSON type. Each key accepts only some of these values.
 OF_EACH_TYPE = [None, True, 5, 1.5, "?", [], {}]
 
 
@@ -95,7 +95,7 @@ def file_with(place, key, value):
 
 
 def keys():
-    """Returns the place of the object, the name and a valid value of each key."""
+    """Returns for each key: the place of the object that has the key, the key, and a valid value."""
     return [(place, key, value) for place, members in RIGHT.items() for key, value in members.items()]
 
 
@@ -105,7 +105,7 @@ def path_of(place, key):
 
 class BusFileSchema(unittest.TestCase):
     def expect_refused(self, file, path):
-        """Expects that the schema rejects the file, and the program too, with one line that names file and path."""
+        """Expects that schema and program reject the file. The program prints one line that names file and path."""
         self.assertFalse(schema_accepts(file))
         finished = run_with(file)
         self.assertEqual(finished.returncode, 2, finished.stderr)

@@ -26,7 +26,7 @@ using Bytes = std::vector<std::uint8_t>;
 const std::string kSent = "0";  // frame.p2p_dir
 const std::string kReceived = "1";
 
-/// A simulator in stepped time. `decoded` kills the simulator before it reads the capture.
+/// A simulator in stepped time. `decoded` kills the simulator, and then reads the capture.
 class Captured {
  public:
   explicit Captured(std::vector<std::string> arguments) : simulator_(with_capture(std::move(arguments))) {}
@@ -39,11 +39,11 @@ class Captured {
   void ask(const std::string& request, std::size_t answer) {
     ask(Bytes(request.begin(), request.end()), answer);
   }
-  /// Sends a request, and waits until it and its replies have ended and are recorded.
+  /// Sends a request, and waits until the request and its replies are recorded.
   void tell(const Bytes& request) {
     client_.send(request);
     control_.ok("advance 1s after " + std::to_string(request.size()) + " quiet");
-    pass("100ms");  // longer than the time in which a frame may continue
+    pass("100ms");  // longer than any pause in a Modbus frame
   }
   /// Advances the time of the line.
   void pass(const std::string& time) { control_.ok("advance " + time); }
@@ -71,7 +71,8 @@ class Captured {
   bool killed_ = false;
 };
 
-/// A request, the length of its reply, and the fields that Wireshark shows only for these two frames.
+/// A request, the length of its reply, the unit and the function of both frames, and the other fields that
+/// Wireshark shows for each frame.
 struct Exchange {
   Bytes request;
   std::size_t answer;
@@ -265,7 +266,8 @@ TEST(Capture, ARunInVirtualTimeGivesAReproducibleCapture) {
   EXPECT_EQ(packets[0].at("frame.time_epoch").substr(0, 4), "1.10");
 }
 
-/// Removes the notes about delays of the host. A busy host may be late, but this does not change the line.
+/// Returns the log without the notes about delays of the host. A delay of the host does not change the events
+/// on the line.
 std::string without_delays_of_the_host(const std::string& log) {
   std::string kept;
   std::istringstream lines(log);
@@ -277,7 +279,7 @@ std::string without_delays_of_the_host(const std::string& log) {
 
 TEST(Capture, IsTheSameAtEverySpeed) {
   const Directory directory;
-  // A foreign message begins every second. The end of the run cuts off the last one.
+  // A foreign frame begins every second. The end of the run cuts off the last one.
   write_file(directory / "bus.json", R"({"log": "json", "lines": [{"name": "hall",
     "faults": ["foreign-traffic 0101000000083DCC every 1s", "gone at 5.2s for 1s"],
     "modules": [{"model": "EX9042D-M"}]}]})");
@@ -342,11 +344,11 @@ TEST(Capture, TheLimitsOfWiresharksDecodingMatchTheDocumentation) {
   EXPECT_NE(packets[0].at("_ws.col.Info").find("Unknown function (70)"), std::string::npos);
   EXPECT_EQ(packets[0].at("modbus.func_code"), "70");
   EXPECT_EQ(packets[1].at("modbus.data").substr(0, 2), "00");
-  // Four bytes are too few for Wireshark.
+  // Wireshark does not decode a frame of four bytes.
   expect_shown(packets[2], {{"mbrtu.unit_id", ""}, {"modbus.func_code", ""}, {"data.data", "0111c02c"}});
   EXPECT_EQ(packets[3].at("modbus.func_code"), "17");
   EXPECT_EQ(packets[4].at("modbus.diagnostic_code"), "0");
-  // Wireshark does not decode broadcasts either.
+  // Wireshark does not decode a broadcast.
   expect_shown(packets[6], {{"mbrtu.unit_id", ""}, {"exported_pdu.exported_pdu", "00050001ff00dc2b"}});
   for (const Packet& packet : packets) {
     EXPECT_EQ(packet.at("_ws.col.Protocol"), "Modbus RTU");

@@ -1,4 +1,4 @@
-// Tests captures that the classes write without the program, as Wireshark shows them.
+// Tests captures that sim::Capture writes without the program, as Wireshark shows them.
 #include <gtest/gtest.h>
 
 #include <chrono>

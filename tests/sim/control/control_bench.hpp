@@ -34,7 +34,7 @@ class ControlBench : public ModuleBench {
     return checked(reply);
   }
 
-  /// Returns the number in a reply of the form `ok HEX`.
+  /// Carries out a command whose reply has the form `ok HEX`, and returns the number in the reply.
   unsigned number(const std::string& command) {
     const std::string reply = tell(command);
     EXPECT_EQ(reply.rfind("ok ", 0), 0U) << reply;

@@ -43,7 +43,7 @@ class Simulator : public SimulatorProcess {
 
 bool starts_with(const std::string& text, const std::string& start) { return text.rfind(start, 0) == 0; }
 
-/// Runs the program. If it starts unexpectedly, `timeout` ends it with a different status.
+/// Runs the program. If the program starts unexpectedly, `timeout` ends it after 60 s with status 124.
 Finished finish(std::vector<std::string> arguments, const std::string& directory) {
   arguments.insert(arguments.begin(), {"timeout", "60", simulator_path()});
   return run(arguments, directory);
@@ -90,7 +90,7 @@ std::vector<std::unique_ptr<ControlClient>> connect(const std::string& path, std
   return clients;
 }
 
-/// Expects that the line and the control socket reply.
+/// Expects that the module replies on the line, and that the control socket replies.
 void expect_undisturbed(const Simulator& simulator) {
   Terminal terminal(simulator.tty(), 9600);
   terminal.type("$01M\r");
@@ -100,7 +100,7 @@ void expect_undisturbed(const Simulator& simulator) {
 
 // --- commands and replies ---
 
-TEST(ControlSocket, EveryCommandTakesEffectOnTheLine) {
+TEST(ControlSocket, CommandsTakeEffectOnTheLine) {
   Simulator simulator({"EX9055D"});
   ControlClient client(simulator.socket());
   Terminal terminal(simulator.tty(), 9600);
@@ -195,14 +195,14 @@ TEST(ControlSocket, SeveralClientsInterleaveAndEachGetsItsOwnReplies) {
 
 // --- clients that misbehave ---
 
-TEST(ControlSocket, ALineOfMaximumLengthIsAccepted) {
+TEST(ControlSocket, ACommandOfMaximumLengthIsAccepted) {
   Simulator simulator({"EX9055D"});
   ControlClient client(simulator.socket());
   const std::string command = "1 led" + std::string(995, ' ');
   EXPECT_EQ(client.ask(command), "ok on");
 }
 
-TEST(ControlSocket, ATooLongLineIsAnErrorAndDisconnectsOnlyItsClient) {
+TEST(ControlSocket, ATooLongCommandIsRefusedAndDisconnectsOnlyItsClient) {
   Simulator simulator({"EX9055D"});
   ControlClient other(simulator.socket());
   for (const std::size_t size : {1001U, 1002U, 5000U, 20'000U}) {
@@ -216,7 +216,7 @@ TEST(ControlSocket, ATooLongLineIsAnErrorAndDisconnectsOnlyItsClient) {
   expect_undisturbed(simulator);
 }
 
-TEST(ControlSocket, AnIncompleteLineOfADisconnectedClientIsIgnored) {
+TEST(ControlSocket, AnIncompleteCommandOfADisconnectedClientIsIgnored) {
   Simulator simulator({"EX9055D"});
   for (const char* piece : {"1 power off", "1 power o", "quit", "1"}) {
     ControlClient(simulator.socket()).send(piece);
@@ -254,7 +254,7 @@ TEST(ControlSocket, AClientThatNeverReadsIsThrottledAndDoesNotDelayOthers) {
   {
     ControlClient deaf(simulator.socket());
     std::size_t refusals = 0;
-    // When the other client gets its reply, the program has read as much from this client as it can.
+    // When `other` gets its reply, the program has read as much from `deaf` as possible.
     while (refusals < 100) {
       const std::size_t taken = deaf.offer(command);
       sent += taken / command.size();

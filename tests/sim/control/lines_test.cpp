@@ -40,7 +40,7 @@ TEST(ControlLine, APositionWithoutAModuleIsRefused) {
   }
 }
 
-TEST(ControlLine, HelpNamesEveryCommand) {
+TEST(ControlLine, HelpNamesTheCommands) {
   ControlBench bench("EX9052D");
   const std::string text = bench.tell("help");
   for (const char* command : {"power",  "reset",     "init",          "input",
@@ -161,7 +161,7 @@ TEST(ControlLine, AdvanceRequiresSteppedTime) {
   EXPECT_EQ(bench.now(), now);
 }
 
-TEST(ControlLines, BaudAppliesOnlyToTheNamedLine) {
+TEST(ControlLines, BaudAndFormatApplyOnlyToTheNamedLine) {
   TwoLines lines;
   EXPECT_EQ(lines.tell("line yard baud 115200"), "ok");
   EXPECT_EQ(lines.yard().master().mode().baud, 115200U);

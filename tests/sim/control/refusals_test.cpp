@@ -1,4 +1,4 @@
-// Tests that the control socket rejects unknown commands and that they change nothing.
+// Tests that the control socket rejects invalid commands, and that a rejected command changes nothing.
 #include <gtest/gtest.h>
 
 #include <string>

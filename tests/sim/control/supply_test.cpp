@@ -92,7 +92,7 @@ TEST(ControlInit, InitModeIsEnteredAndLeftOnlyAtAReset) {
   EXPECT_EQ(bench.ask("$002"), "");
 }
 
-TEST(ControlInit, PermissionFollowsTheDebouncedSwitch) {
+TEST(ControlInit, CommandsThatRequireInitFollowTheDebouncedSwitch) {
   ControlBench bench("EX9042D");
   EXPECT_EQ(bench.ask("%0101400700"), "?01");
   bench.tell("1 init on");

@@ -1,4 +1,4 @@
-// Tests the replies of the control socket about outputs, LED and status.
+// Tests the replies of the control socket about outputs, LED, status, timers and filters.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -51,7 +51,7 @@ TEST(ControlLed, FlashesWhileTheSettingsCannotBeRead) {
   EXPECT_EQ(bench.tell("1 led"), "ok on");
 }
 
-TEST(ControlStatus, ReportsTheSettingsInForce) {
+TEST(ControlStatus, ReportsTheActiveSettings) {
   ControlBench ascii("EX9042D@1f,baud=115200,format=8E1,checksum=on");
   const std::string of_ascii = ascii.tell("1 status");
   for (const char* part : {"EX9042D", "address=1F", "protocol=ascii", "baud=115200", "format=8E1",

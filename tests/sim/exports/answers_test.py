@@ -11,7 +11,7 @@ import yaml
 from line import Line
 from program import describe, models_with_modbus
 
-# The terms of the tools, and the terms of Line: coil, discrete_input, holding and input.
+# Map the terms of each tool to the terms of Line: coil, discrete_input, holding and input.
 NODE_RED = {"Coil": "coil", "Input": "discrete_input", "HoldingRegister": "holding", "InputRegister": "input"}
 WIREN_BOARD = {"coil": "coil", "discrete": "discrete_input", "holding": "holding", "input": "input"}
 

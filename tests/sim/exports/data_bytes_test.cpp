@@ -7,7 +7,7 @@ namespace ex9000::sim {
 namespace {
 
 /// wire.md section 1: the byte First of a model with more than eight outputs has the channels from 8 on.
-TEST(DataByte, OneChannelIsNoRange) {
+TEST(DataByte, ASingleChannelIsNotShownAsARange) {
   Model model = *find_model("EX9042D-M");
   model.outputs = 9;
   EXPECT_EQ(data_byte(model, 0), "DO8");

@@ -1,4 +1,5 @@
-// Tests the description for spreadsheets with a reader for RFC 4180. The expected values are from wire.md.
+// Tests the description in CSV, for spreadsheets. A reader for RFC 4180 parses the description. The expected
+// values are from wire.md.
 #include "sim/exports/formats.hpp"
 
 #include <gtest/gtest.h>
@@ -45,7 +46,7 @@ std::vector<Cells> rows_of(const std::string& text) {
 
 std::vector<Cells> table_of(const char* designation) { return rows_of(csv_of({find_model(designation)})); }
 
-/// Returns the row with this table and this address or command.
+/// Returns the row with this table and this address or command; empty if there is none.
 Cells row(const char* designation, const std::string& table, const std::string& which) {
   for (const Cells& cells : table_of(designation)) {
     if (cells[1] == table && (cells[2] == which || cells[6] == which)) {

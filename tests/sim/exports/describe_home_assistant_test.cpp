@@ -1,4 +1,5 @@
-// Tests the content of the hub for Home Assistant against wire.md. home_assistant_test.py checks its form.
+// Tests the content of the hub for Home Assistant against wire.md. home_assistant_test.py checks the form of
+// the hub.
 #include "sim/exports/formats.hpp"
 
 #include <gtest/gtest.h>
@@ -134,7 +135,7 @@ TEST(DescribeHomeAssistant, ExplainsHowPollsRestartTheHostWatchdogAndWhatClearsA
   const std::size_t after = text.find("#   modbus.write_coil" + to +
                                       "269, state: true\n#   modbus.write_coil" + to + "260, state: true\n");
   EXPECT_NE(text.find("the outputs keep their safe values"), std::string::npos);
-  EXPECT_EQ(configuration_of("EX9052D-M").find("the outputs"), std::string::npos);  // it has no outputs
+  EXPECT_EQ(configuration_of("EX9052D-M").find("the outputs"), std::string::npos);  // has no outputs
   ASSERT_NE(feed, std::string::npos) << text;
   ASSERT_NE(after, std::string::npos) << text;
   EXPECT_LT(feed, after);
@@ -143,7 +144,7 @@ TEST(DescribeHomeAssistant, ExplainsHowPollsRestartTheHostWatchdogAndWhatClearsA
 TEST(DescribeHomeAssistant, DoesNotPollHostOkCommunicationSettingsOrCoilsThatClearCounters) {
   for (const char* model : {"EX9043D-M", "EX9052D-M"}) {
     for (const char* address :
-         {"12344", "256", "484", "485", "512"}) {  // host OK, protocol, address, rate, clear
+         {"12344", "256", "484", "485", "512"}) {  // host OK, protocol, address, rate, clear counter 0
       EXPECT_EQ(times(configuration_of(model), "address: " + std::string(address) + "\n"), 0)
           << model << " " << address;
     }

@@ -75,7 +75,7 @@ Lines commands(const char* designation) {
 /// Returns table, address, PLC number, functions and access of each register.
 std::vector<Lines> map_of(const char* designation) { return rows(text_of(designation), "table", 5); }
 
-/// Returns the row of the tables for all models that begins with this cell.
+/// Returns the row of the tables for all models that begins with this cell; empty if there is none.
 std::string row_beginning(const std::string& first) {
   for (const std::string& line : lines_of(markdown_of_all())) {
     if (line.find("| " + first + " |") == 0) {
@@ -100,7 +100,8 @@ std::ptrdiff_t pipes_in(const std::string& line) {
   return pipes;
 }
 
-/// Expects that a row has as many cells as the head of its table, no empty cell, and pairs of backticks.
+/// Expects that a row has as many cells as the head of its table, no empty cell, and an even number of
+/// backticks.
 void expect_row(const std::string& line, std::ptrdiff_t pipes) {
   EXPECT_EQ(line.back(), '|') << line;
   EXPECT_EQ(pipes_in(line), pipes) << line;
@@ -143,7 +144,8 @@ std::string generated_section() {
              : document.substr(from + begin.size(), to - from - begin.size());
 }
 
-/// Returns the first line that differs, because both texts are long; empty if there is no difference.
+/// Returns the first line that differs, from both texts; empty if the texts are equal. The whole texts would
+/// be too long for a message.
 std::string difference(const std::string& stands, const std::string& wanted) {
   if (stands == wanted) {
     return "";
@@ -234,7 +236,7 @@ TEST(DescribeMarkdown, AModelWithInputsAndModbusHasItsCommands) {
              "~AA1",        "~AA2",  "~AA3EVV", "~AARD", "~AARDVV", "~AAXRRRR", "~AAXRRRRVVVV"}));
 }
 
-TEST(DescribeMarkdown, AModelWithInputsAndOutputsHasAllButTheProtocolCommands) {
+TEST(DescribeMarkdown, AnAsciiModelWithInputsAndOutputsHasAllButTheProtocolCommands) {
   const Lines wanted{"%AANNTTCCFF", "#**",        "#AABBDD", "#AAN",    "$AA2",     "$AA4",        "$AA5",
                      "$AA6",        "$AAF",       "$AAM",    "$AAC",    "$AACN",    "$AALS",       "@AA",
                      "@AA(Data)",   "~AAO(Name)", "~**",     "~AA0",    "~AA1",     "~AA2",        "~AA3EVV",
@@ -279,7 +281,7 @@ TEST(DescribeMarkdown, ListsEveryFunction) {
             "| 10 | Write Multiple Registers | all modules execute it without a reply | -M |");
 }
 
-// The rows that every -M model has.
+// The rows that every -M model has, except kCountingEdge: only models with inputs have it.
 const Lines kProtocol{"coil", "0x0100", "00257", "01, 05", "read, write"};
 const Lines kEnable{"coil", "0x0104", "00261", "01, 05", "read, write"};
 const Lines kTimeoutStatus{"coil", "0x010D", "00270", "01, 05", "read, write"};

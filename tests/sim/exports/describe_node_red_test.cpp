@@ -71,7 +71,7 @@ TEST(DescribeNodeRed, ReadsTheCoilsAndRegistersOfAModelWithInputs) {
 TEST(DescribeNodeRed, SwitchesEachOutputOnAndOff) {
   const Json flow = flow_of("EX9068AD-M");
   const std::vector<std::string> writes = asked(flow, "modbus-write");
-  ASSERT_EQ(writes.size(), 9U);  // 8 outputs, and the timeout status to clear
+  ASSERT_EQ(writes.size(), 9U);  // one for each output, and one that clears the timeout status
   EXPECT_EQ(writes[7], "Coil 7 1");
   EXPECT_EQ(writes[8], "Coil 269 1");
   const Json write = first(flow, "name", "Output 7");

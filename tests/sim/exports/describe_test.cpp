@@ -43,7 +43,7 @@ TEST(Describe, MarkdownJsonAndCsvDescribeOneModelOrAll) {
   }
 }
 
-TEST(Describe, TheOtherFormatsRequireAModelWithModbus) {
+TEST(Describe, HomeAssistantNodeRedAndWbMqttSerialRequireAModelWithModbus) {
   for (const char* format : {"home-assistant", "node-red", "wb-mqtt-serial"}) {
     for (const Model& model : kModels) {
       const std::string name(model.designation);

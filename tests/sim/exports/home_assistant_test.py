@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Checks Home Assistant's hubs with a schema of its modbus integration, and rules that a schema cannot express."""
+"""Checks the hubs for Home Assistant with a schema, and with rules that a schema cannot express."""
 
 import copy
 import json

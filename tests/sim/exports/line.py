@@ -22,7 +22,7 @@ def crc16(data):
 class Line:
     """One module at address 01, which a master reaches over TCP.
 
-    The option of the program decides how: --tcp with Modbus RTU frames, --modbus-tcp with frames of Modbus TCP.
+    The option of the program selects the frames: --tcp selects Modbus RTU, --modbus-tcp selects Modbus TCP.
     """
 
     def __init__(self, model, option="--tcp"):
@@ -53,7 +53,7 @@ class Line:
         return data
 
     def _ask_rtu(self, request):
-        """Returns address, function and data of the reply."""
+        """Sends a request. Returns address, function and data of the reply. Raises ValueError if the CRC is wrong."""
         self._socket.sendall(request + crc16(request))
         reply = self._receive(3)
         if reply[1] & 0x80:
@@ -65,7 +65,7 @@ class Line:
         return reply[:-2]
 
     def _ask_modbus_tcp(self, request):
-        """Returns address, function and data of the reply."""
+        """Sends a request. Returns unit, function and data of the reply. Raises ValueError if the header is wrong."""
         self._transaction += 1
         self._socket.sendall(struct.pack(">HHH", self._transaction, 0, len(request)) + request)
         header = self._receive(6)
@@ -75,7 +75,7 @@ class Line:
         return self._receive(length)
 
     def _ask(self, function, first, value):
-        """Returns the data of the reply, without address and function. Raises ValueError for an exception."""
+        """Sends a request and returns the data of the reply. Raises ValueError if the reply is an exception."""
         request = struct.pack(">BBHH", 1, function, first, value)
         reply = self._ask_modbus_tcp(request) if self.option == "--modbus-tcp" else self._ask_rtu(request)
         if reply[:2] != request[:2]:

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Checks the device templates for wb-mqtt-serial with a schema, and rules that a schema cannot express."""
+"""Checks the device templates for wb-mqtt-serial with a schema, and with rules that a schema cannot express."""
 
 import copy
 import json

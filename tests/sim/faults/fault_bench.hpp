@@ -49,8 +49,8 @@ class FaultBench {
       line_.bus().run_until(line_.bus().next());
     }
   }
-  /// Sends `command` and a CR. Returns everything that the master receives within `patience`, without the
-  /// last CR.
+  /// Sends `command` and a CR. Returns everything that the master receives until `patience` after the end of
+  /// the request, without a final CR.
   std::string ask(const std::string& command, VirtualTime patience = std::chrono::milliseconds(50)) {
     forget();
     send(command + "\r");
@@ -58,9 +58,9 @@ class FaultBench {
     return heard_.empty() || heard_.back() != '\r' ? heard_ : heard_.substr(0, heard_.size() - 1);
   }
 
-  /// Returns everything that the master has received since the last `forget`.
+  /// Returns everything that the master has received since the last `forget` or `ask`.
   [[nodiscard]] const std::string& heard() const { return heard_; }
-  /// Returns whether at least one byte since the last `forget` had an error.
+  /// Returns whether at least one byte since the last `forget` or `ask` had an error.
   [[nodiscard]] bool garbled() const { return garbled_; }
   void forget() {
     heard_.clear();

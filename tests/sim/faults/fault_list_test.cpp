@@ -45,7 +45,7 @@ TEST(FaultsList, FaultNumbersAreNeverReused) {
   EXPECT_EQ(bench.add("lost-reply"), 4U);
 }
 
-TEST(FaultsList, ReportsHowManyOccurrencesAreInProgressAndTheirTotal) {
+TEST(FaultsList, ReportsTheOccurrencesInProgressAndAllOccurrencesSoFar) {
   FaultBench bench(two());
   bench.add("gone at 1s for 1s", 2);
   bench.add("lost-reply every reply", 1);

@@ -33,7 +33,7 @@ TEST(BitErrors, OccurWithTheGivenProbability) {
     whole += bench.ask("$01M") == kName && !bench.garbled() ? 1 : 0;
     bench.send("\r");  // ends a frame that has begun
   }
-  // A request is "$01M\r", a reply "!019042D\r"; each character has ten bits.
+  // Each request is "$01M\r", and each reply is "!019042D\r". A character has ten bits.
   const double expected = std::pow(1 - probability, 10 * (5 + 9));
   const double deviation = std::sqrt(expected * (1 - expected) / kRequests);
   EXPECT_NEAR(whole / double{kRequests}, expected, 4 * deviation);
@@ -56,7 +56,7 @@ TEST(LostBytes, OccurWithTheGivenProbability) {
     unheard += bench.ask("$01M").empty() ? 1 : 0;
     bench.send("\r");  // ends a frame that has begun
   }
-  const double expected = 1 - std::pow(0.99, 5);  // "$01M\r"
+  const double expected = 1 - std::pow(0.99, 5);  // the five characters of "$01M\r"
   const double deviation = std::sqrt(expected * (1 - expected) / kRequests);
   EXPECT_NEAR(unheard / double{kRequests}, expected, 4 * deviation);
 }

@@ -128,7 +128,7 @@ const std::pair<const char*, std::function<void(FaultBench&)>> kResets[] = {
      }},
 };
 
-// Each function returns whether a master notices this fault.
+// Each function returns whether the master observes the fault that the name of the function describes.
 bool replies_are_lost(FaultBench& bench) { return bench.ask("$01M", 100ms).empty(); }
 bool replies_are_late(FaultBench& bench) {
   return bench.ask("$01M", 50ms).empty() && bench.ask("", 100ms) == kName;

@@ -1,5 +1,5 @@
-// Feeds an hour of noise to a module with each protocol: only a valid frame may cause a reply or change an
-// output. The test decides which frames are valid without the firmware's code.
+// Feeds an hour of noise to a module, once for each protocol. Only a valid frame may cause a reply or change
+// an output. The test decides without the firmware's code which frames are valid.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -23,7 +23,7 @@ using std::chrono::nanoseconds;
 
 constexpr VirtualTime kAnHour = std::chrono::hours(1);
 constexpr VirtualTime kByte = nanoseconds(10'000'000'000 / 9600);
-/// Feeds bytes to the receiver of a powered module, and checks its reaction.
+/// Feeds bytes to the receiver of a powered module, and checks the module's reaction.
 class NoisyLine {
  public:
   explicit NoisyLine(const std::string& spec) {
@@ -183,7 +183,8 @@ void an_hour_of_modbus(std::uint32_t seed) {
       line.put(byte, noise.status());
       ++bytes;
       if (noise.once_in(50)) {
-        line.run(std::chrono::microseconds(noise.below(2900)));  // less than T3.5, even with the next byte
+        // The pause and the next byte together are shorter than T3.5.
+        line.run(std::chrono::microseconds(noise.below(2900)));
       }
     }
     line.run(milliseconds(5 + noise.below(20)));

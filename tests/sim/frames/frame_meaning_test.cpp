@@ -1,4 +1,4 @@
-// Tests the meaning that the simulator's log shows for a frame.
+// Tests the protocol, the text and the meaning that the simulator's log shows for a frame.
 #include "sim/frames/frame_meaning.hpp"
 
 #include <gtest/gtest.h>

@@ -99,7 +99,7 @@ TEST_F(FrameWatchTest, TheMastersFrameEndsWhenAModuleReplies) {
 TEST_F(FrameWatchTest, UnansweredRequestsAreSeparateFrames) {
   const FrameBytes request = with_crc({0, 5, 0, 2, 0xFF, 0});
   send(kMaster, request);
-  pass(microseconds(3700));  // 3.5 characters
+  pass(microseconds(3700));  // more than 3.5 characters of ten bits
   send(kMaster, request);
   EXPECT_EQ(frames.size(), 1U);
   watch.finish();

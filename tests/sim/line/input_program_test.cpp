@@ -180,14 +180,14 @@ TEST(MovedInput, BouncingContactsChangeSeveralTimesAndThenSettle) {
   }
   EXPECT_EQ(moves.front().first, 1s);
   EXPECT_GE(making, 3U);
-  EXPECT_EQ(making % 2, 1U);                   // after the bouncing the input is on
-  EXPECT_EQ((moves.size() - making) % 2, 1U);  // after the release and its bouncing it is off
+  EXPECT_EQ(making % 2, 1U);                   // after the bouncing, the input is on
+  EXPECT_EQ((moves.size() - making) % 2, 1U);  // after the release and its bouncing, the input is off
   EXPECT_GE(moves.size() - making, 3U);
   EXPECT_EQ(bench.counter(), moves.size() / 2);
   EXPECT_FALSE(bench.level());
 }
 
-TEST(MovedInput, EqualSeedsBounceEquallyAndDifferentSeedsDoNot) {
+TEST(MovedInput, AnInputBouncesEquallyWithEqualSeedsAndDifferentlyWithOtherSeeds) {
   const auto moves = [](std::uint64_t seed) {
     return InputBench("0 square 50ms bounce 5ms", "falling", seed).moves_until(1s);
   };
@@ -195,7 +195,7 @@ TEST(MovedInput, EqualSeedsBounceEquallyAndDifferentSeedsDoNot) {
   EXPECT_NE(moves(1), moves(2));
 }
 
-TEST(MovedInput, AnInputChangesWithoutSupplyButIsNotCounted) {
+TEST(MovedInput, AnInputChangesWithoutSupplyButItsEdgesAreNotCounted) {
   InputBench bench("0 square 100ms");
   bench.run_until(1s);
   bench.module().power(false);

@@ -76,7 +76,7 @@ TEST(ModuleSpec, TheProtocolCanBeChosen) {
   EXPECT_EQ(modbus.settings.protocol, Protocol::ModbusRtu);
 }
 
-TEST(ModuleSpec, EveryBaudRateOfSection4CanBeChosen) {
+TEST(ModuleSpec, EveryBaudRateOfAModuleCanBeChosen) {
   const unsigned rates[] = {1200, 2400, 4800, 9600, 19200, 38400, 57600, 115200};
   std::uint8_t code = 0x03;
   for (const unsigned rate : rates) {
@@ -86,7 +86,7 @@ TEST(ModuleSpec, EveryBaudRateOfSection4CanBeChosen) {
   }
 }
 
-TEST(ModuleSpec, EveryLineFormatCanBeChosenWithEveryRateInAnyOrder) {
+TEST(ModuleSpec, EveryLineFormatCanBeCombinedWithARateInAnyOrder) {
   const std::vector<std::pair<std::string, unsigned>> formats{
       {"8N1", 0x00}, {"8N2", 0x40}, {"8E1", 0x80}, {"8O1", 0xC0}};
   for (const auto& [format, bits] : formats) {
@@ -130,7 +130,7 @@ TEST(ModuleSpec, TheEepromFileAndInitAreNotSettings) {
   EXPECT_TRUE(parse_module_spec("EX9042D-M,baud=9600").settings_given);
 }
 
-TEST(ModuleSpec, AllKeysCanBeCombined) {
+TEST(ModuleSpec, KeysCanBeCombined) {
   const ModuleSpec spec =
       parse_module_spec("9052d-m@1F,protocol=ascii,baud=19200,checksum=on,edge=rising,name=x");
   EXPECT_EQ(spec.model->designation, "EX9052D-M");

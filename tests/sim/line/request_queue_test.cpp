@@ -263,7 +263,7 @@ TEST_P(PacedQueue, AStationThatNeverStopsSendingDoesNotBlockARequestForEver) {
   checked.is_reply = [](Bytes /*frame*/) { return true; };
   line_.requests().ask(std::move(checked));
   ask(kToNobody, "raw");
-  run(milliseconds(20));  // the request is on the line
+  run(milliseconds(20));  // the first request is on the line
   const Babbler babbler(line_.bus(), line_.rtu_silence() / 2);
   run(RequestQueue::kReplyTimeout + milliseconds(80));
   EXPECT_EQ(results_, (Results{{"checked", {}}}));

@@ -36,7 +36,7 @@ class GatewayLine {
     VirtualTime at{0};
   };
 
-  /// Returns the answer after two seconds of line time.
+  /// Sends a request to the gateway, and runs the line for two seconds. Returns the answer.
   Result ask(std::uint8_t unit, const Pdu& pdu) {
     Result result;
     gateway.ask({1, unit, pdu}, owner, [&](const std::optional<Pdu>& answer) {
@@ -68,7 +68,7 @@ TEST(Gateway, TheModuleAtTheAddressOfTheUnitReplies) {
   EXPECT_EQ(bench.reply(0xF7, {0x02, 0x00, 0x00, 0x00, 0x08}), (Pdu{0x02, 0x01, 0x00}));
 }
 
-TEST(Gateway, AnExceptionOfTheModuleIsItsReply) {
+TEST(Gateway, AnExceptionReplyOfTheModuleReachesTheClient) {
   GatewayLine bench({"EX9042D-M@01"});
   EXPECT_EQ(bench.reply(0x01, {0x03, 0x00, 0x00, 0x00, 0x01}), (Pdu{0x83, 0x02}));
   EXPECT_EQ(bench.reply(0x01, {0x07}), (Pdu{0x87, 0x01}));
@@ -105,7 +105,7 @@ TEST(Gateway, HostOkGetsException0BBecauseAModuleNeverRepliesToIt) {
   EXPECT_EQ(bench.reply(0x01, {0x04, 0x30, 0x38, 0x00, 0x00}), (Pdu{0x84, kNoReply}));
 }
 
-TEST(Gateway, ALineThatSpeaksAsciiGetsException0A) {
+TEST(Gateway, AUnitOnALineOfAsciiModulesGetsException0A) {
   GatewayLine bench({"EX9042D@01", "EX9042D-M@02,protocol=ascii"});
   EXPECT_EQ(bench.reply(0x01, kReadOutputs), (Pdu{0x81, kPathUnavailable}));
   EXPECT_EQ(bench.reply(0x05, {0x46, 0x00}), (Pdu{0xC6, kPathUnavailable}));
@@ -113,7 +113,7 @@ TEST(Gateway, ALineThatSpeaksAsciiGetsException0A) {
   EXPECT_EQ(bench.line.module(0).outputs(), 0);
 }
 
-TEST(Gateway, AModuleWithInitSpeaksAsciiUntilItStartsWithoutIt) {
+TEST(Gateway, AModuleWithInitSpeaksAsciiUntilAStartWithoutInit) {
   GatewayLine bench({"EX9042D-M@01,init=on"});
   EXPECT_EQ(bench.reply(0x01, kReadOutputs), (Pdu{0x81, kPathUnavailable}));
   bench.line.module(0).set_init(false);
@@ -149,7 +149,7 @@ TEST(Gateway, TheEchoOfARequestThatReadsIsNotItsReply) {
   EXPECT_EQ(bench.reply(0x09, kReadOutputs), (Pdu{0x81, kNoReply}));
 }
 
-TEST(RtuReply, HasTheAddressTheFunctionAndTheValuesOfItsRequest) {
+TEST(RtuReply, FitsTheAddressTheFunctionAndTheQuantityOrValuesOfItsRequest) {
   const auto is_reply = [](const Pdu& reply, const Pdu& request, std::uint8_t address = 0x01) {
     const std::vector<std::uint8_t> frame = rtu_frame(0x01, reply);
     const std::vector<std::uint8_t> sent = rtu_frame(address, request);

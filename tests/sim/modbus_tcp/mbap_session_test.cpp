@@ -133,7 +133,7 @@ TEST(MbapSession, FiveClientsOnOneLineGetTheirOwnReplies) {
   }
 }
 
-TEST(MbapSession, AClientThatReadsNoRepliesSendsNoMoreRequestsToTheLine) {
+TEST(MbapSession, RequestsOfAClientThatReadsNoRepliesWait) {
   Line line({parse_module_spec("EX9042D-M@01")}, kInstant,
             [](std::uint8_t /*byte*/, ByteStatus /*status*/) {});
   line.come_up();
@@ -183,7 +183,7 @@ TEST(MbapSession, ClientsTakeTurnsAlthoughOneHasManyRequests) {
     many->receive({to_nobody.data(), to_nobody.size()});
   }
   one->receive({to_nobody.data(), to_nobody.size()});
-  line.bus().run_for(std::chrono::milliseconds(1200));  // two timeouts
+  line.bus().run_for(std::chrono::milliseconds(1200));  // two timeouts of 500 ms
   EXPECT_EQ(order, (std::vector<std::string>{"many", "one"}));
 }
 
@@ -204,7 +204,7 @@ TEST(MbapSession, RequestsOfAClientThatHasLeftAreNotSent) {
   }
   session.reset();
   line.bus().run_for(seconds(2));
-  EXPECT_EQ(line.module(0).outputs(), 0x0001);  // the first request was on the line
+  EXPECT_EQ(line.module(0).outputs(), 0x0001);  // the first request was on the line already
 }
 
 }  // namespace

@@ -61,7 +61,7 @@ TEST(MbapReader, JoinedFramesAreSeparatedWhereverTcpSplitsThem) {
   }
 }
 
-TEST(MbapReader, OnlyLengthsFrom2To254AreFrames) {
+TEST(MbapReader, OnlyLengthsFrom2To254AreValid) {
   for (unsigned length = 0; length <= 0xFFFF; ++length) {
     MbapReader reader;
     add(reader, header(0, length));

@@ -1,4 +1,4 @@
-// Tests the option --modbus-tcp of the program, in stepped time where times matter.
+// Tests the option --modbus-tcp of the program. If the result depends on times, the test uses stepped time.
 #include <gtest/gtest.h>
 
 #include <string>

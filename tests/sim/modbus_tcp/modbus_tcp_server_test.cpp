@@ -35,7 +35,8 @@ class ModbusTcpServerTest : public testing::Test {
     });
   }
 
-  /// `buffer` limits the bytes that the system stores for the client in each direction; 0: the usual limit.
+  /// Connects a client. `buffer` limits the bytes that the system stores for the client in each direction; 0:
+  /// the usual limit.
   tcp::socket connect(int buffer = 0) {
     const std::string address = server_.address();
     const auto number = static_cast<std::uint16_t>(std::stoul(address.substr(address.rfind(':') + 1)));
@@ -222,7 +223,7 @@ TEST_F(ModbusTcpServerTest, AClientThatDoesNotReadGetsAllRepliesWhenItReads) {
   std::size_t arrived_before = 0;
   boost::system::error_code error;
   do {
-    ASSERT_LT(sent, kFarTooMuch) << "the server continues to read although the client does not";
+    ASSERT_LT(sent, kFarTooMuch) << "the server continues to read although the client does not read";
     arrived_before = arrived_;
     Buffer requests;
     for (std::size_t i = sent / kRequest; i < sent / kRequest + 300; ++i) {

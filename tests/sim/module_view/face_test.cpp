@@ -57,7 +57,7 @@ TEST(Face, ShowsTheRemainingTimeOfATimedOutput) {
   EXPECT_EQ(face_of(bench).plate.timers[2], 0);
 }
 
-TEST(Face, ShowsOnlySwitchesInputsAndStoredSettingsWithoutPower) {
+TEST(Face, WithoutPowerShowsOnlySwitchesInputsAndStoredSettings) {
   ModuleBench bench("EX9055D@07");
   ASSERT_EQ(bench.ask("@0705"), ">");
   bench.module().set_input(0, true);
@@ -74,7 +74,7 @@ TEST(Face, ShowsOnlySwitchesInputsAndStoredSettingsWithoutPower) {
   EXPECT_EQ(face.stored.settings.address, 0x07);
 }
 
-TEST(Face, AnInterruptedSupplyLeavesItsSwitchOn) {
+TEST(Face, AnInterruptedSupplyLeavesThePowerSwitchOn) {
   ModuleBench bench("EX9055D");
   bench.module().interrupt_supply(true);
   EXPECT_TRUE(face_of(bench).plate.switched_on);
@@ -105,7 +105,7 @@ TEST(Face, ShowsWhenTheHostWatchdogExpiresAndThatItHasExpired) {
   ASSERT_TRUE(runs.expires);
   EXPECT_GT(*runs.expires, bench.now());
   bench.run(milliseconds(100));
-  EXPECT_EQ(face_of(bench).guard, runs);  // does not change until the master restarts it
+  EXPECT_EQ(face_of(bench).guard, runs);  // does not change until a restart of the watchdog
   bench.line().bus().run_until(*runs.expires - milliseconds(1));
   EXPECT_FALSE(face_of(bench).guard.timed_out);
   bench.run(milliseconds(2));
@@ -151,7 +151,7 @@ TEST(Face, TheLedShowsUnreadableSettings) {
   EXPECT_FALSE(face_of(bench).stored.current);
 }
 
-TEST(Face, ReadingItDoesNotChangeTheModule) {
+TEST(Face, ReadingAFaceDoesNotChangeTheModule) {
   ModuleBench looked("EX9055D");
   ModuleBench left("EX9055D");
   for (int i = 0; i < 200; ++i) {

@@ -13,7 +13,8 @@ namespace {
 
 using std::chrono::milliseconds;
 
-/// Returns the answer to a request of the console after a second of line time.
+/// Sends a request from the console, and runs the line for a second. Returns the answer; null if there is
+/// none.
 Message console_answer(PanelBench& bench, const std::string& ask, unsigned address = 1) {
   const Message request{{"id", 9}, {"line", 0}, {"address", address}, {"ask", ask}};
   EXPECT_TRUE(bench.viewer().ask(request.dump())) << ask;
@@ -29,7 +30,7 @@ TEST(PanelConsole, AReplyComesWithItsMeaningAndItsDelay) {
   EXPECT_EQ(read["ok"], true);
   EXPECT_EQ(read["text"], "01 02 01 00 A1 88");
   EXPECT_EQ(read["meaning"], "from 0000: 0 0 0 0 0 0 0 0");
-  EXPECT_GT(read["delay"], 1000);  // at least one character at 9600 baud
+  EXPECT_GT(read["delay"], 1000);  // microseconds; a character takes 1042 at 9600 baud
   EXPECT_LT(read["delay"], 20'000);
   EXPECT_EQ(console_answer(bench, "03 01E2 0002")["meaning"], "from 01E2: 0090 (144), 5200 (20992)");
   EXPECT_EQ(console_answer(bench, "03 7000 0001")["meaning"], "exception 02: illegal data address");
@@ -123,7 +124,7 @@ TEST(PanelConsole, OnePageMayHaveSixteenRequestsInTheQueue) {
   EXPECT_EQ(bench.look()["answers"].size(), 16U);
 }
 
-TEST(PanelConsole, ARequestForALineOrAnAddressThatDoesNotExistEndsThePage) {
+TEST(PanelConsole, ARequestWithAnInvalidLineAddressOrKeyIsRejected) {
   PanelBench bench("EX9052D-M@01");
   EXPECT_FALSE(bench.viewer().ask(R"({"id": 1, "line": 1, "address": 1, "ask": "07"})"));
   EXPECT_FALSE(bench.viewer().ask(R"({"id": 1, "line": 0, "address": 248, "ask": "07"})"));

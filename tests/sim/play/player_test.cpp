@@ -54,7 +54,7 @@ TEST(Player, PassesACorrectTranscript) {
   EXPECT_TRUE(passes(kModbusHeader + "=> 01 01 00 00 00 0D\n<= 01 01 02 00 00\n"));
 }
 
-TEST(Player, ReportsAWrongOrMissingReply) {
+TEST(Player, ReportsAWrongOrMissingReplyAndAWrongStateOfOutputsOrLed) {
   EXPECT_FALSE(passes(kHeader + "> $01M\n< !019042\n"));
   EXPECT_FALSE(passes(kHeader + "> $01M\n< !019042MM\n"));
   EXPECT_FALSE(passes(kHeader + "> $02M\n< !029042M\n"));

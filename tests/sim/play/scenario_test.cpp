@@ -94,7 +94,7 @@ TEST(Scenario, BytesReceivedOnALineThatIsNotSelectedAreDiscarded) {
             std::string::npos);
 }
 
-TEST(Scenario, AFailureNamesTheFileLineStepAndReceivedBytes) {
+TEST(Scenario, AFailureNamesTheFileTheLineNumberTheStepAndTheReceivedBytes) {
   const std::string failure = failure_of("; a comment\n> $01M\n< !019043D\n");
   EXPECT_NE(failure.find("steps.txt:3: < !019043D: expected '!019043D\\r', received '!019042D\\r'"),
             std::string::npos)
@@ -239,7 +239,7 @@ TEST(Play, RefusesAnInvalidEepromFileBeforeOverwritingTheCapture) {
   for (const std::string& path : {directory / "eeprom", directory.path()}) {
     try {
       play({directory / "a.txt", with_eeprom(path), writing}, nullptr, record);
-      FAIL() << "it was played";
+      FAIL() << "the steps were played";
     } catch (const std::invalid_argument& error) {
       EXPECT_EQ(std::string(error.what()).rfind("eeprom=" + path + ": ", 0), 0U) << error.what();
     }
@@ -294,7 +294,7 @@ TEST(Play, CreatesNoCaptureIfNothingCanBePlayed) {
   EXPECT_FALSE(std::filesystem::exists(capture));
 }
 
-TEST(Play, RequiresABusForAScenarioAndNoneForATranscript) {
+TEST(Play, RequiresABusForAScenarioAndRejectsABusForATranscript) {
   const Directory directory;
   write_file(directory / "scenario.txt", "> $01M\n< !019042D\n");
   write_file(directory / "transcript.txt", "source: manual\nmodel: EX9042D\n\n> $01M\n< !019042D\n");
@@ -312,7 +312,7 @@ TEST(Play, RefusesAFileWithoutValidSteps) {
   EXPECT_NE(played(directory / "none.txt", true).find("none.txt: cannot be read; name a transcript"),
             std::string::npos);
   EXPECT_NE(played("/dev/zero", true).find("/dev/zero: cannot be read"), std::string::npos)
-      << "it has no end";
+      << "/dev/zero has no end";
   EXPECT_NE(played(directory.path(), true).find("contains no file that ends with .txt; name a transcript"),
             std::string::npos);
   write_file(directory / "empty.txt", "; nothing\n");

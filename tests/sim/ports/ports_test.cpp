@@ -61,7 +61,7 @@ TEST_P(Tcp, SeveralClientsShareTheLine) {
   SimulatorProcess simulator({"EX9042D@05", "--tcp", "0", "--line", GetParam()});
   SocketClient first(simulator.tcp_port());
   auto second = std::make_unique<SocketClient>(simulator.tcp_port());
-  second->send("$05M\r");  // the program has accepted the first client by now
+  second->send("$05M\r");  // the program accepts the first client before this one
   EXPECT_EQ(second->receive_text(9), "!059042D\r");
   EXPECT_EQ(first.receive_text(9), "!059042D\r");
   first.send("$052\r");
@@ -81,8 +81,8 @@ TEST_P(Tcp, AHalfClosedClientGetsItsReplyAndIsThenDisconnected) {
   EXPECT_TRUE(client.closed());
 }
 
-/// Returns the bytes that arrive until they contain `reply`. Sends the request again if nothing has arrived
-/// for a second, at most 60 times.
+/// Sends the request, and reads until `reply` arrives. Sends the request again if nothing has arrived for a
+/// second, at most 60 times in total. Returns all bytes that have arrived.
 std::string heard_by_asking_again(SocketClient& client, const std::string& request,
                                   const std::string& reply) {
   // A busy machine can only cause more requests. The number of tries only detects a program that hangs.
@@ -107,12 +107,11 @@ TEST_P(Tcp, AClientThatResetsItsConnectionDoesNotAffectOthers) {
     client.send("$05M\r");
     client.abort();
   }
-  // The replies may collide with the next request, so the master repeats it when the line is quiet.
+  // The replies may collide with the next request, so the master repeats the request when the line is quiet.
   EXPECT_NE(heard_by_asking_again(other, "\r$052\r", "!05400600\r").find("!05400600\r"), std::string::npos);
   EXPECT_EQ(simulator.end(SIGTERM), 0);
 }
 
-// The client's command and the reply to it collide with the flood.
 TEST_P(Tcp, AFloodOfInvalidBytesDoesNotBlockTheLine) {
   SimulatorProcess simulator({"EX9042D@05,baud=115200", "--tcp", "0", "--line", GetParam()});
   {
@@ -120,7 +119,7 @@ TEST_P(Tcp, AFloodOfInvalidBytesDoesNotBlockTheLine) {
     flooder.send(std::vector<std::uint8_t>(20'000, 'x'));
   }
   SocketClient client(simulator.tcp_port());
-  // The master repeats its request while the line is busy with the flood.
+  // The request and the reply may collide with the flood, so the client repeats the request.
   EXPECT_NE(heard_by_asking_again(client, "\r$05M\r", "!059042D\r").find("!059042D\r"), std::string::npos);
 }
 
@@ -257,8 +256,8 @@ class Cable {
     tcgetattr(far_, &settings);
     return settings;
   }
-  /// Gives the port settings that another program may have left. All are unsuitable for a line of modules,
-  /// except the 8 data bits that a pseudo-terminal always has.
+  /// Gives the port settings that another program may have left. All of them are unsuitable for a line of
+  /// modules, except the 8 data bits that a pseudo-terminal always has.
   void leave_set_for_something_else() const {
     termios settings{};
     tcgetattr(far_, &settings);
@@ -343,7 +342,8 @@ TEST(SerialPort, APortThatCannotHaveTheLineFormatIsRefused) {
                  "--serial " + cable.device(), "cannot be set to 9600 baud 8E1");
 }
 
-// 248 characters take a quarter of a second, so the program writes the reply in pieces.
+// The 250 characters of the reply take more than a quarter of a second, so the program writes the reply in
+// pieces.
 TEST(SerialPort, ALongReplyIsSentCompletely) {
   const Cable cable;
   SimulatorProcess simulator({"EX9042D-M@05", "--serial", cable.device()});
@@ -363,7 +363,7 @@ TEST(SerialPort, TheEchoOfAnAdapterIsIgnoredWithTheEchoOption) {
   for (int round = 0; round < 5; ++round) {
     cable.write(switch_on);
     EXPECT_EQ(cable.read(switch_on.size()), switch_on);
-    cable.write(switch_on.substr(0, 3));  // the echo
+    cable.write(switch_on.substr(0, 3));  // the echo of the reply
     cable.write(switch_on.substr(3));
   }
   const std::string read_outputs("\x01\x01\x00\x00\x00\x0D\xFD\xCF", 8);

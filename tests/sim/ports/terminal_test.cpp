@@ -1,4 +1,4 @@
-// Tests DCON commands that a person types in a terminal program on the program's pseudo-terminal.
+// Tests the simulator's pseudo-terminal with DCON commands that a person types in a terminal program.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -32,8 +32,8 @@ TEST(Dcon, TheNextMasterDoesNotReceiveAnUnreadReply) {
     impatient.type("$05M\r");
   }
   ASSERT_TRUE(simulator.wait_for("!05FIRST")) << simulator.output();
-  ControlClient(simulator.directory() + "/control")
-      .ok("list");  // replies after the last byte has been written too
+  // The program answers this command after it has written the last byte of the reply.
+  ControlClient(simulator.directory() + "/control").ok("list");
   Terminal terminal(simulator.tty(), 9600);
   terminal.type("$052\r");
   EXPECT_EQ(terminal.read_line(), "!05400600\r");

@@ -1,4 +1,5 @@
-// Tests the messages that the program prints if the host gives it no processor time.
+// Tests the messages that the program prints if the host gives it no processor time, or if the program
+// reads two requests in one piece.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
@@ -54,7 +55,7 @@ TEST(LateHost, ALateHostIsReportedWithItsDelay) {
   SimulatorProcess simulator({"EX9052D@01", "--tcp", "0", "--input", "1 0 square 10ms"});
   SocketClient client(simulator.tcp_port());
   client.send("$01M\r");
-  ASSERT_EQ(client.receive_text(8), "!019052\r");  // the line has started
+  ASSERT_EQ(client.receive_text(8), "!019052\r");  // the line runs
   suspend(simulator.pid(), std::chrono::milliseconds(300));
   // An event is due every 5 ms, so the program is late by at least 295 ms when it continues. It reports a
   // delay only if that delay is at least twice the longest delay that it has reported before. If a busy host

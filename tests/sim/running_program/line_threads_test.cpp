@@ -1,4 +1,4 @@
-// Tests the threads of the lines: pauses, and exceptions of handlers.
+// Tests the threads of the lines: their start, the distribution of the lines, pauses, and exceptions.
 #include "sim/running_program/line_threads.hpp"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ namespace {
 
 using boost::asio::io_context;
 
-TEST(LineThreads, OneThreadIsTheMainThread) {
+TEST(LineThreads, WithOneThreadAllLinesRunOnTheMainThread) {
   io_context main;
   LineThreads threads(main, 1);
   EXPECT_EQ(&threads.io(0), &main);
@@ -71,7 +71,7 @@ TEST(LineThreads, NoHandlerOfALineRunsDuringAPause) {
   }
   threads.end();
   const int after = counts[0];
-  threads.pause_for([] {});  // has nothing to wait for
+  threads.pause_for([] {});  // no thread runs, so there is nothing to wait for
   EXPECT_EQ(counts[0], after);
 }
 
@@ -108,7 +108,7 @@ TEST(LineThreads, AnActionThatThrowsEndsThePause) {
   }
 }
 
-TEST(LineThreads, AHandlerThatThrowsStopsTheMainThreadWhichGetsTheException) {
+TEST(LineThreads, AnExceptionOfAHandlerStopsTheMainLoopAndIsRethrown) {
   io_context main;
   const auto work = boost::asio::make_work_guard(main);
   LineThreads threads(main, 2);

@@ -1,5 +1,5 @@
-// Tests lines of a bus file and of the command line in the running program: ports, faults, inputs and
-// memories.
+// Tests lines of a bus file and of the command line in the running program: ports, faults, inputs and EEPROM
+// files.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -50,7 +50,7 @@ class Lines {
     return process_.directory() + "/" + name;
   }
   ControlClient& control() { return control_; }
-  /// Returns the TCP port in the greeting with the index `count`, from 0.
+  /// Returns a TCP port from the greeting. `count` is the index of the port, from 0.
   [[nodiscard]] std::uint16_t tcp_port(int count) const {
     const std::string lead = "TCP 127.0.0.1:";
     auto at = process_.output().find(lead);
@@ -175,7 +175,7 @@ TEST(Lines, FaultsAffectTheNamedLineOnly) {
   EXPECT_EQ(ask(hall, "$01M"), "!019042D");
   yard.type("$01M\r");
   hall.type("$02M\r");
-  EXPECT_TRUE(lines.process().wait_for("  > master  $02M"));  // before the faults end
+  EXPECT_TRUE(lines.process().wait_for("  > master  $02M"));  // on the line before the faults end
   EXPECT_TRUE(lines.process().wait_for("  > master  $01M", 2));
   EXPECT_TRUE(
       yard.read(milliseconds(100))
@@ -401,7 +401,7 @@ TEST(LineOfTheCommandLine, BytesThatNoModuleHasSentAreReceivedAndLogged) {
   EXPECT_EQ(simulator.end(SIGTERM), 0);
 }
 
-TEST(LineOfTheCommandLine, TheLogReportsTheBeginningAndEndOfFaults) {
+TEST(LineOfTheCommandLine, TheBeginningAndTheEndOfFaultsArePrinted) {
   SimulatorProcess simulator({"EX9042D", "--fault", "gone at 300ms for 100ms"});
   EXPECT_TRUE(simulator.wait_for("fault 1 occurs: gone at 300ms for 100ms")) << simulator.output();
   EXPECT_TRUE(simulator.wait_for("fault 1 is over: gone at 300ms for 100ms")) << simulator.output();

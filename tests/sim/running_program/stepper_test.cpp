@@ -124,7 +124,7 @@ class StepperTest : public testing::Test {
 };
 
 TEST_F(StepperTest, AdvancesTheTimeOfAllLinesAndReportsItInSeconds) {
-  EXPECT_EQ(advance("250ms"), "ok 0.35");  // the time is 0.1 s after the modules have started up
+  EXPECT_EQ(advance("250ms"), "ok 0.35");  // the modules have started up in the first 0.1 s
   EXPECT_EQ(line_.stepped->now(), milliseconds(350));
   EXPECT_EQ(other_.stepped->now(), milliseconds(350));
   EXPECT_EQ(advance("0s"), "ok 0.35");
@@ -139,7 +139,7 @@ TEST_F(StepperTest, TimeStopsWhenTheProgramIsAskedToEnd) {
   EXPECT_FALSE(quits_);
 }
 
-TEST_F(StepperTest, NothingHappensWithoutAnAdvance) {
+TEST_F(StepperTest, WithoutAnAdvanceNoTimePassesAndNoReplyArrives) {
   line_.port->write("$01M\r");
   line_.port->tell();
   EXPECT_EQ(line_.stepped->now(), milliseconds(100));
@@ -180,7 +180,7 @@ TEST_F(StepperTest, WaitsForTheGivenNumberOfBytes) {
 TEST_F(StepperTest, CountsTheNewBytesOfAllLines) {
   line_.port->write("$01M\r");
   EXPECT_EQ(advance("50ms after 5"), "ok 0.15");
-  EXPECT_EQ(advance("50ms after 10"), "");  // those five do not count again
+  EXPECT_EQ(advance("50ms after 10"), "");  // the five bytes before do not count again
   line_.port->write("$01M\r");
   line_.port->tell();
   EXPECT_TRUE(answers_.empty());
@@ -348,7 +348,7 @@ TEST_F(StepperTest, TheProgramEndsAtItsEndTime) {
   EXPECT_TRUE(quits_);
 }
 
-TEST_F(StepperTest, MastersWaitWhenTooMuchHasArrived) {
+TEST_F(StepperTest, BytesBeyondTheMaximumAreNotReadBeforeAnAdvance) {
   const std::vector<std::uint8_t> zeros(SteppedLine::kMostBytes, 0);
   line_.port->write(zeros);
   line_.port->tell();
@@ -370,7 +370,7 @@ TEST_F(StepperTest, AnInvalidAdvanceIsRefusedAndDoesNotAdvance) {
   }
 }
 
-TEST_F(StepperTest, WaitsForAsManyBytesAsItStores) {
+TEST_F(StepperTest, WaitsForUpTo65536Bytes) {
   EXPECT_EQ(advance("1s after 65536"), "");
   line_.port->write(std::vector<std::uint8_t>(65536, 0));
   line_.port->tell();

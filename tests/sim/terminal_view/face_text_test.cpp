@@ -74,7 +74,7 @@ TEST(FaceText, ShowsOutputsAsRoundLampsIfRequested) {
   EXPECT_EQ(shown(bench, kRoundLamps)[2], "           ●  ○  ○  ○");
 }
 
-TEST(FaceText, ShowsOnlyTheSwitchesAndTheTerminalsWithoutPower) {
+TEST(FaceText, WithoutPowerShowsNoActiveSettingsCountersLatchesOrHostWatchdog) {
   ModuleBench bench("EX9052D@07");
   bench.module().set_input(0, true);
   bench.module().set_init(true);

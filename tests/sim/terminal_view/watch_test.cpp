@@ -1,4 +1,5 @@
-// Tests the view of modules: repainted in place in a terminal, otherwise one printed line for each change.
+// Tests the view of modules. In a terminal, the program repaints the view in place. Without a terminal, the
+// program prints one line for each change.
 #include "sim/terminal_view/watch.hpp"
 
 #include <gtest/gtest.h>

@@ -129,7 +129,7 @@ TEST(WatchedProgram, AnUnreadTerminalDoesNotDelayReplies) {
   for (int i = 0; i < 10; ++i) {
     ASSERT_TRUE(answers());
   }
-  // When the window is read again, the program paints all modules again.
+  // When the test reads the window again, the program paints all modules again.
   std::string painted;
   while (!window.has_room()) {
     painted = window.read_some();

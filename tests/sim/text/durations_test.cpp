@@ -1,4 +1,4 @@
-// Tests durations as people write them.
+// Tests the parsing of durations that people write, and the text of durations that the program writes.
 #include "sim/text/durations.hpp"
 
 #include <gtest/gtest.h>
@@ -30,7 +30,7 @@ TEST(TimeText, IsExactToTheNanosecond) {
   EXPECT_EQ(parse_time("0.001us"), 1ns);
 }
 
-TEST(TimeText, AnythingElseIsRefusedWithExamples) {
+TEST(TimeText, AnyOtherTextIsRefusedWithExamples) {
   for (const char* text :
        {"",    "s",   "5",    "5 s",    " 5s",   "5s ",  "5S",   "5sec",  "5m",     "5ns",
         "-1s", "+1s", "1e3s", "1.2.3s", "0x10s", "infs", "nans", "8761h", "1e999s", "99999999999999999999h",

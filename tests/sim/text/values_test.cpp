@@ -17,7 +17,7 @@ using Bytes = std::vector<std::uint8_t>;
 
 constexpr std::uint64_t kMost = std::numeric_limits<std::uint64_t>::max();
 
-/// Expects that `parse` rejects each of `texts` with a message that contains the text and `expected`.
+/// Expects that `parse` rejects each of `texts` with the message `'TEXT': expected EXPECTED`.
 template <class Parse>
 void expect_refused(Parse parse, const std::vector<std::string>& texts, const std::string& expected) {
   for (const std::string& text : texts) {
@@ -88,7 +88,7 @@ TEST(Probability, IsAbove0AndUpTo1) {
 
 // --- baud rates ---
 
-TEST(BaudRate, IsABaudRateThatModulesSupport) {
+TEST(BaudRate, AcceptsOnlyRatesThatModulesSupport) {
   for (const std::uint32_t rate : kBaudRates) {
     EXPECT_EQ(parse_baud_rate(std::to_string(rate)), rate);
   }

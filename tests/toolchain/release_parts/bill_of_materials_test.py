@@ -30,7 +30,7 @@ class BillOfMaterials(unittest.TestCase):
             self.assertRegex(package["SPDXID"], r"^SPDXRef-[A-Za-z0-9.-]+$")
             self.assertTrue({"name", "downloadLocation", "licenseConcluded", "copyrightText"} <= set(package))
 
-    def test_each_relationship_has_two_ends(self) -> None:
+    def test_relationships_connect_the_document_and_all_packages(self) -> None:
         known = {package["SPDXID"] for package in self.document["packages"]} | {"SPDXRef-DOCUMENT"}
         self.assertEqual(len(known), len(self.document["packages"]) + 1)
         ends = {end for r in self.document["relationships"] for end in (r["spdxElementId"], r["relatedSpdxElement"])}
@@ -50,7 +50,7 @@ class BillOfMaterials(unittest.TestCase):
             self.assertRegex(path, r"^[a-z_]+$")
 
     def includes(self, *folders: str) -> set[str]:
-        """Returns the headers in angle brackets."""
+        """Returns the headers that the sources in `folders` include in angle brackets."""
         listed = subprocess.run(
             ["git", "grep", "-hoE", "^#include <[^>]+>", "--", *folders],
             cwd=ROOT,

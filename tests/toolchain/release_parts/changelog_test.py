@@ -31,7 +31,7 @@ TEXT = """# Changelog
 
 
 class Changelog(unittest.TestCase):
-    def test_the_section_of_a_version_ends_at_the_next(self) -> None:
+    def test_the_section_of_a_version_ends_at_the_next_section(self) -> None:
         section = section_of("1.01", TEXT, False)
         self.assertEqual(section.date, datetime.date(2026, 12, 24))
         self.assertEqual((section.lines[0], section.lines[-1]), ("### Fixed", "- Another."))

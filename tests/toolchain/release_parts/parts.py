@@ -1,4 +1,4 @@
-"""What the tests of the release parts have in common."""
+"""Helpers for the tests of the release parts."""
 
 from __future__ import annotations
 
@@ -16,7 +16,8 @@ sys.path.insert(0, str(ROOT / "toolchain/release_parts"))
 
 
 def written(*words: str) -> str:
-    """Returns what toolchain/release_parts/write writes."""
+    """Runs toolchain/release_parts/write with the arguments `words`. Returns its output. Raises AssertionError if it
+    fails."""
     environment = {"PATH": "/usr/bin:/bin", "SOURCE_DATE_EPOCH": str(SECONDS)}
     done = subprocess.run([str(WRITE), *words], env=environment, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
@@ -24,5 +25,5 @@ def written(*words: str) -> str:
 
 
 def printed(*words: str) -> str:
-    """Returns what the program prints."""
+    """Runs ex9000-sim with the arguments `words`. Returns its standard output."""
     return subprocess.run([str(PROGRAM), *words], capture_output=True, text=True, check=True).stdout

@@ -1,6 +1,6 @@
 // Replaces firmware/line/crossing.hpp and has the same interface. Before and after each access of the main
 // loop there is a point at which an interrupt can occur. The classes throw std::logic_error if the wrong side
-// writes, or if an interrupt uses a value while the main loop writes it.
+// calls a function, or if an interrupt uses a value while the main loop writes it.
 #pragma once
 
 #include <cstdint>
