@@ -144,7 +144,9 @@ class Workshop:
 
     @staticmethod
     def passes(program, place, folder):
-        limits = ["prlimit", f"--cpu={program.processor_seconds}", f"--as={MOST_MEMORY}"]
+        # A mutant can also make a test wait for ever without using the processor. The time limit only detects this.
+        limits = ["timeout", "--signal=KILL", "600", "prlimit", f"--cpu={program.processor_seconds}",
+                  f"--as={MOST_MEMORY}"]
         return run(
             [*limits, place, "--gtest_brief=1", "--gtest_fail_fast"],
             folder if program.images else ROOT,
