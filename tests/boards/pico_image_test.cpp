@@ -237,6 +237,27 @@ TEST_F(PicoImage, TheModuleCountsEveryPulseOfEightInputsDuringContinuousRequests
   EXPECT_EQ(bench_.counts().at("depth"), 1);
 }
 
+TEST_F(PicoImage, TheModuleReportsTheLevelsOfItsInputs) {
+  begin("EX9052D");
+  EXPECT_EQ(ask("@01"), ">0000\r");
+  for (unsigned channel = 0; channel < 8; ++channel) {
+    bench_.set_input(channel, channel % 3 != 0);
+  }
+  bench_.run_for(milliseconds(1));
+  EXPECT_EQ(ask("@01"), ">B600\r");
+}
+
+// wire.md section 2: in INIT mode, the module has address 00 and uses no checksum.
+TEST_F(PicoImage, TheInitSwitchSelectsTheInitMode) {
+  begin();
+  EXPECT_EQ(ask("$00M"), "");
+  bench_.power(false);
+  bench_.set_init(true);
+  bench_.power(true);
+  bench_.run_for(kComingUp);
+  EXPECT_EQ(ask("$00M"), "!009043M\r");
+}
+
 enum class Doing : std::uint8_t { Nothing, Receiving, Replying, Storing, Erasing };
 const char* name_of(Doing doing) {
   constexpr const char* kNames[] = {"Nothing", "Receiving", "Replying", "Storing", "Erasing"};

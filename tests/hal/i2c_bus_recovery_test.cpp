@@ -55,6 +55,22 @@ std::string levels_of_recovery(int clock) {
   return RecordedWires::levels;
 }
 
+/// The longest time for which the result of `Deadline::reached` is correct is 35 minutes.
+TEST(I2cBusRecoveryTest, ARecoveryLongAfterTheLastOneBeginsImmediately) {
+  I2cBusRecovery<RecordedWires> recovery;
+  for (int pass = 0; pass < 2; ++pass) {
+    RecordedWires::levels.clear();
+    RecordedWires::held_for = 1;
+    recovery.begin();
+    EXPECT_FALSE(recovery.poll(now));
+    EXPECT_EQ(RecordedWires::levels, "Cd cd ");
+    while (!recovery.poll(now)) {
+      now = now + Duration(1);
+    }
+    now = now + milliseconds(40U * 60U * 1000U);
+  }
+}
+
 const std::string kStartAndStop = "Cd CD ";
 
 TEST(I2cBusRecoveryTest, ABusThatIsFreeGetsOnlyStartAndStop) {

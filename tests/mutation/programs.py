@@ -308,6 +308,9 @@ PICO_TESTS = """
     PicoImage.AReplyBeginsOneCharacterAfterTheRequest
     PicoImage.AReplyToAStoreBeginsWithoutWaitingForTheTick
     PicoImage.TheModuleCountsEveryPulseOfEightInputsDuringContinuousRequests
+    PicoImage.TheModuleReportsTheLevelsOfItsInputs
+    PicoImage.TheInitSwitchSelectsTheInitMode
+    PicoImage.TheModuleReportsTheReasonOfEachReset
     HangingPicoImage.IsResetByTheWatchdogIfTheMainLoopHangs
     PicoWithEeprom.AReplyToAStoreBeginsWithoutWaitingForThePollOfTheMemory
     PicoWithEeprom.APowerFailureDuringAStoreLeavesTheOldOrTheNewName

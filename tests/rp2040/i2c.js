@@ -15,6 +15,7 @@ const SPIKE_LENGTH = 0xa0;
 const ABORTED = 1 << 6;
 const QUEUE_LOW = 1 << 4;
 const ON = 1 << 0;
+const MASTER_ONLY = (1 << 0) | (1 << 6); // master enabled, slave disabled; the chip permits no other mode for a master
 
 const WHILE_OFF = [CONTROL, TARGET, HIGH_COUNT, LOW_COUNT, HOLD_TIME, SPIKE_LENGTH];
 
@@ -41,6 +42,9 @@ function correctI2c(master) {
     }
     if (offset === DATA_COMMAND && (i2c.txFIFO.full || !(i2c.enable & ON))) {
       i2c.error("a command is queued while there is no room for it, or while the master is off");
+    }
+    if (offset === DATA_COMMAND && (read(CONTROL) & MASTER_ONLY) !== MASTER_ONLY) {
+      i2c.error("a command is queued, but the block is not a master only");
     }
     if (offset === INTERRUPT_MASK) {
       i2c.intEnable = value;

@@ -63,9 +63,12 @@ class Interleaver {
   /// Tries random pairs of points: the first steps at one point, the others at the same or a later point.
   /// Tries nothing if there is only one step.
   void at_pairs(std::mt19937& random, unsigned samples) {
+    if (steps_ < 2) {
+      return;
+    }
     std::uniform_int_distribution<int> any_point(kBeforeTheTurn, static_cast<int>(points_));
     std::uniform_int_distribution<std::size_t> any_step(1, steps_ - 1);
-    for (unsigned i = 0; i < samples && steps_ > 1; ++i) {
+    for (unsigned i = 0; i < samples; ++i) {
       const int first = any_point(random);
       const int second = any_point(random);
       Places places(steps_, std::max(first, second));

@@ -15,7 +15,7 @@
 //    `open`;
 //  - InputEdges::levels_: `begin` writes them before interrupts are enabled;
 //  - the driver's pin: the mask in the address selects the pin, so that a write needs no read.
-// Only the main loop uses EventTally::collected_; the interrupt only writes `total_`.
+// Only the main loop uses EventTally::collected_; the interrupt uses only `total_`.
 //
 // Time passes as on a line: a byte takes 87 us even if it arrives in the middle of a turn, so interrupts may
 // delay a turn by milliseconds.

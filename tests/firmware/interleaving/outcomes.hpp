@@ -18,8 +18,8 @@ inline Parts outputs_and_name(Bench& bench) {
           std::string(settings.name.bytes().begin(), settings.name.bytes().end())};
 }
 
-/// Returns one part for each channel, because the order of edges on different channels is not defined: a
-/// command may see an edge on one channel, but not an earlier edge on another channel.
+/// Returns one part for each of the channels 0 and 1, because the order of edges on different channels is not
+/// defined: a command may see an edge on one channel, but not an earlier edge on another channel.
 inline Parts inputs(Bench& bench) {
   const ex9000::Inputs& inputs = bench.module().state().inputs;
   Parts parts;

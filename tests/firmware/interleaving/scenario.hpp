@@ -18,7 +18,7 @@ struct Scenario {
   std::function<void(Settings&)> settings;
   Step before;               ///< prepares the module for the turn
   std::vector<Step> script;  ///< the events in their order; each occurs before, during or after the turn
-  /// The permitted lists of replies, from the start of the turn until the module is idle.
+  /// The permitted lists of replies, from the start of `before` until the module is idle.
   std::vector<std::vector<std::string>> replies;
   std::function<std::vector<std::string>(Bench&)> comes_to;
   std::string probe;          ///< a request that is sent at the end

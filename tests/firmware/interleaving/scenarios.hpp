@@ -10,11 +10,11 @@
 
 namespace ex9000::interleaving {
 
-/// Returns a scenario for the DCON module EX9055D with factory settings.
+/// Returns a scenario for the DCON module EX9055D with factory settings, but 115200 baud.
 Scenario dcon(const char* name, Step before, std::vector<Step> script,
               std::vector<std::vector<std::string>> replies, std::function<Parts(Bench&)> comes_to);
 
-/// Returns a scenario for the Modbus module EX9042D-M with factory settings.
+/// Returns a scenario for the Modbus module EX9042D-M with factory settings, but 115200 baud.
 Scenario modbus(const char* name, Step before, std::vector<Step> script,
                 std::vector<std::vector<std::string>> replies, std::function<Parts(Bench&)> comes_to);
 

@@ -12,8 +12,9 @@ namespace {
 const Model& the_model() { return *find_model("EX9042D-M"); }
 
 const std::vector<Effect> kEveryEffect{
-    Effect::RestartHostWatchdog, Effect::TakeAddress,  Effect::TakeSample,       Effect::MarkSampleRead,
-    Effect::ClearResetStatus,    Effect::ClearLatches, Effect::ClearDiagnostics, Effect::ClearCounters};
+    Effect::RestartHostWatchdog, Effect::TakeAddress,      Effect::TakeCountingEdge, Effect::TakeSample,
+    Effect::MarkSampleRead,      Effect::ClearResetStatus, Effect::ClearLatches,     Effect::ClearDiagnostics,
+    Effect::ClearCounters,       Effect::ClearTimeoutCount};
 
 Outcome of_everything() {
   Outcome outcome;

@@ -111,6 +111,18 @@ TEST(EchoFault, WaitsForTheEndOfTheRequestEvenIfTheDelayIsShort) {
   EXPECT_GT(of_others(bench)[0].first, bench.recorder().bytes[4].end);
 }
 
+TEST(EchoFault, TheLineIsUnsettledFromTheRequestToTheEndOfTheEcho) {
+  FaultBench bench;
+  bench.add("echo 5ms");
+  EXPECT_FALSE(bench.line().unsettled());
+  bench.send("$05M");
+  bench.run(4ms);
+  EXPECT_TRUE(bench.line().unsettled());
+  bench.run(50ms);
+  EXPECT_EQ(bench.heard(), "$05M");
+  EXPECT_FALSE(bench.line().unsettled());
+}
+
 TEST(EchoFault, FollowsTheLinesRate) {
   FaultBench bench;
   bench.add("echo 5ms");

@@ -1,5 +1,6 @@
-// Feeds an hour of noise to a module, once for each protocol. Only a valid frame may cause a reply or change
-// an output. The test decides without the firmware's code which frames are valid.
+// Feeds an hour of noise to a module, once for each protocol and, in ASCII, also with checksums. Only a valid
+// frame may cause a reply or change an output. The test decides without the firmware's code which frames are
+// valid.
 #include <gtest/gtest.h>
 
 #include <cstdio>

@@ -127,8 +127,12 @@ TEST(EepromFile, ANewFileHasThePermissionsThatTheUmaskAllows) {
   const mode_t before = umask(027);
   EepromFile file(directory / "a");
   file.create(some_image());
+  umask(0);
+  EepromFile file_for_all(directory / "b");
+  file_for_all.create(some_image());
   umask(before);
   EXPECT_EQ(fs::status(directory / "a").permissions(), fs::perms(0640));
+  EXPECT_EQ(fs::status(directory / "b").permissions(), fs::perms(0666));
 }
 
 TEST(EepromFile, AFileBeyondTheSizeLimitIsRefusedWithTheReasonAndNoFileRemains) {

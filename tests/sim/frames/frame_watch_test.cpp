@@ -108,6 +108,14 @@ TEST_F(FrameWatchTest, UnansweredRequestsAreSeparateFrames) {
   EXPECT_EQ(frames[1].bytes, request);
 }
 
+// The shortest request has four bytes: Modbus over Serial Line V1.02, 2.3.
+TEST_F(FrameWatchTest, AnUnansweredRequestOfFourBytesIsAFrame) {
+  send(kMaster, with_crc({5, 7}));
+  pass(microseconds(3700));
+  send(kMaster, with_crc({5, 7}));
+  EXPECT_EQ(frames.size(), 1U);
+}
+
 TEST_F(FrameWatchTest, ACorrectCrcWithoutAGapDoesNotEndAFrame) {
   const FrameBytes request = with_crc({0, 5, 0, 2, 0xFF, 0});
   send(kMaster, request);

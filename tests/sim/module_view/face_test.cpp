@@ -47,6 +47,8 @@ TEST(Face, ShowsOutputsInputsCountersAndLatches) {
 
 TEST(Face, ShowsTheRemainingTimeOfATimedOutput) {
   ModuleBench bench("EX9055D");
+  ASSERT_EQ(bench.ask("~01X02800064"), "!01");  // output 0 for 10 s
+  EXPECT_GT(face_of(bench).plate.timers[0], 90U);
   ASSERT_EQ(bench.ask("~01X02820064"), "!01");  // output 2 for 10 s
   const unsigned left = face_of(bench).plate.timers[2];
   EXPECT_GT(left, 90U);

@@ -205,6 +205,11 @@ TEST(PanelOfTwoLines, ANoteIsReportedWithItsLine) {
   EXPECT_EQ(frames[0]["entries"][0]["note"], "gone ends");
 }
 
+TEST(PanelMessages, AMessageIsOneLineOfText) {
+  PanelBench bench("EX9055D");
+  EXPECT_EQ(text_of(bench.look()).find('\n'), std::string::npos);
+}
+
 TEST(PanelMessages, FramesComeWithTimeDirectionBytesAndMeaning) {
   PanelBench bench("EX9055D");
   static_cast<void>(bench.look());

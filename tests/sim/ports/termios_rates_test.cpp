@@ -44,6 +44,10 @@ TEST(TermiosRates, EachRateHasADifferentSpeedConstant) {
   }
 }
 
+TEST(TermiosRates, TheFlagsOfALineFormatAreTheStopBitsAndTheParity) {
+  EXPECT_EQ(kTermiosFormat, static_cast<tcflag_t>(CSTOPB) | static_cast<tcflag_t>(PARENB) | PARODD);
+}
+
 TEST(TermiosRates, IncludeEveryBaudRateOfAModule) {
   // wire.md section 4: CC 03 to 0A.
   for (const std::uint32_t rate : {1200U, 2400U, 4800U, 9600U, 19200U, 38400U, 57600U, 115200U}) {
