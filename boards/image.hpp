@@ -1,5 +1,6 @@
-// Checks and definitions for all images, on any microcontroller. Include this file once, after the
-// `board.hpp` of a board, which must define kOutputs and kInputs: arrays of pin groups, each with a `count`.
+// Checks and definitions for all images, on any microcontroller whose UART reports a byte in the middle of
+// its first stop bit. Include this file once, after the `board.hpp` of a board, which must define kOutputs
+// and kInputs: arrays of pin groups, each with a `count`.
 #pragma once
 
 #include "boards/image_info.hpp"
@@ -11,8 +12,8 @@ namespace ex9000::board {
 #ifdef EX9000_IMAGES
 static_assert(
     kModels.size() == EX9000_IMAGES,
-    "a row of the model table has no image; begin the row with a brace, the quoted name, and the numbers of "
-    "inputs and outputs, because boards/CMakeLists.txt finds rows by this pattern");
+    "a row of the model table has no image; begin the line of the row with four spaces and {\"EX9, because "
+    "boards/CMakeLists.txt finds rows by this pattern");
 #endif
 
 #ifdef EX9000_PRESET

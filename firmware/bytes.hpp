@@ -1,4 +1,4 @@
-// Views of bytes that the caller owns.
+// Views of bytes that they do not own.
 #pragma once
 
 #include <cstddef>

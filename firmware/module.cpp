@@ -8,7 +8,7 @@ namespace {
 
 constexpr Duration kInitTimeout = milliseconds(50);  // wire.md D13
 constexpr std::uint8_t kInitModeAddress = 0x00;
-constexpr Duration kClockResolution(1);  // a byte may have ended this much later than its recorded time
+constexpr Duration kClockResolution(1);  // a report may be this much later than its recorded time
 
 constexpr Duration sooner(Duration a, Duration b) { return b < a ? b : a; }
 
@@ -184,7 +184,7 @@ void Module::dispatch(Time now) {
 }
 
 /// Returns the time until the waiting frame may be judged. This is 0 for a Modbus frame, which is complete
-/// only after its silence. A DCON frame is complete when its turn-around time begins.
+/// only after its silence (exception: wire.md D9). A DCON frame is complete when its turn-around time begins.
 Duration Module::until_request(Time now) const {
   if (state_.speaks_modbus()) {
     return {};
@@ -210,7 +210,7 @@ void Module::continue_store(Time now) {
   if (awaiting_store) {
     const Settings changed = cycle_.outcome().change().applied_to(state_.settings);
     if (changed == keeper_.stored() && keeper_.certain()) {
-      commit(now);  // a command that changes nothing writes nothing
+      commit(now);  // a reset now would load these settings, so nothing is written
     } else {
       keeper_.save(changed, now);
       cycle_.store_begun();

@@ -29,8 +29,8 @@ class Duration {
 
 constexpr Duration milliseconds(std::uint32_t value) { return Duration(value * 1000U); }
 
-/// A point in time. Times wrap, so they have no order; use `since` instead. Its result is correct if the two
-/// points are less than 71.6 minutes apart.
+/// A point in time. Times wrap, so they have no order; use `since` instead. Its result is correct if
+/// `earlier` is not the later point, and if the two points are less than 71.6 minutes apart.
 class Time {
  public:
   constexpr Time() = default;

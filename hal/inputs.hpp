@@ -8,8 +8,9 @@
 
 namespace ex9000::hal {
 
-/// The input channels. The edge interrupt calls `Device::on_edge` for each edge. The interrupt must clear the
-/// edge flag before it reads the level.
+/// The input channels. The edge interrupt calls `Device::on_edge` for each edge. Edges of a channel that
+/// occur before the interrupt runs may share one call. The interrupt must clear the edge flag before it reads
+/// the level.
 ///
 ///     std::uint16_t start()
 ///         Starts to report edges, and returns the levels before the first edge: bit n is channel n, 1 =

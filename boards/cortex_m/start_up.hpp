@@ -79,5 +79,5 @@ constexpr VectorTable<interrupts> vectors(Handler on_system_tick, const List& li
 
 }  // namespace ex9000::start_up
 
-/// Starts the drivers and runs the main loop; does not return. The composition file defines it.
+/// Starts the drivers and runs the main loop; does not return. In an image, the composition file defines it.
 int main();

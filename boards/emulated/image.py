@@ -15,7 +15,7 @@ _LOADED = 1  # PT_LOAD
 
 @dataclass(frozen=True)
 class Memory:
-    """The addresses that image.ld of a board defines."""
+    """A preset, and the addresses that image.ld of its board defines."""
 
     preset: str
     vectors: int  # address of the vector table
@@ -32,7 +32,7 @@ class Segment:
 def read(path: Path, memory: Memory) -> list[Segment]:
     """Returns the loaded segments of an image.
 
-    Raises Refusal if the file cannot be read or is not an ELF image for this board. An emulator starts any file.
+    Raises Refusal if the file cannot be read or is not an ELF image for this board. An emulator does not check this.
     Without this check, QEMU would run a wrong file for 60 s before `run` reports an error, and `run` would report none
     if the file had enabled the UART by then.
     """
@@ -63,8 +63,8 @@ def _segments(file: bytes) -> Iterator[Segment]:
 
 
 def _word_at(segments: list[Segment], address: int) -> int | None:
-    """Returns the word at an address, or None if no segment begins there. The first word of the vectors is the initial
-    stack pointer."""
+    """Returns the word at an address, or None if no segment of at least four bytes begins there. The first word of the
+    vectors is the initial stack pointer."""
     for segment in segments:
         if segment.address == address and len(segment.content) >= 4:
             return int(struct.unpack_from("<I", segment.content)[0])

@@ -12,8 +12,8 @@ _BLANK = b"\xff"
 
 
 def in_memory(size: int, content: bytes = b"") -> int:
-    """Returns the descriptor of a memory of this size, which exists until the descriptor is closed. The bytes after
-    `content` are blank."""
+    """Returns the descriptor of a memory of this size, which exists until its last descriptor is closed. The bytes
+    after `content` are blank."""
     descriptor = os.memfd_create("memory")
     os.write(descriptor, content + _BLANK * (size - len(content)))
     return descriptor

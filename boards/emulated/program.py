@@ -81,7 +81,7 @@ def run(arguments: argparse.Namespace, emulator: str, start: Callable[[], Machin
 
 
 def _signal_descriptor() -> int:
-    """Returns a descriptor that becomes readable when SIGINT, SIGTERM or SIGHUP arrives."""
+    """Returns a descriptor that becomes readable when SIGINT, SIGTERM or SIGHUP arrives and is not ignored."""
     readable, writable = os.pipe()
     os.set_blocking(writable, False)
     signal.set_wakeup_fd(writable)

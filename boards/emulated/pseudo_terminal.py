@@ -73,7 +73,8 @@ class PseudoTerminal:
     def _forget_unread(self) -> None:
         """Discards unread bytes, so that the next master does not get the reply to another master.
 
-        Call this when a master closes the terminal: the next master may read as soon as it has opened the terminal.
+        Call this when the last master has closed the terminal: the next master may read as soon as it has opened the
+        terminal.
         """
         self._written = False
         slave = os.open(self.device, os.O_RDWR | os.O_NOCTTY | os.O_CLOEXEC)

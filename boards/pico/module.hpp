@@ -1,5 +1,5 @@
-// The clock, the pins and the polarity of the Raspberry Pi Pico and the Pico W. Only the status LED differs.
-// README.md in this folder describes the wiring.
+// The clock, the pins and the polarity of the Raspberry Pi Pico and the Pico W. The two boards differ only in
+// the status LED. README.md in this folder describes the wiring.
 #pragma once
 
 #include <array>
@@ -40,7 +40,7 @@ inline constexpr PinGroup kI2cPins{4, 2};
 inline constexpr std::array<PinGroup, 2> kOutputs{PinGroup{6, 8}, PinGroup{14, 8}};
 inline constexpr std::array<PinGroup, 2> kInputs{PinGroup{14, 8}, PinGroup{6, 8}};
 inline constexpr bool kOutputsActiveHigh = true;
-/// An optocoupler pulls the pin low while its input is logic 1.
+/// While an input is logic 1, its optocoupler pulls the pin low.
 inline constexpr bool kInputsActiveHigh = false;
 
 }  // namespace ex9000::board

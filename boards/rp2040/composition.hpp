@@ -1,6 +1,6 @@
 // The parts of an image for a board of this family: drivers, module, vector table and `main`. This file
 // connects the drivers to the pins of `board.hpp`, the module to the drivers, and the interrupts to their
-// handlers. The main.cpp of a board includes it once.
+// handlers. It defines `main`, so only one source file of a program may include it.
 #pragma once
 
 #include <array>

@@ -16,8 +16,8 @@ extern "C" void reset_handler() {
   fault_handler();
 }
 
-/// Resets the whole chip through the watchdog, because a reset request of the processor would not reset the
-/// pins.
+/// Resets the chip, except its oscillators, through the watchdog, because a reset request of the processor
+/// would not reset the pins.
 extern "C" void fault_handler() { hal::rp2040::WatchdogRegisters::reset_chip(); }
 
 }  // namespace ex9000::start_up

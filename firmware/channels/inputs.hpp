@@ -51,8 +51,8 @@ class InputEdges {
 /// Levels, latches and counters as the protocols read them. The order is: inversion, filter, everything else.
 /// For the main loop only.
 ///
-/// A channel without a filter counts every edge. With a filter, a level counts as one edge when it has been
-/// stable for the filter time since the last edge.
+/// A channel without a filter counts every edge. With a filter, a changed level counts as one edge when it
+/// has been stable for the filter time since the last edge.
 class Inputs {
  public:
   /// The range of the counters: five decimal digits in ASCII, 16 bits in Modbus. A counter wraps to 0.

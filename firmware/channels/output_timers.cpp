@@ -5,8 +5,8 @@ namespace ex9000 {
 namespace {
 
 constexpr Duration kUnit = milliseconds(100);
-/// The recorded time is the beginning of the pass of the main loop that switches the output on. The pass may
-/// take this long.
+/// `start` gets the time at which the main loop's pass began. The same pass switches the output on, at most
+/// this much later. A timer runs this much longer, so that the output is never on for less than its time.
 constexpr Duration kLateStart(300);
 
 }  // namespace

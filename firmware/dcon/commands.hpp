@@ -72,12 +72,12 @@ enum class Init : std::uint8_t { NotRequired, Required };
 
 /// A row with its documentation. The firmware never uses the texts, so an image does not contain them.
 struct Command {
-  std::string_view id;      ///< stable, for coverage and cross-reference
+  std::string_view id;      ///< never changes, because exports and tests refer to it
   std::string_view syntax;  ///< in the notation of the manuals
   std::string_view reply;   ///< reply to a valid command; empty if the module does not reply
   std::string_view meaning;
   std::string_view range;  ///< range of the arguments
-  Access access;           ///< Store: the module replies after it has stored the settings
+  Access access;           ///< Store: may change settings; the module stores them before it replies
   Init init;               ///< for `%`: required only to change the baud rate, line format or checksum
   Dispatch dispatch;
 };
@@ -105,7 +105,7 @@ inline constexpr auto kCommands = table<Command>({
      "#AABBDD",
      ">",
      "set a group of outputs or one output",
-     "BB: 00 or 0A outputs 0-7, 0B outputs 8 and up, DD: their bits; BB: 1c or Ac output c, Bc output 8+c, "
+     "BB: 00 or 0A outputs 0-7, 0B outputs from 8 on, DD: their bits; BB: 1c or Ac output c, Bc output 8+c, "
      "DD: 00 off, 01 on",
      Access::Write,
      Init::NotRequired,
@@ -218,7 +218,8 @@ inline constexpr auto kCommands = table<Command>({
      "@AA(Data)",
      ">",
      "set all outputs",
-     "Data: a hex number, bit 0 is output 0; 1 digit for up to 4 outputs, 2 or 1 for up to 8, 4 or 2 above",
+     "Data: a hex number, bit 0 is output 0; 1 digit for up to 4 outputs, 2 or 1 digits for up to 8, 4 or 2 "
+     "digits for more",
      Access::Write,
      Init::NotRequired,
      {'@', kNoKey, 1, 4, Needs::Outputs, set_outputs}},
@@ -233,7 +234,7 @@ inline constexpr auto kCommands = table<Command>({
     {"host-ok",
      "~**",
      "",
-     "restart the host watchdog of all modules",
+     "restart the host watchdogs of all modules",
      "",
      Access::Write,
      Init::NotRequired,
@@ -257,7 +258,7 @@ inline constexpr auto kCommands = table<Command>({
     {"read-watchdog",
      "~AA2",
      "!AAEVV",
-     "read the host watchdog's enable and timeout",
+     "read whether the host watchdog is enabled, and its timeout",
      "",
      Access::Read,
      Init::NotRequired,

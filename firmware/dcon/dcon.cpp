@@ -17,7 +17,7 @@ constexpr auto kDispatch = rows_of_built_models<kCommands, &Command::dispatch>()
 
 bool is_broadcast(Bytes frame) { return frame[1] == '*'; }
 
-/// Returns the characters after the key.
+/// Returns the characters after the key, or after the address if the row has no key.
 Bytes arguments(const Dispatch& row, Bytes frame) {
   const bool has_key = row.key != kNoKey && row.key != kBroadcastKey;
   return frame.from(kBodyAt + (has_key ? 1 : 0));

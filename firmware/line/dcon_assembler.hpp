@@ -36,7 +36,7 @@ class DconAssembler {
  private:
   enum class State : std::uint8_t {
     Hunting,   ///< between frames; ignores all characters except delimiters and `!`, `>`, `?` of a reply
-    InFrame,   ///< in a frame; every character is content
+    InFrame,   ///< in a frame; every character except CR is content
     Spoiled,   ///< in a frame that is already lost; `loss_` is the reason
     Skipping,  ///< in a reply of another module, which is ignored up to its CR
   };
@@ -50,7 +50,7 @@ class DconAssembler {
   State state_ = State::Hunting;
   Verdict loss_ = Verdict::Open;
   bool checksum_ = false;
-  bool broadcast_ = false;  ///< the last frame with a correct check was a broadcast or Foreign
+  bool broadcast_ = false;  ///< the last frame with a correct check and an address was a broadcast or Foreign
   std::uint8_t size_ = 0;
   std::uint8_t sum_ = 0;  ///< sum of all characters except the last two
 };

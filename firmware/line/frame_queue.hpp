@@ -20,7 +20,7 @@ constexpr std::size_t kLongestFrame = kBuiltModbus ? 256 : 32;
 struct Frame {
   std::uint16_t offset = 0;  ///< index of the first byte; 1 after a turn-around byte
   std::uint16_t size = 0;    ///< number of bytes from `offset` on, without checksum, CRC and CR
-  Time received;             ///< end of the last byte
+  Time received;             ///< when the UART reported the last byte
   std::array<std::uint8_t, kLongestFrame + 1> storage{};
 
   [[nodiscard]] Bytes bytes() const { return {storage.data() + offset, size}; }

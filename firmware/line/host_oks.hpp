@@ -14,7 +14,8 @@ namespace ex9000 {
 /// that counts like a host OK (register 0x0251) is stored like one.
 class HostOks {
  public:
-  /// A host OK counts from its CR in ASCII, and from the end of its silence in Modbus.
+  /// A host OK counts from its CR in ASCII. In Modbus it counts from the end of its silence, or from the end
+  /// of the module's own reply if this reply cut the silence off (wire.md D9).
   struct Times {
     Time first;
     Time last;

@@ -11,7 +11,7 @@
 
 namespace ex9000 {
 
-/// Counts frames by verdict, so that the interrupt increments exactly one count for each frame. The main loop
+/// Counts frames by verdict, so that the interrupt increments at most one count for each frame. The main loop
 /// adds up the counts for each Modbus counter. The counts are 32-bit words, which take less time in the
 /// interrupt than the 16-bit count of an EventTally.
 class LineTallies {

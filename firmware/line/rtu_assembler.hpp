@@ -25,9 +25,9 @@ class RtuAssembler {
   /// this while bytes are received.
   void answer_to(std::uint8_t address) { own_address_.store_in_main_loop(address); }
 
-  /// Processes a byte that was complete at `now`. Restart the timer with T3.5 after this call. Returns the
-  /// verdict on the previous frame if this byte shows that the previous frame has ended, else Open. For the
-  /// receive interrupt.
+  /// Processes a byte that the UART reports at `now`. Restart the timer with T3.5 after this call. Returns
+  /// the verdict on the previous frame if this byte shows that the previous frame has ended, else Open. For
+  /// the receive interrupt.
   Verdict byte(FrameQueue& queue, std::uint8_t byte, ByteStatus status, Time now);
 
   /// Call this when the timer has expired. After this call, restart the timer with `next_wait()`, unless that
@@ -72,12 +72,12 @@ class RtuAssembler {
   bool overrun_ = false;        ///< one of these line errors was an overrun
   Crc16 whole_;                 ///< CRC of all bytes
   Crc16 crc_after_first_;       ///< CRC of all bytes except the first, if that is 00
-  Time last_;                   ///< end of the last byte
+  Time last_;                   ///< when the UART reported the last byte
   bool broadcast_ = false;      ///< the last frame for this module was for all modules
 };
 
-// The functions below are inline because they run for each byte on the line, including bytes for other
-// modules.
+// `byte` and the functions that it calls are inline, because `byte` runs for each byte on the line, including
+// bytes for other modules.
 
 inline Verdict RtuAssembler::byte(FrameQueue& queue, std::uint8_t byte, ByteStatus status, Time now) {
   Verdict before = Verdict::Open;

@@ -9,13 +9,15 @@
 namespace ex9000 {
 
 struct LineTiming {
-  /// Time between the report of CR and the reply: the rest of its stop bits and one character, rounded up.
+  /// Shortest time between the report of CR and the reply: the rest of its stop bits and one character,
+  /// rounded up.
   Duration dcon_turn_around;
   /// Time from the report of a byte to the end of the silence that ends a Modbus RTU frame and precedes a
   /// reply: the rest of the stop bits and T3.5. It is rounded up, so that a reply is never early.
   Duration rtu_silence;
-  /// Time after `rtu_silence` within which a byte that began before the end of T3.5 becomes complete: one
-  /// character. It is rounded down, so that a byte that begins after exactly T3.5 begins a new frame.
+  /// Time after `rtu_silence` within which the UART reports a byte that began before the end of T3.5: the
+  /// time from the beginning of a byte to its report. It is rounded down, so that a byte that begins after
+  /// exactly T3.5 begins a new frame.
   Duration rtu_grace;
   /// The largest time between the reports of two bytes; a larger time makes the frame invalid.
   Duration rtu_slack;

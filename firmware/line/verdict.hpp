@@ -20,7 +20,7 @@ enum class Verdict : std::uint8_t {
   BadCheck,   ///< wrong or missing checksum, wrong CRC
   TooShort,   ///< ASCII with checksum: fewer than 3 characters; Modbus: fewer than 4 bytes
   TooLong,    ///< longer than the longest allowed frame
-  LineError,  ///< a byte had a framing error, wrong parity or a break
+  LineError,  ///< a byte had a framing error, wrong parity or a break, or a gap was too long
   Overrun,    ///< a byte was lost because the previous byte was not read in time
 };
 

@@ -32,7 +32,7 @@ Refusal vendor_function(Exchange& exchange);
 
 enum class AtBroadcast : std::uint8_t {
   Ignored,
-  CarriedOut,  ///< the module executes the request but sends no reply
+  CarriedOut,  ///< executed or refused without a reply; a write of configuration is ignored
 };
 
 struct FunctionRow {

@@ -26,7 +26,8 @@ constexpr Functions kWriteMultipleCoils = 1U << 0xFU;
 /// Functions 06 and 10 (hex) can always access the same rows, so they share one bit.
 constexpr Functions kWriteRegisters = kWriteSingleRegister;
 
-/// The number of coils or registers of a row: a fixed number, or the number of channels of the model.
+/// The number of coils or registers of a row: a fixed number, the number of channels of the model, or twice
+/// the number of its inputs.
 enum class Width : std::uint8_t { One = 1, Two = 2, Eight = 8, PerOutput, PerInput, PairPerInput };
 
 constexpr unsigned width_of(Width width, const Model& model) {

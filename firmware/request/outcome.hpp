@@ -24,7 +24,7 @@ enum class Refusal : std::uint8_t {
   WrongQuantity,       ///< 03
   WrongCoilValue,      ///< 03: function 05 with a value other than FF00 and 0000
   WrongAddress,        ///< 02
-  WrongValue,          ///< 03
+  WrongValue,          ///< 03; also `?AA`, for `~AAX`
   UnknownObject,       ///< 02, in function 2B/0E
   // both protocols
   OutputsBlocked,  ///< ASCII `!`, Modbus 04: the timeout status is set

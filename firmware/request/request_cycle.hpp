@@ -40,7 +40,7 @@ class RequestCycle {
   /// timeout status (wire.md D17).
   void keep_timeout_status();
   /// Call this while Storing, if the memory did not store the settings. It removes all actions of the request
-  /// and replaces the reply with an error reply.
+  /// and replaces the reply with an error reply. The empty reply to a broadcast stays empty.
   void refuse_store();
   /// Call this when the outcome has been carried out. Returns true if a reply is ready to send; otherwise the
   /// next request may be judged.

@@ -21,7 +21,7 @@ constexpr std::size_t known_settings_size() {
   return size;
 }
 constexpr std::size_t kKnownSettings = known_settings_size();
-/// The settings up to `safe_value`: every record has them.
+/// The size of the settings up to `safe_value`, which this firmware writes into every record.
 constexpr std::size_t kFirstSettings = 19;
 static_assert(sizeof(bool) == 1 && sizeof(Protocol) == 1 && sizeof(Name) == kMaxNameLength + 1 &&
                   sizeof(InputFilters) == std::size_t{2} * kMaxInputs,

@@ -110,7 +110,7 @@ constexpr std::uint8_t kFactoryWatchdogTimeout = 0xFF;
 ///     watchdog_enabled  the host watchdog is running
 ///     timeout_status    the host watchdog has expired and no command has cleared the status
 ///     name              the module's name
-///     power_on_value    outputs from reset on; bit n is output channel n
+///     power_on_value    outputs from reset on if the timeout status is clear; bit n is output channel n
 ///     safe_value        outputs while the timeout status is set
 ///     input_filters     register 0x0240 + n
 ///     inverted_inputs   register 0x0250; bit n is input channel n

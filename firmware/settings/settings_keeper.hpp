@@ -35,7 +35,7 @@ class SettingsKeeper {
 
   /// Returns whether a reset now would certainly load `stored()`. True for a blank memory. False if the
   /// memory is `unreadable()` or contains a copy that must not be used, or if the first save after a firmware
-  /// update is not finished.
+  /// update was interrupted and has not been repeated.
   [[nodiscard]] bool certain() const {
     return !unreadable() && !store_.needs_invalidation() && !store_.update_unfinished();
   }
@@ -46,8 +46,8 @@ class SettingsKeeper {
   /// as `busy()` is false again.
   void save(const Settings& settings, Time now);
   /// Shortens a save that does not belong to a command: the next failed attempt ends the save, and the keeper
-  /// retries it a second later. Call this while a command waits for this save, so that the reply to the
-  /// command is not late if the memory fails.
+  /// retries it later if it is still necessary. Call this while a command waits for this save, so that the
+  /// reply to the command is not late if the memory fails.
   void let_command_through() {
     if (own_save_) {
       store_.give_up_at_next_failure();
@@ -63,7 +63,7 @@ class SettingsKeeper {
   void poll(const Settings& in_force, Time now);
   /// Returns whether an action without a command has ended and `poll` has not processed its result yet.
   [[nodiscard]] bool has_work() const { return own_save_ && !busy(); }
-  /// Returns when the keeper retries a failed action; disarmed if no action has failed.
+  /// Returns when the keeper retries a failed action; disarmed if no failed action waits.
   [[nodiscard]] Deadline retry() const { return retry_; }
 
   // --- memory access; see SettingsStore ---
@@ -76,7 +76,7 @@ class SettingsKeeper {
 
   SettingsStore store_;
   bool may_differ_ = false;  ///< the settings in force may differ from the stored settings
-  bool own_save_ = false;    ///< the running action does not belong to a command
+  bool own_save_ = false;    ///< the action that runs or has just ended belongs to no command
   Deadline retry_;
 };
 

@@ -6,7 +6,8 @@ namespace ex9000 {
 
 // --- jobs ---
 
-/// Returns the number of bytes that the next job reads or writes: up to the end of the page or of the copy.
+/// Returns the number of bytes that the next job reads or writes, except a job that invalidates a copy: up to
+/// the end of the page or of the copy.
 std::size_t SettingsStore::page_size() const {
   const std::size_t left = copy_size_ - done_;
   return left < kMemoryPage ? left : kMemoryPage;

@@ -79,10 +79,10 @@ class SettingsStore {
   /// Returns whether the last save succeeded. Also true after `begin_invalidating`, which saves nothing.
   [[nodiscard]] bool saved() const { return saved_; }
 
-  /// Returns whether the power failed during the first save after a firmware update. The new copy is then
-  /// used, but copies of an older layout are still valid. One successful read does not prove that the new
-  /// copy will stay readable, so the old copies stay until the settings have been saved again. If that save
-  /// fails, the old copies are invalidated nevertheless.
+  /// Returns whether the power failed during the first save after a firmware update, when the new copy was
+  /// already complete. The new copy is then used, but copies of an older layout are still valid. One
+  /// successful read does not prove that the new copy will stay readable, so the old copies stay until the
+  /// settings have been saved again. If that save fails, the old copies are invalidated nevertheless.
   [[nodiscard]] bool update_unfinished() const {
     return found_ == Found::Settings && old_copies_ != 0 && !kPlaces[current_place_].old;
   }
@@ -137,7 +137,7 @@ class SettingsStore {
   std::uint8_t attempt_ = 0;             ///< failed attempts at that copy
   bool silent_ = false;                  ///< the memory did not answer at the last place
   std::uint8_t blank_places_ = 0;
-  bool bad_copy_ = false;                 ///< a place of this layout holds something other than a copy
+  bool bad_copy_ = false;                 ///< a place of this layout is not blank and has no good copy
   std::size_t current_place_ = kNoPlace;  ///< place of the current copy, which a reset would load
   unsigned old_copies_ = 0;               ///< bit n: place n holds a good copy of an older layout
   unsigned copies_to_invalidate_ = 0;     ///< bit n: the copy at place n must be invalidated
@@ -145,8 +145,8 @@ class SettingsStore {
   Edition edition_;          ///< edition of the current copy
   Settings stored_;          ///< settings in the current copy
   Settings saving_;          ///< settings that are being saved
-  RecordBytes record_{};     ///< the current record, or the record being written; zeros if there is none
-  RecordBytes read_back_{};  ///< bytes read from the memory
+  RecordBytes record_{};     ///< the current record, or that of the last save; zeros if there is none
+  RecordBytes read_back_{};  ///< bytes read from the memory, or zeros to write
 };
 
 }  // namespace ex9000

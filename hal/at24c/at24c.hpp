@@ -16,8 +16,9 @@ namespace ex9000::hal {
 /// I2cTransfer.
 ///
 /// The EEPROM acknowledges nothing while it programs a page, so the driver repeats the device address until
-/// the EEPROM acknowledges it. For a read, the driver sends STOP between the address and the data, because
-/// not every master supports a repeated START. The EEPROM's address counter keeps the address.
+/// the EEPROM acknowledges it or the timeout expires. For a read, the driver sends STOP between the address
+/// and the data, because not every master supports a repeated START. The EEPROM's address counter keeps the
+/// address.
 template <class Master>
 class At24c {
   static_assert(kIsI2cMaster<Master>,

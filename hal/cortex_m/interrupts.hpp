@@ -32,9 +32,9 @@ class Interrupts {
   /// another interrupt. Pending ones run in this order: SysTick, then the others by number.
   static void enable(std::uint32_t numbers) { kSetEnable.write(Bits<SetEnable>(numbers)); }
 
-  /// Sleeps until `has_work()` returns true. Interrupts run meanwhile. They are disabled only from the call
-  /// of `has_work` to the end of each sleep, so that no event is missed. A pending interrupt ends the sleep
-  /// even while interrupts are disabled. For the main loop.
+  /// Sleeps until `has_work()` returns true. Interrupts run meanwhile. They are disabled only from just
+  /// before each call of `has_work` to the end of the sleep that may follow, so that no event is missed. A
+  /// pending interrupt ends the sleep even while interrupts are disabled. For the main loop.
   template <class HasWork>
   static void sleep_until(HasWork has_work) {
     processor::disable_interrupts();

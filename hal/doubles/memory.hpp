@@ -12,7 +12,7 @@
 namespace ex9000::hal::doubles {
 
 /// Simulates an AT24C64 of 8 KiB on a 100 kHz bus. At first, all bytes are FF. The AT24C64 takes 5 ms to
-/// program a page. `cut` simulates a power failure during a job.
+/// program a page. `cut` simulates a power failure or a reset during a job.
 class Memory {
  public:
   static constexpr std::size_t kSize = 8192;
@@ -24,7 +24,7 @@ class Memory {
 
   void start_read(std::uint16_t address, MutableBytes destination, Time now);
   void start_write(std::uint16_t address, Bytes source, Time now);
-  /// Has no effect, because `run` ends the job when its virtual time has passed.
+  /// Has no effect, because `run` ends a job when the job's virtual time has passed.
   bool poll(Time /*now*/) { return false; }
   [[nodiscard]] bool busy() const { return ends_ != kNever; }
   [[nodiscard]] bool succeeded() const { return succeeded_; }
@@ -33,20 +33,21 @@ class Memory {
   void run();
 
   /// Simulates a power failure or a reset of the MCU, and ends the job. If bytes are being programmed, the
-  /// first ones are new, in proportion to the time since programming began. The next byte is corrupted, and
-  /// the rest are old.
+  /// first ones are new, in proportion to the time since programming began. The next byte is partly erased:
+  /// its old value OR A5h. The rest are old.
   void cut();
 
   /// A function that saves each programmed range outside this object. It is called at the end of a write; if
-  /// it returns false, the write fails. `cut` also calls it, for the range that may have changed, and
-  /// ignores the result.
+  /// it returns false, the write fails. If `cut` ends a write, it also calls this function, for the range
+  /// that may have changed, and ignores the result. After `fail(true)`, `cut` does not call it.
   using Keep = std::function<bool(std::uint16_t address, Bytes bytes)>;
   void keep(Keep keep) { keep_ = std::move(keep); }
 
   /// Sets a function that is called after each successful write, before the device gets the result.
   void on_write(std::function<void()> written) { written_ = std::move(written); }
 
-  /// While `on` is true, each job that ends fails and changes nothing.
+  /// After `fail(true)`, each job that ends fails and changes nothing, until `fail(false)`. `cut` then
+  /// changes nothing either.
   void fail(bool on) { failing_ = on; }
 
   [[nodiscard]] const std::vector<std::uint8_t>& contents() const { return contents_; }

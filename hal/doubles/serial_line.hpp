@@ -57,7 +57,8 @@ class SerialLine {
   std::size_t sent_ = 0;
   VirtualTime first_start_bit_{0};
   VirtualTime next_ = kNever;
-  /// The time at which the driver turns off if `late_by_` is 0; kNever until the last byte is being sent.
+  /// The time at which the driver turns off if `late_by_` is 0. kNever, except from the start of the last
+  /// byte until the driver turns off.
   VirtualTime over_ = kNever;
   VirtualTime late_by_{0};
 };

@@ -31,7 +31,8 @@ namespace ex9000::hal::flash {
 /// if that slot reads FF.
 ///
 /// While no job is running, `poll` erases all free sectors in advance. A job suspends the erase. A write
-/// waits for an erase only if no erased sector is left. This occurs in two cases:
+/// waits for the end of an erase only if it needs another sector and no erased sector is left. This occurs in
+/// two cases:
 ///
 /// - On the first start with this flash, until the first erase has ended, after 45 ms typically and 400 ms at
 ///   most.
@@ -40,9 +41,9 @@ namespace ex9000::hal::flash {
 ///   erased in advance has room for 79 of them.
 ///
 /// With the longest times of the data sheet and a poll every millisecond, a read takes at most 5 ms, and a
-/// write at most 14 ms. Typical times are 0 ms and 1 ms. A job fails if it has not ended after kLongestRead
-/// or kLongestWrite. The first job after a reset also waits for the scan of the log, which reads at most 50
-/// kB and computes at most about 1,100 CRCs.
+/// write takes at most 14 ms if it does not wait for the end of an erase. Typical times are 0 ms and 1 ms. A
+/// job fails if it has not ended after kLongestRead or kLongestWrite. The first job after a reset also waits
+/// for the scan of the log, which reads at most 50 kB and computes at most about 1,100 CRCs.
 ///
 /// The tests in tests/hal/flash measure these times, cut the power at each operation, and count erases.
 template <class Flash, std::uint32_t kBegin>

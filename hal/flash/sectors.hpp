@@ -16,7 +16,7 @@ class Sectors {
   static constexpr unsigned kNone = kSectors;
 
   enum class State : std::uint8_t {
-    Used,    ///< was written, or its last erase was interrupted
+    Used,    ///< has no mark: was written, or has not been erased completely
     Erased,  ///< erased and marked
     Failed,  ///< its mark cannot be programmed or cleared; not used before the next reset
   };

@@ -8,9 +8,9 @@
 
 namespace ex9000::hal::flash {
 
-/// The number of sectors that the store uses. Each page has one entry in force, so the entries in force are
-/// in at most 12 sectors. At least two sectors hold none: the store writes to one of them and erases the
-/// other one in advance.
+/// The number of sectors that the store uses. Each page has at most one entry in force, so the entries in
+/// force are in at most 12 sectors. At least two sectors hold none: the store writes to one of them and
+/// erases the other one in advance.
 inline constexpr unsigned kSectors = 14;
 static_assert(kSectors >= kPages + 2);
 

@@ -12,7 +12,7 @@ namespace ex9000::hal::flash {
 
 class SlotMap {
  public:
-  /// Returns the slot of the newest entry; kNoSlot if the page was never written.
+  /// Returns the slot of the newest entry; kNoSlot if no entry of the page is recorded.
   [[nodiscard]] Slot newest(std::size_t page) const { return slots_[page]; }
 
   /// Records a good entry. Has no effect if a newer entry of this page is already recorded.

@@ -1,4 +1,4 @@
-// The only functions through which drivers access the processor's bus.
+// The only functions through which drivers access registers.
 #pragma once
 
 #include <cstdint>
@@ -6,8 +6,8 @@
 namespace ex9000::hal::bus {
 
 /// Reads or writes the 32-bit register at `address`, which must be a multiple of 4. Each call is exactly one
-/// access, which the compiler does not remove, repeat or move. For interrupts and the main loop; does not
-/// block.
+/// access, which the compiler does not remove or repeat, and does not move across another such access. For
+/// interrupts and the main loop; does not block.
 // NOLINTBEGIN(performance-no-int-to-ptr): the address of a register is a number
 inline std::uint32_t read(std::uint32_t address) {
   return *reinterpret_cast<volatile std::uint32_t*>(address);

@@ -29,8 +29,8 @@ class Boot {
   }
 
   /// Copies `words` words, at most 65,536, from `address` of the flash to `destination`. A word takes 64
-  /// clocks of the processor: 5.3 us on a crystal of 12 MHz. The command Read Data (03h) works on every flash
-  /// chip, in every mode in which the boot ROM can leave the chip. It requires no configuration of the chip.
+  /// clocks of the processor: 5.3 us on a crystal of 12 MHz. The boot ROM reads the second stage with the
+  /// same command, Read Data (03h), so the command works on this chip without a configuration.
   [[gnu::always_inline]] static void copy(std::uint32_t address, std::uint32_t* destination,
                                           std::uint32_t words) {
     constexpr std::uint32_t kReadData = 0x03;

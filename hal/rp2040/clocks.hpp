@@ -26,8 +26,8 @@ class Clocks {
  public:
   /// Switches the reference clock to the crystal, and the processor and the peripherals to the PLL. The
   /// second stage has already started the crystal. Call this once after reset, when the watchdog is running.
-  /// It blocks for less than 1 ms. If the crystal is not stable or the PLL does not lock, the watchdog resets
-  /// the MCU.
+  /// If the crystal is already stable, it blocks for less than 1 ms. If the crystal never becomes stable or
+  /// the PLL never locks, the watchdog resets the MCU.
   template <const ClockTree& clock>
   static void use() {
     static_assert(clock.oscillator() >= 750'000'000 && clock.oscillator() <= 1'600'000'000,

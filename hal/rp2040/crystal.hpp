@@ -6,8 +6,8 @@
 
 namespace ex9000::hal::rp2040 {
 
-/// All functions are inlined, because the second stage of the boot sequence uses them before the image is in
-/// RAM. None of them blocks.
+/// All functions are inlined, because the second stage of the boot sequence uses this class before the image
+/// is in RAM. None of them blocks.
 class Crystal {
  public:
   /// Starts the oscillator. It is `stable` after the start-up delay of 50,176 periods, the value after a

@@ -18,7 +18,7 @@ namespace ex9000::hal::rp2040 {
 template <const PinGroup& lines, std::uint32_t clock>
 class I2c {
  public:
-  /// Begins to free the bus. Call this once. Transfers wait until the bus is free.
+  /// Begins to free the bus. Call this once. Transfers wait until this has ended.
   void start() { begin_freeing(); }
 
   void begin(const I2cTransfer& transfer, Time now) {

@@ -8,9 +8,10 @@
 
 namespace ex9000::hal::rp2040 {
 
-/// A register of a peripheral on the APB or AHB-Lite bus. It has two more addresses at which a write sets or
-/// clears only the given bits. `set` and `clear` therefore do not read the register first, so no interrupt
-/// can change it between a read and a write. The registers of SIO and of the SSI do not have these addresses.
+/// A register of a peripheral on the APB or AHB-Lite bus. It has more addresses. At one of them, a write sets
+/// only the given bits. At another one, a write clears only the given bits. `set` and `clear` therefore do
+/// not read the register first, so no interrupt can change it between a read and a write. The registers of
+/// SIO and of the SSI do not have these addresses.
 template <class Name>
 class SharedRegister {
  public:

@@ -1,5 +1,5 @@
-// The watchdog, the tick that drives it, resets of the whole chip and their reasons. Source: RP2040 data
-// sheet, 4.7, 2.12.7, 2.13.5 and erratum RP2040-E1.
+// The watchdog, the tick that drives it, resets of the chip and their reasons. Source: RP2040 data sheet,
+// 4.7, 2.12.7, 2.13.5 and erratum RP2040-E1.
 #pragma once
 
 #include <cstdint>

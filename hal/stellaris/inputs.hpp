@@ -86,7 +86,8 @@ class InputPins {
 
   static std::uint32_t logic(std::uint32_t levels) { return active_high ? levels : ~levels; }
 
-  /// Returns the channel of each pin of a port. Pins without a channel never have an edge.
+  /// Returns the channel of each pin of a port. Pins that are in no group are not watched, so their value is
+  /// not used.
   static constexpr std::array<std::uint8_t, 8> channels_of(Port port) {
     std::array<std::uint8_t, 8> result{};
     unsigned channel = 0;

@@ -69,7 +69,7 @@ class SystemControl {
   /// Enables the clocks of `gates` and waits until the registers of these peripherals can be accessed.
   static void open(const ClockGates& gates) {
     kRcgc0.set(Bits<Rcgc0>(gates.rcgc0));
-    kRcgc1.write(Bits<Rcgc1>(gates.rcgc1));  // all clocks are off after reset
+    kRcgc1.write(Bits<Rcgc1>(gates.rcgc1));  // after reset, these clocks are off
     kRcgc2.write(Bits<Rcgc2>(gates.rcgc2));
     // A peripheral must not be accessed for 3 clocks (LM3S) or 5 clocks (TM4C) after its clock has been
     // enabled. Each of these reads takes at least 2 clocks.
@@ -79,8 +79,8 @@ class SystemControl {
   }
 
   /// Returns the reason of the last reset, and clears it. Call this once after each reset, as early as
-  /// possible: the bits of RESC (data sheets, "Reset Cause") stay set until software clears them, so another
-  /// reset before this call adds its bit to them.
+  /// possible: the bits of RESC (data sheets, "Reset Cause") stay set after most other resets, so another
+  /// reset before this call may add its bit to them.
   static ResetReason take_reset_reason() {
     constexpr Bits<ResetCause> kPin(1U << 0U);
     constexpr Bits<ResetCause> kPowerOn(1U << 1U);

@@ -43,7 +43,8 @@ std::uint32_t Bus::bit_rate(std::uint32_t baud) const {
 }
 
 /// Returns the bit rate in virtual time and the format as receivers read it. If the result is the same for a
-/// sender and a receiver, the receiver gets the bytes unchanged, except those that collide or are disturbed.
+/// sender and a receiver, the receiver gets the bytes unchanged, except those that collide, are disturbed or
+/// began before the receiver listened.
 SerialMode Bus::on_the_wires(SerialMode mode) const {
   return {bit_rate(mode.baud), as_received(mode.format)};
 }

@@ -51,7 +51,7 @@ class BusEnd : public Wire {
   ~BusEnd() = default;
 };
 
-/// The bus notifies observers of each event on the wires.
+/// The bus notifies observers of events on the wires.
 class BusObserver {
  public:
   /// Called after the driver of `station` is enabled or disabled. `station` counts from 0 in the order of
@@ -62,8 +62,8 @@ class BusObserver {
   virtual void changed(std::size_t /*station*/, Levels /*arrives*/) {}
   /// Called at the end of the first stop bit of a byte that began at `start` and whose last stop bit ends at
   /// `end`. A byte is not reported if its driver was disabled before its first stop bit was over. `byte` is
-  /// the byte that was sent. `collided`: another driver was enabled, or another byte was on the wires, during
-  /// this byte.
+  /// the byte that was sent. `collided`: at least two drivers were enabled, or another byte was on the wires,
+  /// during this byte.
   virtual void byte(std::size_t station, std::uint8_t byte, SerialMode mode, bool collided, VirtualTime start,
                     VirtualTime end) = 0;
 
@@ -96,7 +96,7 @@ class Disturbance {
 /// The clock jumps from event to event; this class does not depend on real time.
 ///
 /// `times_faster` multiplies all nominal rates of the line. This factor does not change which stations
-/// understand each other or which bytes collide.
+/// understand each other.
 class Bus {
  public:
   explicit Bus(VirtualClock& clock, std::uint32_t times_faster = 1);

@@ -14,7 +14,8 @@ class Master final : public Station {
  public:
   using Receive = std::function<void(std::uint8_t byte, ByteStatus status)>;
 
-  /// Attaches itself to `bus`. `receive` is called for each byte that arrives while the master does not send.
+  /// Attaches itself to `bus`. `receive` is called for each byte that arrives while the driver of the master
+  /// is off.
   Master(Bus& bus, SerialMode mode, Receive receive);
   Master(const Master&) = delete;
   Master& operator=(const Master&) = delete;

@@ -8,8 +8,8 @@ namespace ex9000::sim {
 
 namespace {
 
-/// The wake timer handles all deadlines of a simulated module. The tick only feeds the hardware watchdog, so
-/// a slow tick is sufficient.
+/// The wake timer handles all deadlines of the main loop of a simulated module. The tick only feeds the
+/// hardware watchdog, so a slow tick is sufficient.
 constexpr Duration kTick = milliseconds(400);
 
 }  // namespace

@@ -92,12 +92,13 @@ struct Wave {
   SerialMode mode;
   Levels levels;
   VirtualTime ends;
-  VirtualTime cut_off = hal::doubles::kNever;  ///< time at which the driver was disabled
+  /// Time at which the driver was disabled during the byte; kNever: it was not.
+  VirtualTime cut_off = hal::doubles::kNever;
   std::size_t station = 0;
   SerialMode nominal;  ///< the rate and format that the station is set to
   std::uint8_t byte = 0;
   bool disturbed = false;  ///< the levels differ from those of `byte`
-  /// Another driver was enabled, another byte was on the wires, or the byte was cut off.
+  /// At least two drivers were enabled, another byte was on the wires, or the byte was cut off.
   bool collided = false;
   bool over = false;  ///< has ended; samplers may still read it
 
@@ -107,7 +108,7 @@ struct Wave {
 
 using Waves = std::vector<Wave>;
 
-/// Samples characters: waits for a falling edge, then reads the middle of each bit.
+/// Samples characters: waits for the level 0, then reads the middle of each bit.
 class UartSampler {
  public:
   struct Received {

@@ -1,4 +1,4 @@
-// A defective repeater that sends every received byte again.
+// A defective repeater that sends received bytes again.
 #pragma once
 
 #include <cstddef>

@@ -24,8 +24,8 @@ namespace ex9000::sim {
 class Faults final : public Station {
  public:
   using Modules = std::vector<std::unique_ptr<SimulatedModule>>;
-  /// Receives one line of text for people when a fault occurs or ends. Faults that depend on replies and
-  /// faults without a schedule (When::Always) are not reported.
+  /// Receives one line of text for people when a fault occurs or ends by itself. Faults that depend on
+  /// replies and faults without a schedule (When::Always) are not reported.
   using Notice = std::function<void(const std::string&)>;
 
   /// Attaches itself to `bus`. `master` has the line's mode; `notice` may be empty. `bus`, `master` and
@@ -37,7 +37,8 @@ class Faults final : public Station {
   /// Adds a fault and returns its number, counted from 1. A fault without a schedule begins immediately.
   /// Throws std::invalid_argument if the line does not have the module, or if the scheduled time has passed.
   std::size_t add(const Fault& fault);
-  /// Removes a fault and ends its effects. Returns false if no fault has this number.
+  /// Removes a fault and ends its effects. A hang does not end, and bytes that the fault has already queued
+  /// are still sent. Returns false if no fault has this number.
   bool remove(std::size_t number);
   void remove_all();
 

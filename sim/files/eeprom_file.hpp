@@ -18,7 +18,8 @@ namespace ex9000::sim {
 std::optional<std::vector<std::uint8_t>> read_eeprom_file(const std::string& path);
 
 /// An image of the whole memory, byte for byte like the chip: 8192 bytes; erased bytes are FFh. While this
-/// object lives, the file is locked: no other EepromFile can open it, in this process or in another one.
+/// object has the file open, the file is locked: no other EepromFile can open it, in this process or in
+/// another one.
 ///
 /// When `write` returns true, the kernel has the data: it survives any end of this process, but not a crash
 /// of the machine.

@@ -33,7 +33,7 @@ struct Frame {
   /// start bit is lost, the data that a receiver reads from the rest of the byte is not included.
   FrameBytes bytes;
   std::vector<Change> changes;
-  bool collided = false;  ///< during a byte, another driver was enabled or another byte was on the wires
+  bool collided = false;  ///< see BusObserver::byte; true if at least one byte collided
   /// The modes of the sender and of the line at the first byte. Receivers in the line's mode get these bytes
   /// only if the rates and the parities of both modes are equal. A change of the mode during the frame is not
   /// reported.

@@ -68,10 +68,10 @@ class Line {
   /// up. Events that depend only on the clock do not count: a host watchdog, a scheduled fault, an input
   /// program.
   [[nodiscard]] bool unsettled() const;
-  /// Returns whether the line is unsettled, or a request of the queue waits for the line or for its reply.
+  /// Returns whether the line is unsettled, or a request of the queue waits or is in progress.
   [[nodiscard]] bool pending() const;
-  /// Returns the silence that modules of this line require after the first stop bit of the last byte: the
-  /// rest of the stop bits and T3.5, in the master's mode.
+  /// Returns the silence that modules of this line require after the first stop bit of the last byte. On a
+  /// paced line, this is the rest of the stop bits and T3.5, in the master's mode.
   [[nodiscard]] VirtualTime rtu_silence() const;
   /// Returns the silence after which earlier bytes cannot belong to the next frame, even if the CRC of these
   /// bytes is wrong.

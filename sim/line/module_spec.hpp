@@ -13,7 +13,7 @@ namespace ex9000::sim {
 /// A module of a line, as the command line or a bus file describes it.
 struct ModuleSpec {
   const Model* model = nullptr;
-  Settings settings;            ///< stored before power-on; an EEPROM file replaces them
+  Settings settings;            ///< stored before power-on; an existing EEPROM file replaces them
   bool settings_given = false;  ///< at least one setting was given explicitly
   bool init_asserted = false;
   std::string eeprom;  ///< path of the EEPROM file; empty: settings are lost when the program ends

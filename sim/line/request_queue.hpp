@@ -30,7 +30,7 @@ class RequestQueue final : private Station {
   static constexpr VirtualTime kTurnaround = std::chrono::milliseconds(100);
 
   struct Reply {
-    std::vector<std::uint8_t> bytes;  ///< at most 256; empty: no reply in time, or none expected
+    std::vector<std::uint8_t> bytes;  ///< at most 256; empty: not sent, no reply in time, or none expected
     bool sent = true;                 ///< false: the request was not sent, because others used the line
     bool damaged = false;             ///< a byte had a line error, or more than 256 bytes arrived
     VirtualTime delay{0};             ///< from the end of the request to the end of the first byte
@@ -81,7 +81,7 @@ class RequestQueue final : private Station {
   BusEnd& timer_;
   State state_ = State::Idle;
   std::deque<Request> waiting_;  ///< the first one is in progress, unless the state is Idle or WaitsForLine
-  VirtualTime own_byte_{0};      ///< end of the last reply; a later byte means that others have used the line
+  VirtualTime own_byte_{0};      ///< end of the last reply; a later byte may be from others
   std::uint64_t taken_ = 0;      ///< the value of Master::taken when the request was sent
   VirtualTime sent_{0};          ///< end of the last byte of the request
   VirtualTime deadline_{0};      ///< when the wait for the line, for the reply or after a broadcast ends

@@ -15,7 +15,7 @@ namespace ex9000::sim {
 ///   text      present if the bytes are DCON
 ///   meaning   present if it is known and there was no collision
 ///   error     collision, wrong rate or format, noise, wrong CRC or checksum; present if there is any
-///   collided  whether another driver was enabled
+///   collided  whether a byte collided, see BusObserver::byte
 /// Members of a note: time, line, note.
 class JsonLog final : public BusLog {
  public:

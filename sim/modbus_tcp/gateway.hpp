@@ -14,7 +14,7 @@ namespace ex9000::sim {
 
 /// The exceptions of a gateway (MODBUS Application Protocol V1.1b3, section 7).
 enum class GatewayException : std::uint8_t {
-  PathUnavailable = 0x0A,  ///< no module can have this address, or all modules speak ASCII
+  PathUnavailable = 0x0A,  ///< no module can have this address, or all modules that listen speak ASCII
   NoReply = 0x0B,          ///< no module has replied in time
 };
 
@@ -30,8 +30,10 @@ class Gateway {
   /// Calls `answer` exactly once, during this call or later, unless `owner` is destroyed first. The answer
   /// is:
   /// - for unit 0: nullopt, because a broadcast has no reply;
-  /// - for a unit above 247, or if all modules that listen speak ASCII: exception 0x0A;
-  /// - if no valid reply arrives within RequestQueue::kReplyTimeout: exception 0x0B;
+  /// - for a unit above 247, or if at least one module listens and all that listen speak ASCII: exception
+  ///   0x0A;
+  /// - if the request is not sent, or no valid reply begins within RequestQueue::kReplyTimeout: exception
+  ///   0x0B;
   /// - otherwise: the reply of the module.
   void ask(const MbapFrame& request, const std::weak_ptr<void>& owner, const Answer& answer);
 

@@ -38,8 +38,8 @@ class ModbusTcpServer {
   void start(Received received);
   /// Continues to read after `received` has returned false.
   void resume();
-  /// Calls `received` during this call for all bytes that have arrived; the io_context need not run. Call
-  /// this only if `received` can accept more bytes.
+  /// Calls `received` during this call for all bytes that have arrived, until `received` returns false; the
+  /// io_context need not run. Call this only if `received` can accept more bytes.
   void read_waiting();
   /// Returns the HOST:PORT on which the server listens.
   [[nodiscard]] std::string address() const { return listener_.address(); }

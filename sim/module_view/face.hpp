@@ -58,7 +58,7 @@ struct HostWatchdogState {
   bool enabled = false;
   bool timed_out = false;              ///< the timeout status
   std::uint8_t timeout = 0;            ///< in units of 0.1 s
-  std::optional<VirtualTime> expires;  ///< line time of the expiry if no host OK comes; nullopt: not running
+  std::optional<VirtualTime> expires;  ///< line time of the expiry unless restarted; nullopt: not running
   bool reset_status = false;           ///< the reset status that `$AA5` would report
 
   friend bool operator==(const HostWatchdogState& a, const HostWatchdogState& b);

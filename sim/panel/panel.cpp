@@ -22,8 +22,9 @@ namespace ex9000::sim {
 
 namespace {
 
-/// The maximum number of frames in one message, for all lines together. Between two messages, two lines at
-/// 115200 baud carry fewer frames. Writing this number of frames causes no delay that a master notices.
+/// The maximum number of frames in one message, for all lines together, unless kFewestFrames applies. Between
+/// two messages, two lines at 115200 baud carry fewer frames. Writing this number of frames causes no delay
+/// that a master notices.
 constexpr std::size_t kMostFrames = 250;
 /// The limit for each line is at least this number, even if there are many lines.
 constexpr std::size_t kFewestFrames = 20;

@@ -15,8 +15,8 @@ namespace ex9000::play {
 
 /// The initial EEPROM contents, in the order of lines and modules; nullopt: the settings of the module apply.
 using Memories = std::vector<std::optional<std::vector<std::uint8_t>>>;
-/// Reads the files that `setup` names and leaves them unchanged, even if another process uses them. Throws
-/// std::invalid_argument with a one-line message.
+/// Reads the EEPROM files that `setup` names and leaves them unchanged, even if another process uses them.
+/// Throws std::invalid_argument with a one-line message.
 Memories read_memories(const sim::Setup& setup);
 
 /// All lines have the same virtual time.

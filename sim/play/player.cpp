@@ -31,7 +31,7 @@ std::string checksum_of(const std::string& text) {
 
 Bytes bytes_of(const std::string& text) { return {text.begin(), text.end()}; }
 
-/// Returns the bytes as text if all are printable, otherwise in hex.
+/// Returns the bytes as text if all are printable, except a CR at the end; otherwise in hex.
 std::string shown(const Bytes& bytes) {
   bool text = !bytes.empty();
   for (std::size_t i = 0; i < bytes.size(); ++i) {

@@ -23,7 +23,8 @@ class Target {
   virtual ~Target() = default;
 
   /// Provides a module of this model with `preset` stored (nothing is stored if `preset` is null), supply on,
-  /// INIT* released and inputs off. Called once, before the other functions.
+  /// INIT* released and inputs off. Called once for a transcript, before the other functions; not called for
+  /// a scenario.
   virtual void start(const Model& model, const Settings* preset) = 0;
 
   /// Sends `bytes` on the line without a gap, at the master's rate.

@@ -28,18 +28,20 @@ class Port {
   virtual void start(Received received) = 0;
   /// Continues to deliver bytes after `received` has returned false.
   virtual void resume() = 0;
-  /// Calls `received` during this call for all bytes that have arrived; the io_context need not run. Call
-  /// this only if `received` can accept more bytes.
+  /// Calls `received` during this call for all bytes that have arrived, until `received` returns false; the
+  /// io_context need not run. Call this only if `received` can accept more bytes. Only stepped time uses this
+  /// function, so a serial port does not have it.
   virtual void read_waiting() {}
 
-  /// Sends bytes from modules. The bytes are lost if no master has the port open, as on real wires. Returns
+  /// Sends bytes from the line. The bytes are lost if no master has the port open, as on real wires. Returns
   /// how many bytes were dropped because a master has the port open and does not read.
   virtual std::size_t send(const std::vector<std::uint8_t>& bytes) = 0;
-  /// Called when a module has turned its driver off, so that no more bytes of its reply follow.
+  /// Called when a station other than the master has turned its driver off, so that no more bytes of its
+  /// reply follow.
   virtual void sent() {}
 
   /// Returns the rate that a master has set at this port, in bits per second; nullopt if the port has no rate
-  /// or no UART supports the rate.
+  /// or it is not a known rate.
   [[nodiscard]] virtual std::optional<std::uint32_t> baud() const { return std::nullopt; }
   /// Returns whether the port is a real line. If it is, the transmission time of the bytes has already passed
   /// when they arrive.

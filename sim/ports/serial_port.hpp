@@ -17,8 +17,8 @@ namespace ex9000::sim {
 
 class SerialPort final : public Port {
  public:
-  /// Opens `device` in `mode` and prevents others from opening it. `echo`: the adapter receives what
-  /// it sends. Throws std::invalid_argument with a one-line message if the device or the settings are not
+  /// Opens `device` in `mode` and prevents others from opening it. `echo`: the adapter receives what it
+  /// sends. Throws std::invalid_argument with a one-line message if the device or the settings are not
   /// available. `place` is the prefix of the device in all messages.
   SerialPort(boost::asio::io_context& io, const std::string& place, const std::string& device,
              hal::SerialMode mode, bool echo);
@@ -41,7 +41,7 @@ class SerialPort final : public Port {
   std::array<std::uint8_t, 4096> buffer_{};
   bool paused_ = false;
   std::vector<std::uint8_t> held_back_;
-  OwnEcho::Clock::time_point began_;  ///< arrival time of the first byte in held_back_
+  OwnEcho::Clock::time_point began_;  ///< when the first byte in held_back_ was stored
   bool under_way_ = false;            ///< the beginning of a reply has been written
   std::optional<OwnEcho> echo_;
   std::optional<ParityMarks> marks_;  ///< of formats with parity

@@ -9,7 +9,7 @@ namespace ex9000::sim {
 /// An address to listen on or to connect to.
 struct TcpAddress {
   std::string host;
-  std::uint16_t port = 0;  ///< 0: any free port
+  std::uint16_t port = 0;  ///< 0 in an address to listen on: any free port
 };
 
 /// Parses HOST:PORT, :PORT, PORT or [IPV6]:PORT. Without HOST, the result has the loopback address 127.0.0.1.

@@ -15,8 +15,8 @@
 
 namespace ex9000::sim {
 
-/// Transfers only the bytes: no MBAP header, no telnet negotiation. All clients receive everything that
-/// modules send. The port puts everything that a client sends on the line.
+/// Transfers only the bytes: no MBAP header, no telnet negotiation. The port sends the bytes from the line to
+/// all clients, and puts everything that a client sends on the line.
 class TcpPort final : public Port {
  public:
   /// How long a client that has closed its sending side may wait for the rest of the replies; nullopt:

@@ -14,8 +14,8 @@
 
 namespace ex9000::sim {
 
-/// Bytes from modules go to every port. The rate that a master sets at a port becomes the line's rate. Works
-/// the same way for paced and for stepped time.
+/// Bytes that the master's end receives go to every port. The rate that a master sets at a port becomes the
+/// line's rate. Works the same way for paced and for stepped time.
 class LinePorts final : private BusObserver {
  public:
   using All = std::vector<std::unique_ptr<Port>>;
@@ -27,7 +27,7 @@ class LinePorts final : private BusObserver {
 
   /// Stores a byte that the master's end of the line has received. The line calls this for each such byte.
   void hear(std::uint8_t byte) { heard_.push_back(byte); }
-  /// Returns whether a module has stopped sending since the last `hand_out`.
+  /// Returns whether a station other than the master has stopped sending since the last `hand_out`.
   [[nodiscard]] bool reply_is_complete() const { return stopped_sending_; }
   /// Writes the bytes received since the last call to all ports. Does not block: if a port has no room, drops
   /// the bytes and reports the first drop with a notice.
@@ -56,7 +56,7 @@ class LinePorts final : private BusObserver {
   std::vector<std::uint8_t> heard_;
   std::uint64_t sent_ = 0;
   std::vector<const Port*> full_;  ///< ports whose dropped bytes have been reported
-  bool stopped_sending_ = false;   ///< a module has stopped sending since the last `hand_out`
+  bool stopped_sending_ = false;   ///< see reply_is_complete
 };
 
 }  // namespace ex9000::sim

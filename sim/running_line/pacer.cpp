@@ -65,8 +65,8 @@ VirtualTime Pacer::wall() const {
   return first_ + (pace_.speed == 1 ? real : std::chrono::duration_cast<VirtualTime>(real * pace_.speed));
 }
 
-/// Returns the moment at which the wall clock reaches `time`. The result is at most a century ahead, because
-/// the clock's range is finite.
+/// Returns the moment at which the wall clock reaches `time`. If the speed is not 1, the result is at most a
+/// century after the start, because the clock's range is finite.
 std::chrono::steady_clock::time_point Pacer::when(VirtualTime time) const {
   constexpr VirtualTime kCentury = std::chrono::hours(24 * 365 * 100);
   const VirtualTime ahead = time - first_;
@@ -216,8 +216,8 @@ std::size_t Pacer::first_frame_size(Bytes bytes) {
   return crc.value() == 0 ? bytes.size : first;
 }
 
-/// Returns the earliest start of a frame to `address`. From this time on, a module that has received earlier
-/// bytes does not join the frame to them.
+/// Returns the earliest start of a frame to `address`, see Pace::keep_frames_apart. The returned time may be
+/// in the past.
 VirtualTime Pacer::earliest_frame(std::uint8_t address) const {
   if (!pace_.keep_frames_apart) {
     return VirtualTime(0);

@@ -25,7 +25,7 @@ struct Pace {
   /// the wall clock. If virtual time is then more than 5 ms ahead, masters have to wait. If this value is
   /// zero, every event waits for the wall clock.
   VirtualTime lead{0};
-  /// A frame to a module other than the last sender waits until a silence of T3.5 has passed. A frame to a
+  /// After a Modbus reply, a frame to another module waits until a silence of T3.5 has passed. A frame to a
   /// Modbus module after an ASCII reply, or after bytes of an unknown sender, waits until the module no
   /// longer treats these bytes as part of a frame. If a master begins earlier, only the module that has just
   /// replied receives the frame, because that module does not receive its own reply. All other modules
@@ -40,7 +40,7 @@ struct Pace {
 constexpr Pace kWallPace{};
 /// Bytes take their real time, for masters that follow the standard strictly.
 constexpr Pace kStrictWallPace{kWallPace.host_latency, kWallPace.lead, false};
-/// Bytes take no time: no timer delays the reply to a request.
+/// Bytes take no time: no timer delays a reply that the module sends immediately.
 constexpr Pace kInstantPace{VirtualTime(0), std::chrono::microseconds(200), true};
 
 /// Virtual time follows the wall clock from `start` on.
@@ -48,7 +48,8 @@ class Pacer final {
  public:
   /// Sends the bytes that the master of `line` receives to all `ports`, and puts the bytes from the ports on
   /// the line. `frames` may be null. All arguments must live as long as `io` runs. `notice`: see LinePorts;
-  /// it also receives a message if a delay of the host has affected the line.
+  /// it also receives a message if a delay of the host has affected the line, or if two frames were read in
+  /// one piece.
   Pacer(boost::asio::io_context& io, Line& line, const LinePorts::All& ports, FrameWatch* frames, Pace pace,
         LinePorts::Notice notice);
 

@@ -24,19 +24,20 @@ class RunningLine {
  public:
   using Print = std::function<void(const std::string& line)>;
 
-  /// Opens everything that `setup` names. Throws std::invalid_argument or std::runtime_error with a one-line
-  /// message. After an exception, everything is closed again, and no file has been created or changed. All
-  /// arguments must outlive this object. If `stepped` is true, the behaviour of the ports does not depend on
-  /// the wall clock.
+  /// Opens everything that `setup` names, except EEPROM files that do not exist. Throws std::invalid_argument
+  /// or std::runtime_error with a one-line message. After an exception, everything is closed again, and no
+  /// file has been created or changed. `io` and `setup` must outlive this object. If `stepped` is true, the
+  /// behaviour of the ports does not depend on the wall clock.
   RunningLine(boost::asio::io_context& io, const LineSetup& setup, std::uint64_t seed, LogFormat format,
               bool stepped, Print print);
   RunningLine(const RunningLine&) = delete;
   RunningLine& operator=(const RunningLine&) = delete;
 
-  /// Updates existing EEPROM files with the data that modules have stored during their start. Throws like the
-  /// constructor.
+  /// Updates existing EEPROM files with the data that modules have stored during their start. Throws
+  /// std::runtime_error with a one-line message if a file cannot be written.
   void renew_memories();
-  /// Creates the missing EEPROM files and appends them to `made`. Throws like the constructor.
+  /// Creates the missing EEPROM files and appends them to `made`. Throws std::invalid_argument with a
+  /// one-line message if a file exists by now or cannot be created.
   void make_missing_memories(std::list<NewFile>& made);
 
   /// Returns the records of the line.
@@ -64,7 +65,7 @@ class RunningLine {
   [[nodiscard]] std::uint64_t sent() const {
     return pacer_ ? pacer_->sent() : stepped_ ? stepped_->sent() : 0;
   }
-  /// Returns the line time at which the modules have been up for `up`.
+  /// Returns the line's time at which the modules have been up for `up`.
   [[nodiscard]] VirtualTime when_up_for(VirtualTime up) const { return came_up_ + up; }
   [[nodiscard]] const LineSummary& introduced() const { return introduced_; }
 
@@ -77,15 +78,15 @@ class RunningLine {
 
   const LineSetup& setup_;
   Print print_;
-  std::vector<std::unique_ptr<EepromFile>> memories_;  ///< one for each module; null: none
+  std::vector<std::unique_ptr<EepromFile>> memories_;  ///< one for each module; null: it has no EEPROM file
   std::unique_ptr<Line> line_;
   VirtualTime came_up_{0};  ///< the line's time at which all modules had started up
   LineSummary introduced_;
   LinePorts::All ports_;
-  std::unique_ptr<ModbusTcpServer> modbus_tcp_;  ///< null: none
+  std::unique_ptr<ModbusTcpServer> modbus_tcp_;  ///< null if `setup` names no Modbus TCP port
   std::unique_ptr<LineRecord> record_;
-  std::unique_ptr<Pacer> pacer_;          ///< null unless the line follows the wall clock
-  std::unique_ptr<SteppedLine> stepped_;  ///< null unless the line is in stepped time
+  std::unique_ptr<Pacer> pacer_;          ///< null until `start_paced`
+  std::unique_ptr<SteppedLine> stepped_;  ///< null until `start_stepped`
 };
 
 }  // namespace ex9000::sim

@@ -37,7 +37,8 @@ class SteppedLine {
   [[nodiscard]] std::size_t waiting() const { return waiting_; }
   /// Reads everything that is available at the ports and at the server.
   void read_ports();
-  /// Puts the stored bytes on the line, without a gap, after those that the master still has to send.
+  /// Puts the stored bytes on the line, without a gap, after those that the master still has to send. Adds
+  /// the requests of the server to the queue of the line.
   void put_on_line();
 
   [[nodiscard]] VirtualTime now() const { return line_.clock().virtual_now(); }

@@ -40,9 +40,10 @@ class RunningProgram : private PanelSource {
   RunningProgram(const RunningProgram&) = delete;
   RunningProgram& operator=(const RunningProgram&) = delete;
 
-  /// Creates the missing files, prints the greeting, and prepares the lines. Paced lines advance as soon as
-  /// `io` runs, stepped lines at each `advance`; both stop `io` at the end of the duration in `setup`. Throws
-  /// like the constructor; files that it has created are then removed.
+  /// Creates the missing files, prints the greeting, and prepares the lines. Paced lines advance from then
+  /// on, those on the main thread as soon as `io` runs. Stepped lines advance at each `advance`. Both stop
+  /// `io` at the end of the duration in `setup`. Throws like the constructor; files that it has created are
+  /// then removed.
   void start();
   /// Only for Speed::Kind::Max: processes all events in the duration of `setup`, unless `io` is stopped.
   void run_unpaced();

@@ -31,7 +31,8 @@ class Stepper {
   /// or later, as soon as all of these are true:
   /// - N bytes have arrived at the ports that no earlier `advance` has put on a line. Everything that is
   ///   available has been read and put on its line.
-  /// - TIME has passed. With `quiet`, it is also sufficient that nothing is pending on any line.
+  /// - TIME has passed, or the lines have reached `end`. With `quiet`, it is also sufficient that nothing is
+  ///   pending on any line.
   /// - Every reply has been written to its port.
   ///
   /// `answer` receives `ok NOW`, the lines' time in seconds, or `error: ...`. If the command is wrong,

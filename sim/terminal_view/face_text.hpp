@@ -25,8 +25,8 @@ inline constexpr Lamps kPlainLamps{"*", "-"};
 std::vector<std::string> face_text(std::size_t number, const SimulatedModule& module, VirtualTime now,
                                    const Lamps& lamps);
 
-/// Returns a short text for each difference between `before` and `now`, or for the whole state if `before` is
-/// null.
+/// Returns a short text for each shown value that differs between `before` and `now`, or for all shown values
+/// if `before` is null.
 std::vector<std::string> changes_text(const Model& model, const Face* before, const Face& now);
 
 }  // namespace ex9000::sim

@@ -12,8 +12,8 @@
 
 namespace ex9000::sim {
 
-// Each parser requires that the whole text is a value. It throws std::invalid_argument with a one-line
-// message, for example `'maybe': expected on or off`.
+// Each parser requires that the whole text is a value. The functions whose names begin with `parse` throw
+// std::invalid_argument with a one-line message otherwise, for example `'maybe': expected on or off`.
 
 bool parse_on_off(const std::string& text);
 /// Parses one of two words; returns true for `yes`.

@@ -43,7 +43,8 @@ class OnBoard : public testing::TestWithParam<ImageName> {
     EXPECT_EQ(bench.ask("$01M"), "!019055");
   }
   /// Sends the command that stores a name. Switches the supply off at the time `after` from the start of the
-  /// command, and on again 50 ms later. Returns whether the module had begun to reply before the cut.
+  /// command, and on again 50 ms later. Returns whether the master had received a character of the reply
+  /// before the cut.
   bool cut_while_it_stores(const std::string& name, Instant after) {
     const std::string command = "~01O" + name + "\r";
     bench.line.heard.clear();

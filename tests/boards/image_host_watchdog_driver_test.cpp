@@ -96,8 +96,8 @@ TEST_P(ExpiryOnBoard, IsAtMostOneTickLateIfTheWakeTimerFails) {
 }
 
 /// Sends commands that end at any time around the expiry: a command that only drives outputs, a command that
-/// drives the value that it stores, and a command that drives outputs while the command before it is being
-/// stored.
+/// stores a power-on value, which in Modbus it also drives, and a command that drives outputs while the
+/// command before it is being stored.
 TEST_P(HostWatchdogOnBoard, NoCommandDrivesOutputsAfterTheExpiry) {
   constexpr unsigned kVv = 5;
   constexpr std::uint16_t kCommanded = 0x3C96;

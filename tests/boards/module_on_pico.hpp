@@ -16,11 +16,13 @@ class EmulatedModule {
   EmulatedModule() {
     const Model& model = *find_model("EX9042D-M");
     Settings settings = Settings::factory(model);
-    settings.baud_code = kLastBaudCode;  // the emulator is slow, so the line is fast
+    // The emulator is slow. The highest baud rate makes the test shorter, because a frame takes less time.
+    settings.baud_code = kLastBaudCode;
     bench_.begin_anew(model, &settings);
     bench_.set_baud(baud_rate(settings.baud_code));
     bench_.power(true);
-    bench_.run_for(std::chrono::milliseconds(100));  // wire.md section 2
+    // A module replies at the latest 100 ms after a reset (wire.md section 2).
+    bench_.run_for(std::chrono::milliseconds(100));
   }
   play::Bytes reply_of(const play::Bytes& request) {
     constexpr std::chrono::milliseconds kSilence{5};

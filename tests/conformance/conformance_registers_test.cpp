@@ -21,7 +21,7 @@ namespace {
 
 /// Folders with transcripts whose results depend on the drivers of the line and the pins: they test the
 /// timing of bytes, baud rates, the state after a reset, edges and levels, and the time that a store takes.
-/// The other folders test the contents of replies.
+/// The other folders mostly test the contents of replies.
 constexpr std::array<const char*, 4> kFoldersOfDrivers{"framing", "init", "inputs", "persistence"};
 
 /// Returns whether the test plays a file on an image. All transcripts run on the LaunchPad's images, because

@@ -16,7 +16,8 @@ using Bytes = ModuleBench::Bytes;
 
 constexpr unsigned kOwnAddress = 0x35;
 
-/// Returns valid arguments for the command, so that only the address is wrong.
+/// Returns arguments for the command. They are valid, so that only the address is wrong, except for the
+/// commands of firmware/extensions.md.
 std::string arguments(const dcon::Command& command) {
   if (command.id == "set-configuration") {
     return "02400600";

@@ -43,7 +43,7 @@ TEST(Storing, AModbusRequestThatCannotBeStoredIsRefusedWithServerDeviceFailure) 
   EXPECT_EQ(bench.ask(Bytes{1, 0x05, 0x00, 0x80, 0xFF, 0x00}), (Bytes{1, 0x85, 4}));
   EXPECT_EQ(bench.ask(Bytes{1, 0x0F, 0x00, 0xA0, 0x00, 0x0D, 0x02, 0xFF, 0x1F}), (Bytes{1, 0x8F, 4}));
   EXPECT_EQ(bench.ask(Bytes{1, 0x46, 0x04, 0x05, 0x00, 0x00, 0x00}), (Bytes{1, 0xC6, 4}));
-  EXPECT_EQ(bench.module().outputs(), 0);  // only stored values drive the outputs
+  EXPECT_EQ(bench.module().outputs(), 0);  // the refused values drive no output
   EXPECT_EQ(bench.ask(Bytes{1, 0x08, 0x00, 0x0D, 0x00, 0x00}), (Bytes{1, 0x08, 0x00, 0x0D, 0x00, 0x04}));
 }
 
@@ -265,8 +265,8 @@ TEST(Storing, ARefusedStoreIsNotInForceAfterTheNextResetEvenIfItWasWritten) {
 }
 
 TEST(Storing, AStoringCommandIsRefusedWhileAnEarlierTimeoutCannotBeStored) {
-  // The timeout has disabled the watchdog, but this is not stored yet. The command that disables the watchdog
-  // must not be stored before the timeout is stored.
+  // The timeout has disabled the watchdog, but this is not stored yet. The module must not accept the command
+  // that disables the watchdog before this is stored.
   ModuleBench bench("EX9042D");
   ASSERT_EQ(bench.ask("~013103"), "!01");
   bench.module().memory().fail(true);

@@ -19,7 +19,8 @@
 namespace ex9000::reference {
 namespace {
 
-/// The number of steps of a session. It is large enough for one step to influence many others.
+/// The number of steps of a session; the test of the transcripts plays a third of them. It is large enough
+/// for one step to influence many others.
 constexpr unsigned kSteps = 300;
 
 /// Returns the model for a seed. Consecutive seeds give each model in turn; a model with two protocols occurs

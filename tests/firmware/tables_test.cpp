@@ -1,4 +1,5 @@
-// Tests that the tables of models, commands and registers are consistent, each in itself and with the others.
+// Tests that the tables of models, commands, functions and registers are consistent, each in itself and with
+// the others.
 #include <gtest/gtest.h>
 
 #include <set>

@@ -36,14 +36,14 @@ namespace ex9000::fuzz {
 ///     \h N    the main loop does nothing for the next N times 0.1 ms
 ///     \0-\7   input 0 to 7 changes its level
 ///     \t      a tick
-///     \i      INIT* is connected to GND, or disconnected
+///     \i      INIT* is connected to GND, or disconnected; then a tick
 ///     \m      the memory stops acknowledging, or acknowledges again
 ///     \r      a reset
 ///
 /// `\` and any other byte after it have no effect.
 void live(const Model& model, Protocol usual, const std::uint8_t* data, std::size_t size);
 
-/// Mutates the input with libFuzzer. One mutation in four also corrects the check before each gap or CR.
+/// Mutates the input with libFuzzer. One mutation in four also corrects the checks before gaps or CRs.
 std::size_t mutate(std::uint8_t* data, std::size_t size, std::size_t most, unsigned seed, bool modbus);
 
 }  // namespace ex9000::fuzz

@@ -88,7 +88,7 @@ class Core final : public Peripheral {
 
   std::uint32_t tick_control_ = 0;
   std::uint32_t reload_ = 0;
-  Instant tick_began_{0};  ///< when the counter was last at zero
+  Instant tick_began_{0};  ///< when the counter was last at zero, or was enabled
   Alarm tick_;
 
   std::uint32_t enabled_ = 0;

@@ -26,7 +26,8 @@ LineBench::LineBench(Timeline& timeline, Net& transmit, Net& enable, Net& receiv
         heard.push_back(
             {started, last_ended_, received.byte, !received.framing_error && !received.parity_error});
       }) {
-  // Every board has these resistors. While the pins float, the line is idle and the driver is off.
+  // While the pins float, these resistors keep transmit high and the driver off. On a board, only driver
+  // enable has a resistor.
   transmit_.drive(End::Resistor, Drive::WeakHigh);
   enable_.drive(End::Resistor, Drive::WeakLow);
   transmit_.on_change([this] { board_speaks(); });

@@ -23,7 +23,7 @@
 
 namespace ex9000::registers {
 
-/// The pins of all ports; they keep their state during a reset.
+/// The pins of all ports. A reset affects only what the microcontroller drives.
 struct Pins {
   Pins() {
     for (unsigned port = 0; port < ports.size(); ++port) {

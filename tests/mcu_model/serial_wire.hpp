@@ -11,7 +11,8 @@
 
 namespace ex9000::registers {
 
-/// The parts of a format. They are defined here again, so that the model does not depend on the firmware.
+/// The parts of a format. They are defined here again, so that the model shares only the names of the formats
+/// with the firmware.
 struct Form {
   bool parity_bit;
   bool odd;

@@ -15,8 +15,8 @@ inline Settings ascii(const Model& model) {
   return settings;
 }
 
-/// Sends a request and returns the complete reply, which ends when the module switches its driver enable off.
-/// Returns nothing if no reply arrives within 250 ms, which is longer than any reply takes.
+/// Sends a request and returns the reply, which ends when the module switches its driver enable off. If the
+/// reply takes longer than 250 ms, returns what has arrived; nothing if there is no reply.
 inline TimedModule::Bytes reply_of(TimedModule& module, const TimedModule::Bytes& request) {
   constexpr std::chrono::milliseconds kSilence{5};  // longer than T3.5 at 9600 baud
   constexpr std::chrono::milliseconds kLongestReply{250};

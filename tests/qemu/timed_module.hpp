@@ -15,8 +15,8 @@
 
 namespace ex9000::rig {
 
-/// The module is stopped between calls. The same calls have the same effects, independently of the host. See
-/// AlarmClock.
+/// The module is stopped between calls. The same calls have the same effects, independently of the host, with
+/// the exception that AlarmClock states.
 class TimedModule : public EmulatedBoard {
  public:
   using Bytes = std::vector<std::uint8_t>;
@@ -33,7 +33,8 @@ class TimedModule : public EmulatedBoard {
   void reset();
   /// Sets the level of an input channel; 100 us pass. Ignores channels that the model does not have.
   void set_input(unsigned channel, bool level);
-  /// Generates `count` pulses from the present level and back, one every 8 us.
+  /// Generates `count` pulses from the present level and back, one every 8 us. Has no effect without power,
+  /// or if the model does not have that channel.
   void pulse_input(unsigned channel, std::uint32_t count);
 
   /// Lets time pass. The image runs if the module is powered.
@@ -76,7 +77,7 @@ class TimedModule : public EmulatedBoard {
   void put(const Arrival& arrival);
   void hold_memory(bool hold);
 
-  std::optional<AlarmClock> clock_;  ///< no value before a power-on and after `kill`
+  std::optional<AlarmClock> clock_;  ///< no value before the first power-on, and after `kill`
   std::chrono::nanoseconds now_{0};
   LampWatch lamp_;
 };

@@ -1,5 +1,5 @@
-// Writes what a chip executes to a file: a line for each instruction, interrupt and byte of the UART, in the form that
-// tests/bench/instruction_counts reads.
+// Writes what a chip executes to a file: lines for each interrupt, for each byte of the UART and, if requested, for
+// each instruction, in the form that tests/bench/instruction_counts reads.
 "use strict";
 const fs = require("fs");
 

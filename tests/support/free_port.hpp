@@ -7,8 +7,8 @@ namespace ex9000::system {
 
 /// Returns a TCP port of the loopback interface on which no program listens. Each call in a process returns a
 /// different port, and processes with neighbouring process ids begin at different ports. All ports are below
-/// 32768. Linux does not assign ports in that range by itself, so no program receives the port by chance
-/// before the test uses it. Throws std::runtime_error if no port is free.
+/// 32768. By default, Linux assigns no ports in that range by itself, so no program receives the port by
+/// chance before the test uses it. Throws std::runtime_error if no port is free.
 std::uint16_t free_port();
 
 }  // namespace ex9000::system

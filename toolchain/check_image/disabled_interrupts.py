@@ -6,8 +6,8 @@ import re
 
 from check_image.disassembly import Disassembly, Instruction
 
-# If an interrupt waits longer than one character, 86.8 us at 115200 baud, a byte is lost. This number of instructions
-# takes less than 2 us on all boards.
+# If an interrupt waits longer than one character, 86.8 us at 115200 baud, a byte can be lost. This number of
+# instructions takes less than 2 us on all boards.
 MOST = 20
 
 _DISABLE, _ENABLE = "cpsid", "cpsie"

@@ -27,7 +27,9 @@ _INIT_RELEASED = "set_irq_in /machine/unattached/device[8] unnamed-gpio-in 7 1" 
 _UART0_CONTROL = 0x4000C030
 _DRIVER_ENABLE = 0x40004100  # PA6 only, high while the module sends
 _PR_SET_PDEATHSIG = 1
-_HANG = 60  # seconds; exceeded only if QEMU or the image hangs, even on a busy host
+# The time, in seconds of the host's clock, within which an image must enable its UART, and within which QEMU must end.
+# It is so long that a busy host does not exceed it.
+_HANG = 60
 
 
 class Machine:
@@ -93,14 +95,15 @@ class Machine:
         """Takes bytes of the master and returns bytes of the module. `ready`: the descriptors of `watched` that are
         readable.
 
-        Neither side waits for the other, because a blocked UART stops QEMU.
+        Does not wait for bytes of the master or of the module, because QEMU stops if nobody takes the bytes of the
+        UART.
         """
         if self._events.fileno() in ready:
             self._take_events()
         reply = self._received_from(self._line) if self._line.fileno() in ready else b""
         # QEMU's UART sends without delay, so the master gets a reply before the module disables its driver. Without
-        # this queue, the module would lose the next request of a fast master. On a real line, no master can be that
-        # fast.
+        # this queue, the module would lose the next request of a fast master. On a real line, the module disables its
+        # driver shortly after the last stop bit.
         self._queued_bytes += requests
         self._send_queued()
         return reply
@@ -119,7 +122,7 @@ class Machine:
             self._queued_bytes = b""
 
     def _take_events(self) -> None:
-        """Reads events and resets the machine if the module has requested a reset."""
+        """Reads events and resets the machine if the image or its watchdog has requested a reset."""
         self._pending_events.append(self._next_message())
         while self._pending_events or b"\n" in self._unread:
             event = self._pending_events.popleft() if self._pending_events else self._next_message()

@@ -26,7 +26,7 @@ function described() {
 const isDcon = (text) => /^[$#%@~]/.test(text);
 const hexWord = (value) => value.toString(16).toUpperCase().padStart(4, "0");
 
-/// Returns {label, request} for each access to the registers of a model.
+/// Returns {label, request} for each read and for each single write of the registers of a model.
 function modbusItems(model) {
   return model.modbus_registers.flatMap(({first, last, functions, meaning}) => functions.flatMap((code) => {
     const span = first === last ? hexWord(first) : `${hexWord(first)}–${hexWord(last)}`;
@@ -139,7 +139,7 @@ export class Console {
     this.replies.scrollTop = this.replies.scrollHeight;
   }
 
-  /// Sends after `delay` ms, and then again after each reply, while polling is switched on.
+  /// Sends after `delay` ms, and then again an interval after each reply, while polling is switched on.
   schedule(delay) {
     clearTimeout(this.timer);
     if (!this.poll.checked) {

@@ -1,6 +1,6 @@
 // The values of a module: the present, power-on and safe value of each output, the settings, and the bytes of all
-// stored copies. The elements are created once and only their texts change, so that the reader's position and
-// selection are kept.
+// stored copies. The elements are created once and then only updated, so that the reader's position and selection are
+// kept.
 
 import {bit, hexByte, make, setAttribute, setText} from "/element.js";
 
@@ -13,7 +13,7 @@ export class Drawer {
     const inputs = layout.inputs.length ? ["Counts", "Input filters", "Inverted inputs"] : [];
     this.inputs = layout.inputs;
     const names = ["Name", "Address", "Baud", "Line format", "Protocol", "Checksum", ...inputs, "Response delay",
-      "Host watchdog", "Restarted by", "Timeout status", "Reset status", "Module watchdog"];
+      "Host watchdog", "Host watchdog restarted by", "Timeout status", "Reset status", "Module watchdog"];
     for (const name of names) {
       this.settings[name] = make("dd", {});
     }
@@ -39,7 +39,7 @@ export class Drawer {
     const {plate, stored, guard} = this;
     const {settings} = stored;
     this.values?.show(plate.outputs, settings.powerOn, settings.safe);
-    setText(this.kept, stored.blank ? "EEPROM: blank, factory settings" : "Settings in EEPROM");
+    setText(this.kept, originOfSettings(stored));
     const texts = {
       "Name": settings.name,
       "Address": hexByte(settings.address),
@@ -52,10 +52,10 @@ export class Drawer {
       "Inverted inputs": this.ofInputs((channel) => bit(settings.inverted, channel), () => ""),
       "Response delay": `${settings.responseDelay} ms`,
       "Host watchdog": `${settings.watchdog ? "enabled" : "disabled"}, ${(settings.timeout / 10).toFixed(1)} s`,
-      "Restarted by": settings.fedByRequests ? "host OK and requests" : "host OK",
+      "Host watchdog restarted by": settings.fedByRequests ? "host OK and requests" : "host OK",
       "Timeout status": settings.timedOut ? "set" : "clear",
       "Reset status": plate.listening && guard?.resetStatus ? "reset since the last query" : "–",
-      "Module watchdog": `${plate.resets} resets`,
+      "Module watchdog": `${plate.resets} ${plate.resets === 1 ? "reset" : "resets"}`,
     };
     for (const [name, element] of Object.entries(this.settings)) {
       setText(element, texts[name]);
@@ -92,6 +92,14 @@ export class Drawer {
     }));
     return {element, show};
   }
+}
+
+/// Returns where the shown settings come from.
+function originOfSettings(stored) {
+  if (stored.current !== null) {
+    return "Settings in EEPROM";
+  }
+  return stored.blank ? "EEPROM: blank, factory settings" : "EEPROM: no valid copy, factory settings";
 }
 
 function copyState(copy, inUse) {

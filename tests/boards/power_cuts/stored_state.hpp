@@ -24,8 +24,8 @@ struct State {
 
 /// Returns a state from which `command` stores something. In the factory state the EEPROM is blank, unless
 /// the command requires other settings. In all other states the newer copy has the last sequence number
-/// before the wrap, and the settings differ from the factory settings as far as the model and the command
-/// permit.
+/// before the wrap, and the settings that the manuals describe differ from the factory settings as far as the
+/// model and the command permit.
 State begin_at(Beginning beginning, const Model& model, const StoringCommand& command);
 
 /// Returns the settings with which a module must start. The code is independent of the firmware.

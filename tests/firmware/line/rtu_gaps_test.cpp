@@ -31,7 +31,7 @@ class RtuGaps : public testing::TestWithParam<std::tuple<std::uint32_t, LineForm
   Wire wire_{assembler_, queue_, baud_, format_};
 };
 
-// A simulated line can have any baud rate.
+// A simulated line can have other baud rates than a module, up to 4 Mbaud.
 TEST(LineTimingAt, FourMegabaudHasAGraceOfAtLeastOneMicrosecond) {
   EXPECT_EQ(LineTiming::at(4'000'000, LineFormat::k8N1).rtu_grace.microseconds(), 1U);
 }

@@ -228,7 +228,7 @@ void Crowd::exchange() {
       }
     }
   }
-  // The next request follows as early as possible: when the silence after the reply or the broadcast is over.
+  // After a reply, the next request follows as early as possible: when the silence is over.
   line_.bus().run_for(line_.rtu_silence() + microseconds(10));
   expect_outputs_as_described();
   pulser_.resume();

@@ -70,7 +70,7 @@ class Crowd final : public sim::BusObserver {
   /// Returns, for each module, the outputs that have been on.
   [[nodiscard]] const std::vector<unsigned>& ever_on() const { return ever_on_; }
   [[nodiscard]] unsigned outputs_of(std::size_t module) const { return described_[module].row().outputs; }
-  /// Returns the number of replies of each module.
+  /// Returns the number of replies from each module.
   [[nodiscard]] const std::vector<std::uint64_t>& of_each() const { return of_each_; }
 
   // --- sim::BusObserver ---

@@ -1,9 +1,9 @@
-// Tests a full line: 32 modules of both protocols receive one request after another without a pause. Each
-// module replies only to its own requests, does not treat another module's reply as a request, and keeps
-// receiving. The first module also counts pulses.
+// Tests a full line: 32 modules of both protocols receive one request after another. After a reply, the next
+// request follows as early as the protocols permit. Each module replies only to its own requests, does not
+// treat another module's reply as a request, and keeps receiving. The first module also counts pulses.
 //
-//     EX9000_VIRTUAL_SECONDS=N    duration at 9600 baud in seconds; default 60; 86400 is a day.
-//                                 At 115200 baud the duration is N/15 seconds, at most 600.
+//     EX9000_VIRTUAL_SECONDS=N    virtual duration at 9600 baud, in seconds; default 60; 86400 is a day.
+//                                 At 115200 baud, the duration is N/15 seconds, at most 600.
 //     EX9000_SEED=N               default 1
 #include <gtest/gtest.h>
 
@@ -26,8 +26,8 @@ void run(Crowd& crowd, std::chrono::seconds time) {
 void report(const char* what, const Crowd& crowd) {
   const auto [fewest, most] = std::minmax_element(crowd.of_each().begin(), crowd.of_each().end());
   std::printf(
-      "%s: %llu replies, %llu of them with a store, %llu broadcasts; %llu to %llu of each module; %llu "
-      "pulses\n",
+      "%s: %llu replies, %llu of them with a store, %llu broadcasts; %llu to %llu replies from each "
+      "module; %llu pulses\n",
       what, static_cast<unsigned long long>(crowd.replies()), static_cast<unsigned long long>(crowd.stores()),
       static_cast<unsigned long long>(crowd.broadcasts()), static_cast<unsigned long long>(*fewest),
       static_cast<unsigned long long>(*most), static_cast<unsigned long long>(crowd.pulses()));

@@ -51,7 +51,7 @@ class NoisyLine final : public sim::Disturbance, public sim::Station {
 
   /// Returns a random request that reads or writes outputs.
   FrameBytes a_request();
-  /// Sends `request` while noise flips each bit with the probability `flipped_bit`, checks all effects, and
+  /// Sends `request` while noise flips each bit with the probability `flipped_bit`, checks the effects, and
   /// adds the results to `tally`. If the module has stored something, restores its settings and restarts it.
   /// Reports failures through GoogleTest.
   void exchange(const FrameBytes& request, double flipped_bit, Tally& tally);

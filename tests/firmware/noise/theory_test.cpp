@@ -1,4 +1,4 @@
-// Compares the theory of the CRC with exhaustive counts.
+// Tests the theory of the CRC, among other things with an exhaustive count.
 #include "tests/firmware/noise/theory.hpp"
 
 #include <gtest/gtest.h>

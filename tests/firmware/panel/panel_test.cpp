@@ -232,7 +232,7 @@ TEST(ModuleWatchdog, ASlowMainLoopFeedsItInTheNextTurnAtTheLatest) {
   }
 }
 
-// --- the host watchdog: never early, and at most one tick of the clock late ---
+// --- the host watchdog: never early, and at most one tick of 1 ms late ---
 
 constexpr std::uint32_t kTick = 1'000;
 

@@ -48,7 +48,7 @@ struct Values {
 
 /// The effects of a command that is executed. A refused command has no effects.
 struct Demand {
-  std::uint16_t channels = 0;  ///< the driven channels; 0: not an output command
+  std::uint16_t channels = 0;  ///< the driven channels; 0: the command drives nothing
   std::uint16_t levels = 0;    ///< the levels of the driven channels
   /// The driven channels whose timer starts. The timers of the other driven channels end.
   std::uint16_t timers = 0;

@@ -128,7 +128,8 @@ class RtuJudge {
   std::uint8_t own_;
   Microseconds received_;  ///< a byte that began before the end of the silence is reported within this time
   Microseconds silence_;
-  Microseconds apart_;  ///< the greatest time between the reports of two bytes of a frame
+  /// The greatest time between the reports of two bytes of a frame; kNever if gaps are not strict.
+  Microseconds apart_;
   Microseconds doubt_;
   /// Two more than the longest frame, so that a longer one is noticed.
   static constexpr std::size_t kMost = kLongest + 2;

@@ -23,7 +23,7 @@ class ValueChanges {
     watchdog_.module_reset(reset);
   }
 
-  /// Returns the values after all commands and timeouts so far.
+  /// Returns the values after all changes so far.
   [[nodiscard]] const Values& values() const { return values_; }
   HostWatchdog& watchdog() { return watchdog_; }
 

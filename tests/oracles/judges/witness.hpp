@@ -1,4 +1,4 @@
-// Receives the same bytes as a module, and checks everything that the module does against them.
+// Receives the same bytes as a module, and checks what the module does against them.
 #pragma once
 
 #include <algorithm>
@@ -50,7 +50,7 @@ struct Listening {
 ///  - an idle module does not reply to a frame that is addressed to it;
 ///  - the host watchdog expires too early;
 ///  - the timer of an output ends too early;
-///  - the address changes without a command;
+///  - in ASCII, the address changes without a command;
 ///  - outputs are not the safe value while the timeout status is set, or an output is driven that the model
 ///    does not have.
 ///
@@ -65,7 +65,7 @@ class Witness {
   /// Numbers of received frames.
   struct Counts {
     std::uint64_t requests = 0;
-    std::uint64_t silent = 0;    ///< executed without a reply
+    std::uint64_t silent = 0;    ///< broadcasts and host OKs, which get no reply
     std::uint64_t host_oks = 0;  ///< the frames of `silent` that are host OKs
     std::uint64_t foreign = 0;
     std::uint64_t storing = 0;  ///< the frames of `requests` and `silent` that store something

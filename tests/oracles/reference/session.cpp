@@ -27,7 +27,8 @@ constexpr milliseconds kAnswersStoring{200};
 /// Longer than the time until the reply to a request that stores nothing begins, at any baud rate. The player
 /// of transcripts (sim/play/player.cpp) waits equally long, so a transcript has the same timing there.
 constexpr milliseconds kNoAnswer{65};
-/// The time before the next step. The rest of an incomplete reply arrives in this time.
+/// The time before the next step. If a reply is too long, its first extra byte arrives in this time, at 9600
+/// baud or more.
 constexpr milliseconds kBetween{2};
 /// Longer than the debounce time of any switch; wire.md 2: INIT* is debounced.
 constexpr milliseconds kDebounced{100};

@@ -62,9 +62,9 @@ class Session {
  public:
   explicit Session(const ModelRow& row, Extensions extensions = Extensions::Present);
 
-  /// Plays a step on both modules and compares reply, outputs and LED. Returns false if they differ; the last
-  /// lines of the transcript describe the difference. Does not send a request whose reply the specification
-  /// leaves open.
+  /// Plays a step on both modules and compares reply, its time, outputs and LED. Returns false if they
+  /// differ; the last lines of the transcript describe the difference. Does not send a request whose reply
+  /// the specification leaves open.
   bool play(const Step& step);
 
   [[nodiscard]] const Module& reference() const { return reference_; }
@@ -72,13 +72,14 @@ class Session {
   [[nodiscard]] std::string transcript() const;
   /// Returns the rules that the reference has applied, as rules.cpp names them.
   [[nodiscard]] std::vector<std::string> rules() const;
-  /// Returns the number of requests that were sent.
+  /// Returns the number of requests that `Send` steps have sent.
   [[nodiscard]] std::uint64_t transactions() const { return transactions_; }
   /// Returns the number of requests that ended less than 0.1 s before the host watchdog could expire.
   [[nodiscard]] std::uint64_t before_expiry() const { return before_expiry_; }
   /// Returns the number of requests that were sent while the module might be storing an expiry.
   [[nodiscard]] std::uint64_t behind_expiry() const { return behind_expiry_; }
-  /// Returns the number of requests that were not sent because the specification leaves their reply open.
+  /// Returns the number of requests that were not sent because the specification leaves their reply open, or
+  /// because the master could not read the reply.
   [[nodiscard]] std::uint64_t left_open() const { return left_open_; }
 
  private:

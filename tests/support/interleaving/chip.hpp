@@ -24,8 +24,8 @@ struct Sent {
   std::string bytes;
 };
 
-/// Simulates only the hardware. For each source of interrupts, stores the time of the next interrupt. The
-/// owner must call the interrupt handlers at these times.
+/// Simulates only the hardware. For each source of interrupts except received bytes, stores the time of the
+/// next interrupt. The owner must call the interrupt handlers at these times.
 class Chip final : public hal::bus::Peripherals {
  public:
   static constexpr std::uint32_t kNever = 0xFFFF'FFFF;
@@ -195,7 +195,7 @@ struct Watchdog {
   static void feed() {
     // The watchdog is fed once at reset, and then at most once for each tick.
     if (chip->feeds++ > chip->ticks) {
-      throw std::logic_error("the watchdog is fed twice without a tick in between");
+      throw std::logic_error("the watchdog is fed more often than the tick allows");
     }
   }
 };
