@@ -169,5 +169,6 @@ def main(arguments):
         return 0
     grown = [name for name, count in counts.items() if name in before and count > GROWTH * before[name]]
     if grown:
-        print(f"grown by more than 5 %: {'; '.join(grown)}; if this is intended, repeat the command with --record", file=sys.stderr)
+        print(f"grown by more than 5 %: {'; '.join(grown)}; if this is intended, repeat the command with --record",
+              file=sys.stderr)
     return 1 if grown else 0
