@@ -11,9 +11,9 @@ namespace ex9000::dcon {
 
 constexpr std::size_t kNoCommand = static_cast<std::size_t>(-1);
 
-/// Returns the index of the command in `frame` among the rows of kCommands that the built models have, or
-/// kNoCommand if `model` has no such command. `frame` begins with delimiter and address, and has no checksum
-/// and no CR.
+/// Finds the row of the command that `frame` contains. Returns the index of the row, or kNoCommand if `model`
+/// has no such command. The index counts only the rows of kCommands that at least one built model has.
+/// `frame` begins with delimiter and address, and has no checksum and no CR.
 std::size_t find_command(const Model& model, Bytes frame);
 
 /// Judges the frame of `exchange` and writes its outcome and its reply, including the checksum, if it is in

@@ -89,11 +89,12 @@ class SystemControl {
     constexpr Bits<ResetCause> kSoftware(1U << 4U);
     const Bits<ResetCause> causes = kResetCause.read();
     kResetCause.write({});
-    // The supply is checked first, because the pin may be low for longer than the power-on reset.
+    // The supply is checked first, because the pin may be low for longer than the power-on reset. An image
+    // resets itself only after a fault or an unexpected interrupt.
     return causes.has(kPowerOn | kBrownOut) ? ResetReason::PowerOn
            : causes.has(kPin)               ? ResetReason::ResetPin
            : causes.has(kWatchdog)          ? ResetReason::ModuleWatchdog
-           : causes.has(kSoftware)          ? ResetReason::Fault  // an image resets itself only after a fault
+           : causes.has(kSoftware)          ? ResetReason::Fault
                                             : ResetReason::Unknown;
   }
 

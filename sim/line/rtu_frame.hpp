@@ -30,10 +30,11 @@ inline std::vector<std::uint8_t> rtu_frame(std::uint8_t address, const std::vect
 inline Bytes pdu_of(Bytes frame) { return frame.first(frame.size - 2).from(1); }
 
 /// Returns whether `frame` is a valid reply, perhaps an exception, to `request`; both are complete frames.
-/// The address and the function code must be those of the request. For the functions 01 to 06, 0F and 10, the
-/// length and the values must fit the request too (MODBUS Application Protocol V1.1b3, section 6); for other
-/// functions, they may be any. These checks reject nearly all echoes of requests that read, and most late
-/// replies to other requests.
+/// The address and the function code must be those of the request. A reply to a read (01 to 04) must have the
+/// byte count and the length that the request implies. A reply to a write (05, 06, 0F, 10) must repeat the
+/// address, and the value or the count (MODBUS Application Protocol V1.1b3, section 6). The rest of a reply
+/// to another function is not checked. These checks reject nearly all echoes of requests that read, and most
+/// late replies to other requests.
 inline bool is_rtu_reply(Bytes request, Bytes frame) {
   constexpr std::size_t kException = 5;        // size of an exception; no reply is shorter
   constexpr std::size_t kAddressAndCount = 8;  // minimum size of the requests below

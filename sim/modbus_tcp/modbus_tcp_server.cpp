@@ -128,7 +128,7 @@ boost::system::error_code ModbusTcpServer::take(const ClientPointer& client) {
   return error;
 }
 
-/// Passes `action` to `received_`, which runs it when the line has reached its present time.
+/// Passes `action` to `received_`, which runs it when the line's clock has reached the present time.
 void ModbusTcpServer::deliver(const ClientPointer& client, std::size_t size,
                               const std::function<void()>& action) {
   ++client->arriving;
@@ -184,9 +184,9 @@ void ModbusTcpServer::go_on(const ClientPointer& client) {
   }
 }
 
-/// Closes the connection. Reads the bytes that have arrived first: otherwise the close would reset the
-/// connection, and the client could lose its last replies. The Client object remains until the functions that
-/// are running now have returned.
+/// Closes the connection. Before that, reads the bytes that have already arrived. Otherwise the close would
+/// reset the connection, and the client could lose its last replies. The Client object remains until the
+/// functions that are running now have returned.
 void ModbusTcpServer::forget(const ClientPointer& client) {
   constexpr int kMostPieces = 64;
   boost::system::error_code ended;

@@ -17,7 +17,7 @@ inline std::string output_terminal(const Model& model, unsigned channel) {
 /// Returns the label of input `channel`, from 0.
 inline std::string input_terminal(unsigned channel) { return "DI" + std::to_string(channel); }
 
-/// Returns whether the model has a terminal for INIT*. It is next to the terminals of the supply.
+/// Returns whether the model has a terminal for INIT*. The other models have a switch at the rear.
 inline bool has_init_terminal(const Model& model) { return model.init_input == InitInput::Terminal; }
 
 }  // namespace ex9000::sim

@@ -92,7 +92,7 @@ class Trial {
   void come_up_with(const Settings& settings) {
     const bool init = session_.around().init_asserted;
     const InForce& in_force = session_.in_force();
-    // The host watchdog cannot have expired yet, because `reset` returns before its shortest timeout, 0.1 s.
+    // The host watchdog cannot have expired yet: its shortest timeout is 0.1 s, and `reset` returns earlier.
     require(state().settings == settings,
             "the module uses the newest valid copy, or else the factory settings");
     require(state().outputs == (settings.timeout_status ? settings.safe_value : settings.power_on_value),

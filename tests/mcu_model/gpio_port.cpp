@@ -100,7 +100,7 @@ std::uint32_t GpioPort::read(std::uint32_t offset) {
 void GpioPort::check_lock(std::uint32_t offset, std::uint32_t changed) const {
   const bool guarded = offset == kAlternate || offset == kPullUp || offset == kPullDown || offset == kEnable;
   if (guarded && (changed & locked_) != 0) {
-    fault(offset, "the pin is locked; unlock it with GPIOCR first");
+    fault(offset, "the pin is locked; use another pin, because the model has no GPIOCR");
   }
 }
 

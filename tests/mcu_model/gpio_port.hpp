@@ -42,8 +42,8 @@ class GpioPort final : public Peripheral {
   std::uint32_t read(std::uint32_t offset) override;
   void write(std::uint32_t offset, std::uint32_t value) override;
 
-  /// Sets the level that a peripheral outputs. The level takes effect while the pin is assigned to the
-  /// peripheral.
+  /// Sets the level that a peripheral outputs. The level takes effect while GPIOAFSEL and GPIODEN are
+  /// set for the pin, whatever GPIOPCTL contains.
   void alternate(unsigned pin, Drive drive) {
     alternate_drive_.at(pin) = drive;
     drive_pin(pin);
@@ -69,7 +69,7 @@ class GpioPort final : public Peripheral {
 
   const Chip& chip_;
   PortNets& nets_;
-  std::uint32_t locked_;  ///< pins that keep their function until GPIOCR unlocks them
+  std::uint32_t locked_;  ///< pins that GPIOCR protects; the model has no GPIOCR, so they stay locked
   std::uint32_t data_ = 0;
   std::uint32_t direction_ = 0;
   std::uint32_t sense_ = 0;

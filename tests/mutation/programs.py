@@ -233,6 +233,7 @@ def library_units():
 
 LIBRARIES = {
     "ex9000_core": ("core",),
+    "ex9000_doubles": ("core",),
     **{f"ex9000_{folder}": units_of(folder) for folder in FOLDERS},
     "ex9000_runner": (*units_of("play"), "runner"),
     "ex9000_mcu_model": ("mcu_model",),

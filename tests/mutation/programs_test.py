@@ -1,5 +1,6 @@
 """Tests the selection and the order of the tests that check a changed file."""
 
+import re
 import unittest
 
 import programs
@@ -39,6 +40,12 @@ class Programs(unittest.TestCase):
         product = {file for unit in self.areas["hal"].product for file in unit.files}
         shipped = {file for file in self.areas["hal"].sources if not file.startswith("hal/doubles/")}
         self.assertEqual(shipped - product - REACHED_BY_NONE, set())
+
+    def test_a_run_uses_every_test_of_the_drivers(self):
+        text = (programs.ROOT / "tests/hal/CMakeLists.txt").read_text(encoding="utf-8")
+        names = set(re.findall(r"ex9000_test\((\w+)", text))
+        self.assertIn("memory_test", names)
+        self.assertEqual(names - {program.name for program in programs.listed_programs("tests/hal")}, set())
 
     def test_a_shadowed_header_is_not_compiled_into_a_unit(self):
         unit = programs.LIBRARY_UNITS["mcu_model"]

@@ -145,7 +145,7 @@ class Workshop:
     @staticmethod
     def passes(program, place, folder):
         # A mutant can also make a test wait for ever without using the processor. The time limit only detects this.
-        limits = ["timeout", "--signal=KILL", "600", "prlimit", f"--cpu={program.processor_seconds}",
+        limits = ["timeout", "--foreground", "--signal=KILL", "600", "prlimit", f"--cpu={program.processor_seconds}",
                   f"--as={MOST_MEMORY}"]
         return run(
             [*limits, place, "--gtest_brief=1", "--gtest_fail_fast"],

@@ -370,6 +370,12 @@ test("an I2C master rejects settings while it is on, and reports a low queue as 
   time.advanceTo(time.now + 5e6);
   assert.equal(eeprom.content[0], 0x42);
   master.writeUint32(0x6c, 0);
+  const control = master.readUint32(0x00);
+  master.writeUint32(0x00, control & ~0x40);
+  master.writeUint32(0x6c, 1);
+  assert.throws(() => master.writeUint32(0x10, 0), /not a master only/);
+  master.writeUint32(0x6c, 0);
+  master.writeUint32(0x00, control);
   master.writeUint32(0x04, 0x51);
   master.writeUint32(0x6c, 1);
   master.writeUint32(0x10, 0x200);

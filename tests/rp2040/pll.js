@@ -20,8 +20,11 @@ function correctPll(pll, crystal, clocks) {
   const isLocked = () => clock.nanos >= lockedAt;
   const start = () => {
     const oscillator = (pll.rp2040.xoscFreq / pll.refdiv) * pll.fbdiv;
-    if (!crystal.stable || oscillator < 750e6 || oscillator > 1600e6) {
-      pll.error(`it starts without a reference, or with ${oscillator} Hz`);
+    if (!crystal.stable) {
+      pll.error("it starts without a reference");
+    }
+    if (oscillator < 750e6 || oscillator > 1600e6) {
+      pll.error(`its oscillator starts with ${oscillator} Hz; expected 750 to 1600 MHz`);
     }
     lockedAt = clock.nanos + LOCKS;
   };

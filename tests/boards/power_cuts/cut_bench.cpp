@@ -16,7 +16,7 @@ using std::chrono::milliseconds;
 constexpr milliseconds kComesUpWithin{100};
 constexpr milliseconds kRepliesWithin{25 + kLongestResponseDelay};
 constexpr std::size_t kAroundSettings = 8;  // layout, length, sequence and check
-constexpr milliseconds kStoresWithin{600};  // includes the wait for a timeout
+constexpr milliseconds kStoresWithin{600};  // includes the wait until the host watchdog expires
 constexpr milliseconds kFinishesAnUpdateWithin{200};
 constexpr std::uint16_t kDriven = 0xC35A;  // set by a command before the command that stores
 
@@ -32,8 +32,8 @@ std::uint8_t left(unsigned way, std::uint8_t old_byte, std::uint8_t new_byte) {
 
 }  // namespace
 
-/// Returns whether `contents` hold a good new copy and a good old copy. This happens if the power failed
-/// before the old copy was invalidated.
+/// Returns whether `contents` hold a good copy of layout 3 and a good copy of an older layout. This is the
+/// case if the power failed after the first store of new firmware, before it invalidated the older layout.
 bool CutBench::has_unfinished_update(const Contents& contents) const {
   const StoringModel storing = storing_model(model_);
   const auto good = [&](std::size_t place) { return StoredCopy(storing, contents.data(), place).is_good(); };
@@ -203,7 +203,8 @@ void CutBench::set_outputs(const FrameFormat& frame_format) {
   ASSERT_EQ(bench_.outputs(), kDriven);
 }
 
-/// Executes a command until it is stored, the reply is sent, and the bus and the line are idle.
+/// Sends a command, or waits until the host watchdog expires. Returns when the settings are stored, the reply
+/// is sent, and the bus and the line are idle.
 void CutBench::carry_out(const FrameFormat& frame_format, const StoringCommand& command,
                          const Settings& before, std::size_t pages) {
   const std::size_t had_programmed = bench_.eeprom.programmed().size();
@@ -245,7 +246,7 @@ FrameFormat CutBench::get_ready(const Contents& contents, const Settings& before
   }
   if (command.init == Init::Tied) {
     bench_.set_init(true);
-    bench_.run_for(milliseconds(25));  // debounce time of INIT*, wire.md D13
+    bench_.run_for(milliseconds(25));  // a change of INIT* takes effect within 20 ms: wire.md D13
   }
   EXPECT_EQ(bench_.outputs(), outputs_before(before));
   bench_.line.drives.clear();
@@ -286,7 +287,8 @@ Cuts CutBench::cut_everywhere(const Contents& contents, const Settings& before,
     note_cuts(cuts);
     cuts.events.push_back(bench_.timeline.now() - began);
     if (bench_.eeprom.programming()) {
-      // A timeout drives the outputs immediately. A command drives them when it is stored.
+      // A timeout of the host watchdog changes the outputs immediately. A command changes them after the
+      // store.
       EXPECT_EQ(bench_.outputs(), command.is_timeout() ? outputs_done : cuts.outputs);
     }
   });

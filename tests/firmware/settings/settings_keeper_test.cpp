@@ -110,8 +110,8 @@ TEST_F(SettingsKeeperTest, RetriesEverySecondUntilTheChangeIsStored) {
 
 // wire.md D15.
 TEST_F(SettingsKeeperTest, ACommandThatCannotBeStoredDoesNotPostponeTheRetry) {
-  constexpr std::size_t kWritesOfAFailure =
-      4;  // three attempts, and the write that would invalidate the copy
+  // Three attempts, and the write that would invalidate the copy.
+  constexpr std::size_t kWritesOfAFailure = 4;
   keeper_.settings_changed();
   memory_.unanswered_writes = 2 * kWritesOfAFailure;
   keeper_.poll(numbered(5), now_);

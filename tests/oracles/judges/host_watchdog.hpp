@@ -10,8 +10,9 @@
 
 namespace ex9000::judges {
 
-/// Stores the latest restart and the latest timeout of the host watchdog. Does not track the restarts by
-/// requests that register 0x0251 enables.
+/// Stores the latest restart and the latest timeout of the host watchdog. If register
+/// 0x0251 is 1, each request for the module also restarts the host watchdog. This class does not track these
+/// restarts.
 class HostWatchdog {
  public:
   void module_reset(Microseconds now) {

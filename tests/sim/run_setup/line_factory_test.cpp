@@ -59,7 +59,7 @@ TEST_F(MadeLine, AFaultThatRecursKeepsItsPeriod) {
   EXPECT_EQ(notices_.size(), 8U);  // the beginning and the end, four times
 }
 
-TEST_F(MadeLine, BytesTakeTheirTimeOnALineWithStrictGapsToo) {
+TEST_F(MadeLine, AByteTakesTenBitTimesWithAndWithoutStrictGaps) {
   for (const bool strict : {false, true}) {
     setup_.strict_gaps = strict;
     begin();

@@ -143,7 +143,7 @@ TEST_F(WatchTest, PrintsNothingOnATerminalThatIsNotReady) {
   EXPECT_NE(looked()[0].find("power on, INIT*"), std::string::npos);  // shows the present state
 }
 
-TEST_F(WatchTest, SeveralLinesHaveTheirNames) {
+TEST_F(WatchTest, ShowsTheNameOfEachBusLine) {
   watch({"EX9067D", "EX9067D@02"}, "hall");
   watch({"EX9067D@03"}, "yard");
   const std::string text = looked()[0];

@@ -1,4 +1,4 @@
-// Tests that the messages of exceptions get their place.
+// Tests that `with_place` adds the place of an error to the message of the exception.
 #include "sim/text/fail.hpp"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ std::string message_with_place() {
   return "";
 }
 
-TEST(WithPlace, AnExceptionKeepsItsTypeAndGetsThePlace) {
+TEST(WithPlace, KeepsTheTypeOfAnExceptionAndAddsThePlaceToItsMessage) {
   EXPECT_EQ(message_with_place<std::invalid_argument>(), "--pty: is in use");
   EXPECT_EQ(message_with_place<std::runtime_error>(), "--pty: is in use");
 }
