@@ -240,11 +240,19 @@ TEST_F(PicoImage, TheModuleCountsEveryPulseOfEightInputsDuringContinuousRequests
 TEST_F(PicoImage, TheModuleReportsTheLevelsOfItsInputs) {
   begin("EX9052D");
   EXPECT_EQ(ask("@01"), ">0000\r");
-  for (unsigned channel = 0; channel < 8; ++channel) {
-    bench_.set_input(channel, channel % 3 != 0);
-  }
-  bench_.run_for(milliseconds(1));
+  const auto set_inputs = [this](std::uint32_t levels) {
+    for (unsigned channel = 0; channel < 8; ++channel) {
+      bench_.set_input(channel, (levels >> channel & 1U) != 0);
+    }
+    bench_.run_for(milliseconds(1));
+  };
+  set_inputs(0xB6);
   EXPECT_EQ(ask("@01"), ">B600\r");
+  bench_.power(false);
+  set_inputs(0x5C);
+  bench_.power(true);
+  bench_.run_for(kComingUp);
+  EXPECT_EQ(ask("@01"), ">5C00\r") << "the levels at reset";
 }
 
 // wire.md section 2: in INIT mode, the module has address 00 and uses no checksum.
