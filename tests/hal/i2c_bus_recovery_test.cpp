@@ -63,7 +63,7 @@ TEST(I2cBusRecoveryTest, ARecoveryLongAfterTheLastOneBeginsImmediately) {
     RecordedWires::held_for = 1;
     recovery.begin();
     EXPECT_FALSE(recovery.poll(now));
-    EXPECT_EQ(RecordedWires::levels, "Cd cd ");
+    ASSERT_EQ(RecordedWires::levels, "Cd cd ");
     while (!recovery.poll(now)) {
       now = now + Duration(1);
     }
