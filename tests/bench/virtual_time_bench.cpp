@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "sim/line/line.hpp"
-#include "sim/play/modbus_frame.hpp"
+#include "sim/app/play/modbus_frame.hpp"
 #include "sim/text/values.hpp"
+#include "sim/virtual_line/line/line.hpp"
 
 namespace ex9000::bench {
 namespace {

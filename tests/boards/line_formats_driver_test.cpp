@@ -8,9 +8,9 @@
 #include "firmware/model/baud.hpp"
 #include "firmware/model/model.hpp"
 #include "firmware/settings/settings.hpp"
-#include "sim/bus/module.hpp"
-#include "sim/play/modbus_frame.hpp"
+#include "sim/app/play/modbus_frame.hpp"
 #include "sim/text/values.hpp"
+#include "sim/virtual_line/bus/module.hpp"
 #include "tests/boards/images_under_test.hpp"
 #include "tests/mcu_model/board_bench.hpp"
 

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "sim/play/transcript.hpp"
+#include "sim/app/play/transcript.hpp"
 #include "tests/qemu/master.hpp"
 
 namespace ex9000 {

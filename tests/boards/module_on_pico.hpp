@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "firmware/model/baud.hpp"
-#include "sim/play/transcript.hpp"
+#include "sim/app/play/transcript.hpp"
 #include "tests/rp2040/pico_bench.hpp"
 
 namespace ex9000 {

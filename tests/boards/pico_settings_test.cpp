@@ -12,7 +12,7 @@
 
 #include "boards/pico/board.hpp"
 #include "firmware/model/baud.hpp"
-#include "sim/play/modbus_frame.hpp"
+#include "sim/app/play/modbus_frame.hpp"
 #include "tests/firmware/settings/stored_bytes.hpp"
 #include "tests/rp2040/pico_bench.hpp"
 #include "tests/support/settings_reader.hpp"

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "sim/play/player.hpp"
-#include "sim/play/transcript.hpp"
+#include "sim/app/play/player.hpp"
+#include "sim/app/play/transcript.hpp"
 #include "tests/support/core_target.hpp"
 #include "tests/support/coverage.hpp"
 #include "tests/support/transcripts.hpp"

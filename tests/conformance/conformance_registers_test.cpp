@@ -10,8 +10,8 @@
 #include <filesystem>
 #include <string>
 
-#include "sim/play/player.hpp"
-#include "sim/play/transcript.hpp"
+#include "sim/app/play/player.hpp"
+#include "sim/app/play/transcript.hpp"
 #include "tests/boards/images_under_test.hpp"
 #include "tests/mcu_model/register_target.hpp"
 #include "tests/support/transcripts.hpp"

@@ -13,8 +13,8 @@
 #include <utility>
 #include <vector>
 
-#include "sim/play/player.hpp"
-#include "sim/play/transcript.hpp"
+#include "sim/app/play/player.hpp"
+#include "sim/app/play/transcript.hpp"
 #include "tests/support/core_target.hpp"
 #include "tests/support/transcripts.hpp"
 

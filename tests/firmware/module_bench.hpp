@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "sim/line/line.hpp"
-#include "sim/play/modbus_frame.hpp"
-#include "tests/sim/bus/bus_recorder.hpp"
+#include "sim/app/play/modbus_frame.hpp"
+#include "sim/virtual_line/line/line.hpp"
+#include "tests/sim/virtual_line/bus/bus_recorder.hpp"
 
 namespace ex9000::sim {
 

@@ -8,7 +8,7 @@
 
 #include "firmware/request/statistics.hpp"
 #include "firmware/settings/places.hpp"
-#include "sim/play/modbus_frame.hpp"
+#include "sim/app/play/modbus_frame.hpp"
 #include "sim/text/values.hpp"
 #include "tests/firmware/module_bench.hpp"
 #include "tests/firmware/settings/stored_bytes.hpp"

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/play/player.hpp"
+#include "sim/app/play/player.hpp"
 #include "tests/oracles/reference/generator.hpp"
 #include "tests/oracles/reference/rules.hpp"
 #include "tests/oracles/reference/session.hpp"

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "sim/app/arguments.hpp"
-#include "sim/bus_file/bus_file.hpp"
+#include "sim/app/bus_file/bus_file.hpp"
+#include "sim/app/command_line/arguments.hpp"
 #include "tests/fuzz/require.hpp"
 
 namespace ex9000::fuzz {

@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "sim/control/control.hpp"
-#include "sim/line/line.hpp"
+#include "sim/front_ends/control/control.hpp"
+#include "sim/virtual_line/line/line.hpp"
 #include "tests/fuzz/fault_judge.hpp"
 #include "tests/fuzz/require.hpp"
 

@@ -16,7 +16,7 @@
 #include <memory>
 #include <vector>
 
-#include "sim/modbus_tcp/mbap_session.hpp"
+#include "sim/front_ends/modbus_tcp/mbap_session.hpp"
 #include "tests/fuzz/require.hpp"
 
 namespace ex9000::fuzz {

@@ -11,7 +11,7 @@ const NODE = known("Buffer", "__dirname", "console", "process");
 
 module.exports = [
   js.configs.recommended,
-  { files: ["sim/panel/page/*.js"], languageOptions: { sourceType: "module", globals: BROWSER } },
+  { files: ["sim/front_ends/panel/page/*.js"], languageOptions: { sourceType: "module", globals: BROWSER } },
   { files: ["tests/**/*.js", "tests/**/*.cjs"], languageOptions: { sourceType: "commonjs", globals: NODE } },
   {
     linterOptions: { reportUnusedDisableDirectives: "error" },

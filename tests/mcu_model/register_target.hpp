@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "sim/play/target.hpp"
+#include "sim/app/play/target.hpp"
 #include "tests/mcu_model/board_bench.hpp"
 
 namespace ex9000::registers {

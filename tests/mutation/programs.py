@@ -189,14 +189,15 @@ def built(sources):
 def folders():
     text = (ROOT / "sim/CMakeLists.txt").read_text()
     found = {}
-    for name, body in re.findall(r"^ex9000_folder\((\w+)\s+([^)]*)\)", text, re.MULTILINE):
+    for folder, body in re.findall(r"^ex9000_folder\(([\w/]+)\s+([^)]*)\)", text, re.MULTILINE):
         parts = dict(re.findall(r"(SOURCES|ON_THEIR_OWN|PUBLIC|PRIVATE)\s+([^A-Z]*(?:[A-Z]\w*::\w+[^A-Z]*)*)", body))
+        name = folder.rsplit("/", maxsplit=1)[-1]
         sources = built(parts.get("SOURCES", ""))
-        together = tuple(f"sim/{name}/{each}" for each in sources if stem_of(each) not in ALONE)
+        together = tuple(f"sim/{folder}/{each}" for each in sources if stem_of(each) not in ALONE)
         alone = [each for each in sources if stem_of(each) in ALONE] + built(parts.get("ON_THEIR_OWN", ""))
         options = ("-O1",) if "ex9000_hot" in parts.get("PRIVATE", "") else ("-O0",)
         units = [Unit(name, together, options)] if together else []
-        units += [Unit(stem_of(each), (f"sim/{name}/{each}",)) for each in alone]
+        units += [Unit(stem_of(each), (f"sim/{folder}/{each}",)) for each in alone]
         libraries = tuple(re.findall(r"ex9000_(\w+)", parts.get("PUBLIC", "")))
         found[name] = Folder(tuple(units), libraries)
     return found
@@ -411,7 +412,7 @@ def areas():
         if not file.startswith("hal/rp2040/") or any(file in unit.files for each in hal for unit in each.tests)
     ]
     of_drivers = [hal, interleaved, sim, [players()], image_programs()]
-    of_simulator = [LIBRARY_UNITS[name] for name in LIBRARIES["ex9000_app"] if name != "core"]
+    of_simulator = [LIBRARY_UNITS[name] for name in LIBRARIES["ex9000_command_line"] if name != "core"]
     return [
         Area("firmware", files("firmware/*.cpp", "firmware/*.hpp"), core + images, [[players()], of_core]),
         Area("hal", drivers, [*core, *images, *of_pico], of_drivers),

@@ -6,7 +6,7 @@ import unittest
 import programs
 
 # Every test replaces the first two by its own bus and processor. The third is a list of files that the build generates.
-REACHED_BY_NONE = {"hal/registers/bus.hpp", "hal/cortex_m/processor.hpp", "sim/panel/page_files.hpp"}
+REACHED_BY_NONE = {"hal/registers/bus.hpp", "hal/cortex_m/processor.hpp", "sim/front_ends/panel/page_files.hpp"}
 
 
 class Programs(unittest.TestCase):
@@ -25,7 +25,7 @@ class Programs(unittest.TestCase):
         self.assertEqual(self.nearest("firmware", "firmware/line/crc16.hpp")[0], "crc16_test")
         self.assertEqual(self.nearest("hal", "hal/pl011/uart.hpp")[0], "uart_driver_test")
         self.assertEqual(self.nearest("hal", "hal/flash/page_store.hpp")[0], "page_store_test")
-        self.assertEqual(self.nearest("sim", "sim/bus/bus.cpp")[0], "bus_test")
+        self.assertEqual(self.nearest("sim", "sim/virtual_line/bus/bus.cpp")[0], "bus_test")
 
     def test_otherwise_tests_that_include_the_header_come_first(self):
         self.assertEqual(self.nearest("hal", "hal/stellaris/outputs.hpp")[0], "pins_driver_test")

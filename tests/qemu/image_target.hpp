@@ -4,7 +4,7 @@
 #include <chrono>
 #include <map>
 
-#include "sim/play/target.hpp"
+#include "sim/app/play/target.hpp"
 #include "tests/qemu/timed_module.hpp"
 
 namespace ex9000::rig {

@@ -7,8 +7,8 @@
 #include "hal/flash/entry.hpp"
 #include "hal/flash/mark.hpp"
 #include "hal/flash/slot.hpp"
-#include "sim/bus/module.hpp"
 #include "sim/text/values.hpp"
+#include "sim/virtual_line/bus/module.hpp"
 
 namespace ex9000::pico {
 

@@ -9,7 +9,7 @@
 #include "boards/rp2040/memory.hpp"
 #include "firmware/model/model.hpp"
 #include "firmware/settings/settings.hpp"
-#include "sim/play/transcript.hpp"
+#include "sim/app/play/transcript.hpp"
 #include "tests/rp2040/emulator_process.hpp"
 
 namespace ex9000::pico {

@@ -1,7 +1,7 @@
 // A transcript target: an image on an emulated Pico.
 #pragma once
 
-#include "sim/play/target.hpp"
+#include "sim/app/play/target.hpp"
 #include "tests/rp2040/pico_bench.hpp"
 
 namespace ex9000::pico {

@@ -1,7 +1,7 @@
 // A transcript target: the core in virtual time. It records the table rows that transcripts reach.
 #pragma once
 
-#include "sim/play/bus_target.hpp"
+#include "sim/app/play/bus_target.hpp"
 #include "tests/support/coverage.hpp"
 
 namespace ex9000::runner {

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "firmware/module.hpp"
-#include "sim/play/transcript.hpp"
+#include "sim/app/play/transcript.hpp"
 
 namespace ex9000::runner {
 

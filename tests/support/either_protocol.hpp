@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "firmware/settings/settings.hpp"
-#include "sim/play/modbus_frame.hpp"
+#include "sim/app/play/modbus_frame.hpp"
 
 namespace ex9000 {
 

@@ -7,7 +7,7 @@
 #include <memory>
 #include <string>
 
-#include "sim/play/target.hpp"
+#include "sim/app/play/target.hpp"
 #include "tests/support/control_client.hpp"
 #include "tests/support/master_port.hpp"
 

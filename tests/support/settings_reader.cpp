@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "sim/play/modbus_frame.hpp"
+#include "sim/app/play/modbus_frame.hpp"
 #include "tests/oracles/reference/hexadecimal.hpp"
 #include "tests/support/storing_commands.hpp"
 

@@ -11,7 +11,7 @@
 #include <cstring>
 #include <stdexcept>
 
-#include "sim/ports/termios_rates.hpp"
+#include "sim/files_and_ports/ports/termios_rates.hpp"
 
 namespace ex9000::system {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/play/transcript.hpp"
+#include "sim/app/play/transcript.hpp"
 #include "tests/support/control_client.hpp"
 #include "tests/support/directory.hpp"
 #include "tests/support/process_target.hpp"

@@ -6,7 +6,7 @@
 #include <variant>
 #include <vector>
 
-#include "sim/play/transcript.hpp"
+#include "sim/app/play/transcript.hpp"
 #include "sim/text/fail.hpp"
 
 namespace ex9000::runner {

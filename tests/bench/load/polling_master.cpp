@@ -16,7 +16,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "sim/play/modbus_frame.hpp"
+#include "sim/app/play/modbus_frame.hpp"
 
 namespace ex9000::bench {
 

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "sim/play/modbus_frame.hpp"
+#include "sim/app/play/modbus_frame.hpp"
 
 namespace ex9000::interleaving {
 

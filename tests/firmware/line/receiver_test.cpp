@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "firmware/model/baud.hpp"
-#include "sim/play/modbus_frame.hpp"
+#include "sim/app/play/modbus_frame.hpp"
 #include "tests/firmware/line/receiver_bench.hpp"
 
 namespace ex9000 {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "firmware/line/rtu_assembler.hpp"
-#include "sim/play/modbus_frame.hpp"
+#include "sim/app/play/modbus_frame.hpp"
 
 namespace ex9000 {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 
-#include "sim/play/modbus_frame.hpp"
+#include "sim/app/play/modbus_frame.hpp"
 #include "tests/oracles/reference/dcon_check.hpp"
 #include "tests/oracles/reference/hexadecimal.hpp"
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/line/line.hpp"
+#include "sim/virtual_line/line/line.hpp"
 #include "tests/oracles/reference/module.hpp"
 #include "tests/oracles/reference/random.hpp"
 

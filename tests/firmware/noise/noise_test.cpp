@@ -8,8 +8,8 @@
 #include <cstdio>
 #include <functional>
 
-#include "sim/faults/echo.hpp"
-#include "sim/play/modbus_frame.hpp"
+#include "sim/app/play/modbus_frame.hpp"
+#include "sim/virtual_line/faults/echo.hpp"
 #include "tests/firmware/noise/noisy_line.hpp"
 #include "tests/firmware/noise/theory.hpp"
 #include "tests/support/environment.hpp"

@@ -4,7 +4,7 @@
 
 #include <map>
 
-#include "sim/play/modbus_frame.hpp"
+#include "sim/app/play/modbus_frame.hpp"
 #include "tests/firmware/noise/theory.hpp"
 #include "tests/oracles/reference/dcon_check.hpp"
 #include "tests/oracles/reference/hexadecimal.hpp"

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "sim/faults/noise.hpp"
-#include "sim/line/line.hpp"
+#include "sim/virtual_line/faults/noise.hpp"
+#include "sim/virtual_line/line/line.hpp"
 #include "tests/firmware/noise/onlooker.hpp"
 
 namespace ex9000::noise {

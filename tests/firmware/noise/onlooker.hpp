@@ -8,8 +8,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "sim/bus/bus.hpp"
-#include "sim/bus/module.hpp"
+#include "sim/virtual_line/bus/bus.hpp"
+#include "sim/virtual_line/bus/module.hpp"
 #include "tests/oracles/judges/module_state.hpp"
 #include "tests/oracles/judges/witness.hpp"
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "sim/play/modbus_frame.hpp"
+#include "sim/app/play/modbus_frame.hpp"
 
 namespace ex9000::reference {
 

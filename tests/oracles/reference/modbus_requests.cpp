@@ -1,7 +1,7 @@
 // Modbus requests with arguments in and out of range, and invalid frames: wire.md 7.
 #include <algorithm>
 
-#include "sim/play/modbus_frame.hpp"
+#include "sim/app/play/modbus_frame.hpp"
 #include "tests/oracles/reference/generator.hpp"
 #include "tests/oracles/reference/modbus_refusal.hpp"
 

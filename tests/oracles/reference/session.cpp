@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "sim/line/module_spec.hpp"
+#include "sim/virtual_line/line/module_spec.hpp"
 #include "tests/oracles/reference/dcon_check.hpp"
 #include "tests/oracles/reference/hexadecimal.hpp"
 #include "tests/oracles/reference/modbus_check.hpp"
@@ -25,7 +25,7 @@ constexpr milliseconds kStored{250};
 constexpr milliseconds kAnswers{20};
 constexpr milliseconds kAnswersStoring{200};
 /// Longer than the time until the reply to a request that stores nothing begins, at any baud rate. The player
-/// of transcripts (sim/play/player.cpp) waits equally long, so a transcript has the same timing there.
+/// of transcripts (sim/app/play/player.cpp) waits equally long, so a transcript has the same timing there.
 constexpr milliseconds kNoAnswer{65};
 /// The time before the next step. If a reply is too long, its first extra byte arrives in this time, at 9600
 /// baud or more.

@@ -1,0 +1,32 @@
+// The command line of ex9000-sim.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "sim/app/play/play.hpp"
+#include "sim/app/run_setup/setup.hpp"
+
+namespace ex9000::sim {
+
+/// The exit status if an argument is wrong.
+constexpr int kWrongArguments = 2;
+
+/// The result of parsing the command line: either a job to do, or text to print and an exit status.
+struct Parsed {
+  std::optional<Setup> setup;      ///< the lines to simulate
+  std::optional<play::Task> task;  ///< the files to play
+  std::string output;              ///< text for standard output
+  std::string error;               ///< one line of text for standard error
+  int exit_status = 0;
+};
+
+/// Returns `text` as one line, because arguments may contain newlines: replaces each newline by a blank, and
+/// removes the blanks at the end.
+std::string one_line(std::string text);
+
+/// Parses the command line and reads the bus file that it names. Wrong arguments do not cause an exception:
+/// the result then has the error text and the exit status.
+Parsed parse_arguments(int argc, const char* const* argv);
+
+}  // namespace ex9000::sim

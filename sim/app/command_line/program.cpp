@@ -1,0 +1,118 @@
+#include "sim/app/command_line/program.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/signal_set.hpp>
+#include <csignal>
+#include <iostream>
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+#include "sim/app/command_line/arguments.hpp"
+#include "sim/app/command_line/play_record.hpp"
+#include "sim/app/command_line/standard_stream.hpp"
+#include "sim/app/play/play.hpp"
+#include "sim/app/running_program/running_program.hpp"
+#include "sim/app/running_program/stop_signals.hpp"
+#include "sim/front_ends/terminal_view/terminal_output.hpp"
+
+namespace ex9000::sim {
+
+namespace {
+
+constexpr int kCannotStart = 1;
+constexpr int kFailed = 1;
+constexpr auto kOutput = "standard output";
+
+void run(const Setup& setup) {
+  boost::asio::io_context io;
+  StopSignals stop_signals;
+  const auto gives_up = [&stop_signals] { return stop_signals.arrived(); };
+  StandardStream output(STDOUT_FILENO, kOutput, gives_up);
+  StandardStream errors(STDERR_FILENO, "standard error", gives_up);
+  // The program ends when the reader of its log closes the pipe.
+  const auto print_line = [&io, &output](const std::string& line) {
+    if (!output.write(line + "\n")) {
+      io.stop();
+    }
+  };
+  boost::asio::signal_set signals(io);
+  // From here on, a stop signal ends `io` instead of the process, so the program removes the files that it
+  // creates.
+  add_stop_signals(signals);
+  signals.async_wait([&io](const boost::system::error_code& /*error*/, int /*signal*/) { io.stop(); });
+  const auto greet = [&errors](const std::string& text) { errors.write(text + "\n"); };
+  std::optional<TerminalOutput> terminal;
+  if (setup.watch) {
+    terminal.emplace(STDOUT_FILENO);
+  }
+  RunningProgram running(io, setup, print_line, greet,
+                         terminal && terminal->is_open() ? &*terminal : nullptr);
+  running.start();
+  if (setup.speed.max()) {
+    running.run_unpaced();
+  } else {
+    io.run();
+  }
+  running.finish();
+}
+
+bool play_task(const play::Task& task) {
+  StandardStream output(STDOUT_FILENO, kOutput);
+  const auto print_line = [&output](const std::string& line) { output.write(line + "\n"); };
+  const auto report = [](const std::string& line) { std::cerr << line << std::endl; };
+  PlayRecord record(task.writing, print_line);
+  if (task.writing.log == LogFormat::Json) {
+    return play::play(task, report, record);  // standard output contains only the log
+  }
+  return play::play(task, print_line, record);
+}
+
+int report_error(const std::exception& error, int status) {
+  std::cerr << one_line(std::string("ex9000-sim: ") + error.what()) << '\n';
+  return status;
+}
+
+/// Opens /dev/null in place of each standard stream that is closed. Otherwise the next file that the program
+/// opens would get the descriptor of that stream, and the log would be written into that file.
+void occupy_standard_streams() {
+  int fd = open("/dev/null", O_RDWR);
+  while (fd >= 0 && fd <= STDERR_FILENO) {
+    fd = open("/dev/null", O_RDWR);
+  }
+  if (fd >= 0) {
+    close(fd);
+  }
+}
+
+}  // namespace
+
+int run_program(int argc, const char* const* argv) {
+  occupy_standard_streams();
+  // While these signals are ignored, a write to a closed pipe or beyond the file-size limit does not end the
+  // program. Instead, the write fails, and its caller handles the error.
+  static_cast<void>(std::signal(SIGPIPE, SIG_IGN));
+  static_cast<void>(std::signal(SIGXFSZ, SIG_IGN));
+  try {
+    const Parsed parsed = parse_arguments(argc, argv);
+    StandardStream(STDOUT_FILENO, kOutput).write(parsed.output);
+    std::cerr << parsed.error;
+    if (parsed.task) {
+      return play_task(*parsed.task) ? 0 : kFailed;
+    }
+    if (!parsed.setup) {
+      return parsed.exit_status;
+    }
+    run(*parsed.setup);
+  } catch (const std::invalid_argument& error) {
+    return report_error(error, kWrongArguments);
+  } catch (const std::exception& error) {
+    return report_error(error, kCannotStart);
+  }
+  return 0;
+}
+
+}  // namespace ex9000::sim

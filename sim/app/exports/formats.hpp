@@ -1,0 +1,52 @@
+// The formats of `ex9000-sim describe`.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "firmware/model/model.hpp"
+#include "sim/app/exports/models.hpp"
+#include "sim/files_and_ports/ports/tcp_address.hpp"
+
+namespace ex9000::sim {
+
+// The commands and registers, generated from the firmware's tables.
+
+/// Returns Markdown that describes all models: the generated section of firmware/registers.md.
+std::string markdown_of_all();
+/// Returns Markdown that describes one model.
+std::string markdown_of(const Model& model);
+
+/// Returns JSON, for programs: an object with the firmware's version and, under `models`, one object for each
+/// model with its properties, DCON commands, Modbus functions and registers. Numbers are JSON numbers, except
+/// PLC numbers, which are strings. Addresses are protocol addresses. Missing texts and numbers are null;
+/// missing lists are empty.
+std::string json_of(const Models& models);
+
+/// Returns CSV, for spreadsheets and tag lists: a header row and one row for each DCON command, coil,
+/// discrete input and register. The format is RFC 4180; lines end with CR LF.
+std::string csv_of(const Models& models);
+
+// Configurations for other tools. `model` must support Modbus.
+
+/// The addresses that a tool requires to reach a module: the simulator's host and TCP port, and the module's
+/// Modbus address.
+struct NetworkAddress {
+  TcpAddress tcp{"127.0.0.1", 5020};
+  std::uint8_t address = 0x01;  ///< 1 to 247
+  bool modbus_tcp = false;      ///< the port uses Modbus TCP; false: the port passes RTU frames
+};
+
+/// Returns YAML for Home Assistant's modbus integration: a hub with switches, binary sensors and sensors. The
+/// user saves the text as FILE and adds `modbus: !include FILE` to configuration.yaml.
+std::string home_assistant_hub(const Model& model, const NetworkAddress& network_address);
+
+/// Returns a flow to import into Node-RED with node-red-contrib-modbus, as a JSON array: a tab that reads the
+/// values of `shown_by`, switches outputs, and clears latches, counters and the timeout status. The ids
+/// depend only on the model and the address.
+std::string node_red_flow(const Model& model, const NetworkAddress& network_address);
+
+/// Returns a device template of Wiren Board's wb-mqtt-serial, for /etc/wb-mqtt-serial.conf.d/templates.
+std::string wb_mqtt_serial_template(const Model& model);
+
+}  // namespace ex9000::sim

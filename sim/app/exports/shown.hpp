@@ -1,0 +1,51 @@
+// The values that a model offers to Modbus clients: a selection from its map, with names.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "firmware/model/model.hpp"
+#include "sim/app/exports/register_map.hpp"
+
+namespace ex9000::sim {
+
+enum class Role : std::uint8_t {
+  Output,   ///< read and written
+  Input,    ///< a level or a latch; read-only
+  Counter,  ///< counts up; after its highest value, it continues with 0
+  Preset,   ///< a stored value of the outputs; read-only, because a write also drives the outputs
+  State,    ///< on or off, both are normal
+  Problem,  ///< on means a problem
+  Tenths,   ///< units of 0.1 s; read-only
+  Button,   ///< a coil that starts an action when 1 is written to it
+};
+
+/// One row of the map, or a button for a row.
+struct Shown {
+  std::string_view id;  ///< unique in the model, and stable
+  Role role = Role::State;
+  std::string_view name;
+  Table table = Table::Coils;
+  unsigned first = 0;  ///< protocol address
+  unsigned width = 1;
+  bool per_channel = false;
+
+  /// Returns the name with the channel, for example `Output 3`, or only the name if the row has no channels.
+  [[nodiscard]] std::string name_of(unsigned index) const;
+  /// Returns the id with the channel, for example `outputs_3`, or only the id if the row has no channels;
+  /// unique in the model.
+  [[nodiscard]] std::string key_of(unsigned index) const;
+};
+
+/// Returns the rows in the order of the map; empty if the model does not support Modbus. A row that is in two
+/// areas appears only in the first of them. The result excludes host OK, the module's code, the counting
+/// edge, the coils that repeat the inputs, the extensions, and the settings that would disconnect the client
+/// (address, rate and protocol).
+std::vector<Shown> shown_by(const Model& model);
+
+/// Returns an id of the model that every tool accepts, for example `ex9042d_m`.
+std::string model_key(const Model& model);
+
+}  // namespace ex9000::sim

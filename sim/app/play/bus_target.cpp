@@ -1,0 +1,197 @@
+#include "sim/app/play/bus_target.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "sim/app/run_setup/line_factory.hpp"
+#include "sim/files_and_ports/files/eeprom_file.hpp"
+#include "sim/front_ends/control/control.hpp"
+#include "sim/text/fail.hpp"
+#include "sim/text/words.hpp"
+
+namespace ex9000::play {
+
+namespace {
+
+constexpr std::chrono::milliseconds kComingUp{100};
+
+}  // namespace
+
+Memories read_memories(const sim::Setup& setup) {
+  Memories memories;
+  for (const sim::LineSetup& line : setup.lines) {
+    for (const sim::ModuleSpec& module : line.modules) {
+      memories.push_back(sim::with_place(module.eeprom_place, [&] {
+        return module.eeprom.empty() ? std::nullopt : sim::read_eeprom_file(module.eeprom);
+      }));
+    }
+  }
+  return memories;
+}
+
+BusTarget::BusTarget(const sim::Setup& setup, const Memories& memories, PlayObserver* observer)
+    : observer_(observer) {
+  auto next = memories.begin();
+  for (const sim::LineSetup& line : setup.lines) {
+    add_line(line, next, setup.seed + lines_.size());
+    next += static_cast<std::ptrdiff_t>(line.modules.size());
+  }
+}
+
+void BusTarget::start(const Model& model, const Settings* preset) {
+  sim::LineSetup setup;
+  setup.modules.push_back(sim::factory_fresh(model));
+  if (preset != nullptr) {
+    setup.modules[0].settings = *preset;
+  }
+  const Memories none(1);
+  add_line(setup, none.begin(), 1);
+}
+
+void BusTarget::add_line(const sim::LineSetup& setup, Memories::const_iterator memories, std::uint64_t seed) {
+  const std::size_t index = lines_.size();
+  names_.push_back(setup.name);
+  heard_.emplace_back();
+  lines_.push_back(sim::make_line(
+      setup, [this, index](std::uint8_t byte, ByteStatus /*status*/) { heard_[index].push_back(byte); }));
+  sim::Line& line = *lines_.back();
+  for (std::size_t i = 0; i < line.size(); ++i, ++memories) {
+    if (*memories) {
+      line.module(i).memory().contents() = **memories;
+    }
+  }
+  line.come_up();
+  line.master().set_mode(sim::first_mode(setup, line));
+  line.configure_faults(seed, observer_ == nullptr ? nullptr : observer_->line_started(line, setup.name));
+  sim::begin_programs(line, setup);
+}
+
+void BusTarget::run_until(sim::VirtualTime until) {
+  for (const auto& line : lines_) {
+    line->bus().run_until(until);
+  }
+  if (observer_ != nullptr) {
+    observer_->time_reached(until);
+  }
+}
+
+void BusTarget::send(const Bytes& bytes) {
+  sim::Master& master = chosen().master();
+  master.send(bytes.data(), bytes.size());
+  while (master.sending()) {
+    run_until(chosen().bus().next());
+  }
+}
+
+Bytes BusTarget::receive(std::size_t count, std::chrono::milliseconds patience) {
+  Bytes& heard = heard_[line_];
+  std::size_t had = heard.size();
+  sim::VirtualTime gives_up = now() + patience;
+  while (heard.size() < count && chosen().bus().next() <= gives_up) {
+    run_until(chosen().bus().next());
+    if (heard.size() != had) {
+      had = heard.size();
+      gives_up = now() + patience;
+    }
+  }
+  return std::exchange(heard, {});
+}
+
+Bytes BusTarget::listen(std::chrono::nanoseconds time) {
+  run_until(now() + time);
+  return std::exchange(heard_[line_], {});
+}
+
+void BusTarget::power(bool on) {
+  module().power(on);
+  if (on) {
+    run_until(now() + kComingUp);
+  }
+}
+
+void BusTarget::reset() {
+  module().reset();
+  run_until(now() + kComingUp);
+}
+
+void BusTarget::require_input(unsigned channel) {
+  const std::string flaw = missing_input(module().model(), channel);
+  if (!flaw.empty()) {
+    throw std::runtime_error(flaw);
+  }
+}
+
+void BusTarget::set_input(unsigned channel, bool level) {
+  require_input(channel);
+  module().set_input(channel, level);
+}
+
+void BusTarget::pulse_input(unsigned channel, std::uint32_t count) {
+  require_input(channel);
+  module().pulse_input(channel, count);
+}
+
+step::Led::Shows BusTarget::led(step::Led::Shows /*expected*/) {
+  // Lets no virtual time pass, because the surrounding steps measure time. A unit test checks that the pin
+  // flashes according to the pattern.
+  if (module().powered() && module().module().led_pattern() == StatusLed::Pattern::HostTimeout) {
+    return step::Led::Shows::Flashing;
+  }
+  return module().led_lit() ? step::Led::Shows::On : step::Led::Shows::Off;
+}
+
+void BusTarget::choose_module(std::size_t position) {
+  std::size_t index = position;
+  for (std::size_t line = 0; line < lines_.size(); ++line) {
+    if (index < lines_[line]->size()) {
+      turn_to(line, index);
+      return;
+    }
+    index -= lines_[line]->size();
+  }
+  throw std::runtime_error("no module " + std::to_string(position + 1) + "; expected a position from 1 to " +
+                           std::to_string(position - index));
+}
+
+void BusTarget::choose_line(const std::string& name) {
+  const auto found = std::find(names_.begin(), names_.end(), name);
+  if (found != names_.end()) {
+    turn_to(static_cast<std::size_t>(found - names_.begin()), 0);
+    return;
+  }
+  const std::string names = sim::joined(names_, ", ");
+  throw std::runtime_error(
+      "no line '" + name + "'; " +
+      (names.empty() ? "the only line has no name; remove the step" : "there are " + names));
+}
+
+/// Chooses a line and a module. On a change of the line, discards the bytes that the master of the new line
+/// has received in the meantime.
+void BusTarget::turn_to(std::size_t line, std::size_t module) {
+  if (line != line_) {
+    heard_[line].clear();
+  }
+  line_ = line;
+  module_ = module;
+}
+
+void BusTarget::run_fault_command(const std::string& command) {
+  sim::Words words = sim::words_of(command);
+  std::vector<sim::Control::ControlledLine> lines{{"", chosen()}};
+  std::string told = command;
+  if (words.size() > 1 && words[1].find_first_not_of("0123456789") == std::string::npos) {
+    lines.clear();
+    for (std::size_t i = 0; i < lines_.size(); ++i) {
+      lines.push_back({names_[i], *lines_[i]});
+    }
+    // The control socket expects the module's position before the command.
+    std::swap(words[0], words[1]);
+    told = sim::joined(words);
+  }
+  const std::string reply = sim::Control(std::move(lines)).carry_out(told).text;
+  if (reply.rfind("ok", 0) != 0) {
+    throw std::runtime_error(reply.substr(reply.find(' ') + 1));
+  }
+}
+
+}  // namespace ex9000::play

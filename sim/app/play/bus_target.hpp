@@ -1,0 +1,75 @@
+// The target that plays against simulated lines in virtual time.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sim/app/play/play_observer.hpp"
+#include "sim/app/play/target.hpp"
+#include "sim/app/run_setup/setup.hpp"
+#include "sim/virtual_line/line/line.hpp"
+
+namespace ex9000::play {
+
+/// The initial EEPROM contents, in the order of lines and modules; nullopt: the settings of the module apply.
+using Memories = std::vector<std::optional<std::vector<std::uint8_t>>>;
+/// Reads the EEPROM files that `setup` names and leaves them unchanged, even if another process uses them.
+/// Throws std::invalid_argument with a one-line message.
+Memories read_memories(const sim::Setup& setup);
+
+/// All lines have the same virtual time.
+class BusTarget : public Target {
+ public:
+  /// Creates a target for a transcript; `start` provides its module. `observer` may be null and must outlive
+  /// this object.
+  explicit BusTarget(PlayObserver* observer = nullptr) : observer_(observer) {}
+  /// Creates a target for a scenario: the modules of `setup` start up with `memories`. Opens no files and no
+  /// ports. Throws std::invalid_argument with a one-line message if `setup` is not valid.
+  BusTarget(const sim::Setup& setup, const Memories& memories, PlayObserver* observer = nullptr);
+
+  /// Throws std::runtime_error if the chosen module lacks the input.
+  void require_input(unsigned channel);
+
+  [[nodiscard]] std::size_t size() const { return lines_.size(); }
+  sim::Line& line(std::size_t index) { return *lines_[index]; }
+  [[nodiscard]] sim::VirtualTime now() { return chosen().clock().virtual_now(); }
+  /// Processes all events up to and including `until`.
+  void run_until(sim::VirtualTime until);
+
+  // --- Target ---
+  void start(const Model& model, const Settings* preset) override;
+  void send(const Bytes& bytes) override;
+  Bytes receive(std::size_t count, std::chrono::milliseconds patience) override;
+  Bytes listen(std::chrono::nanoseconds time) override;
+  void set_baud(std::uint32_t rate) override { chosen().master().set_baud(rate); }
+  void set_format(LineFormat format) override { chosen().master().set_format(format); }
+  void power(bool on) override;
+  void reset() override;
+  void set_init(bool asserted) override { module().set_init(asserted); }
+  void set_input(unsigned channel, bool level) override;
+  void pulse_input(unsigned channel, std::uint32_t count) override;
+  std::uint16_t outputs() override { return module().outputs(); }
+  step::Led::Shows led(step::Led::Shows expected) override;
+  void choose_module(std::size_t position) override;
+  void choose_line(const std::string& name) override;
+  void run_fault_command(const std::string& command) override;
+
+ protected:
+  sim::Line& chosen() { return *lines_[line_]; }
+  sim::SimulatedModule& module() { return chosen().module(module_); }
+
+ private:
+  void add_line(const sim::LineSetup& setup, Memories::const_iterator memories, std::uint64_t seed);
+  void turn_to(std::size_t line, std::size_t module);
+
+  PlayObserver* observer_;
+  std::vector<std::string> names_;
+  std::vector<std::unique_ptr<sim::Line>> lines_;
+  std::vector<Bytes> heard_;  ///< bytes received by each master that no call has returned yet
+  std::size_t line_ = 0;
+  std::size_t module_ = 0;  ///< position on the chosen line
+};
+
+}  // namespace ex9000::play

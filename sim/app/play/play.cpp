@@ -1,0 +1,92 @@
+#include "sim/app/play/play.hpp"
+
+#include <filesystem>
+#include <vector>
+
+#include "sim/app/play/bus_target.hpp"
+#include "sim/app/play/player.hpp"
+#include "sim/app/play/rehearsal.hpp"
+#include "sim/app/play/transcript.hpp"
+#include "sim/app/run_setup/paths_in_use.hpp"
+#include "sim/text/fail.hpp"
+
+namespace ex9000::play {
+
+namespace {
+
+using sim::fail;
+
+std::vector<Transcript> load_all(const std::string& path) {
+  std::vector<Transcript> all;
+  try {
+    const bool is_folder = std::filesystem::is_directory(path);
+    for (const std::string& file : is_folder ? transcript_files(path) : std::vector<std::string>{path}) {
+      for (Transcript& transcript : load(file)) {
+        all.push_back(std::move(transcript));
+      }
+    }
+  } catch (const std::filesystem::filesystem_error& error) {
+    fail(error.what());
+  }
+  if (all.empty()) {
+    fail(path + ": contains no file that ends with .txt; name a transcript, a scenario or a folder of them");
+  }
+  return all;
+}
+
+void check(const Transcript& transcript, const std::optional<sim::Setup>& bus) {
+  if (transcript.model == nullptr && !bus) {
+    fail(transcript.file + ": has no 'model:' line; add modules or a bus file to the command line");
+  }
+  if (transcript.model != nullptr && bus) {
+    fail(transcript.file + ": has 'model:' lines; leave out modules and bus file");
+  }
+}
+
+/// Throws if the capture would overwrite a file that `play` reads. Call this before the capture starts.
+void check_capture_path(const Task& task, const std::vector<Transcript>& all) {
+  if (!task.writing.capture) {
+    return;
+  }
+  std::vector<sim::InUse> read = task.bus ? sim::in_use_by(*task.bus) : std::vector<sim::InUse>();
+  for (const Transcript& transcript : all) {
+    read.push_back({"the file of steps", transcript.file});
+  }
+  sim::with_place("--capture ", [&] { sim::refuse_overwriting(*task.writing.capture, read); });
+}
+
+}  // namespace
+
+bool play(const Task& task, const std::function<void(const std::string& line)>& print,
+          PlayObserver& observer) {
+  const std::vector<Transcript> all = load_all(task.path);
+  const Memories memories = task.bus ? read_memories(*task.bus) : Memories();
+  for (const Transcript& transcript : all) {
+    check(transcript, task.bus);
+    if (task.bus) {
+      BusTarget bus(*task.bus, memories);
+      rehearse(transcript, bus);
+    }
+  }
+  check_capture_path(task, all);
+  std::size_t steps = 0;
+  std::size_t failed = 0;
+  for (const Transcript& transcript : all) {
+    const std::string who =
+        transcript.model == nullptr ? "" : " (" + std::string(transcript.model->designation) + ")";
+    observer.run_begins(transcript.file + who);
+    BusTarget target = task.bus ? BusTarget(*task.bus, memories, &observer) : BusTarget(&observer);
+    const Result result = play(transcript, target);
+    observer.run_ends();
+    steps += result.steps;
+    failed += result.passed() ? 0U : 1U;
+    print(result.passed()
+              ? "passed  " + transcript.file + who + ": " + std::to_string(result.steps) + " steps"
+              : "FAILED  " + result.failure);
+  }
+  print(std::to_string(all.size()) + (all.size() == 1 ? " run, " : " runs, ") + std::to_string(steps) +
+        " steps, " + std::to_string(failed) + " failed");
+  return failed == 0;
+}
+
+}  // namespace ex9000::play

@@ -1,0 +1,28 @@
+// Plays files against modules in virtual time and reports the results.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "sim/app/play/play_observer.hpp"
+#include "sim/app/run_setup/setup.hpp"
+
+namespace ex9000::play {
+
+/// The files to play: a transcript, which names its models, a scenario, which requires `bus`, or a directory
+/// of either.
+struct Task {
+  std::string path;
+  std::optional<sim::Setup> bus;
+  sim::Writing writing;
+};
+
+/// Plays the files. Prints one line of text for each run and a summary. Returns whether all runs have passed.
+/// Throws std::invalid_argument with a one-line message if the path or the content of a file is wrong, if the
+/// bus is missing, incomplete or not used, or if the capture is one of the files to read. In these cases
+/// `observer` is not called.
+bool play(const Task& task, const std::function<void(const std::string& line)>& print,
+          PlayObserver& observer);
+
+}  // namespace ex9000::play

@@ -1,0 +1,75 @@
+// The interface through which the player uses the modules.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+
+#include "firmware/model/model.hpp"
+#include "firmware/settings/settings.hpp"
+#include "sim/app/play/transcript.hpp"
+
+namespace ex9000::play {
+
+/// A module and the master's end of its line. A target with several modules acts on one of them at a time.
+/// Each call returns when its action is complete; the target lets the required time pass.
+class Target {
+ public:
+  Target() = default;
+  Target(const Target&) = delete;
+  Target& operator=(const Target&) = delete;
+  virtual ~Target() = default;
+
+  /// Provides a module of this model with `preset` stored (nothing is stored if `preset` is null), supply on,
+  /// INIT* released and inputs off. Called once for a transcript, before the other functions; not called for
+  /// a scenario.
+  virtual void start(const Model& model, const Settings* preset) = 0;
+
+  /// Sends `bytes` on the line without a gap, at the master's rate.
+  virtual void send(const Bytes& bytes) = 0;
+  /// Returns the received bytes when `count` bytes have arrived, or when none has arrived for `patience`.
+  virtual Bytes receive(std::size_t count, std::chrono::milliseconds patience) = 0;
+  /// Returns the bytes received while `time` passes.
+  virtual Bytes listen(std::chrono::nanoseconds time) = 0;
+  /// Sets the master's rate.
+  virtual void set_baud(std::uint32_t rate) = 0;
+  /// Sets the master's line format.
+  virtual void set_format(LineFormat format) = 0;
+
+  /// Switches the supply. After switching on, returns when the module has had the time to start up.
+  virtual void power(bool on) = 0;
+  /// Resets the module with the supply on, and returns when it has had the time to start up.
+  virtual void reset() = 0;
+  virtual void set_init(bool asserted) = 0;
+  virtual void set_input(unsigned channel, bool level) = 0;
+  virtual void pulse_input(unsigned channel, std::uint32_t count) = 0;
+  virtual std::uint16_t outputs() = 0;
+  /// Returns the state of the LED. `expected` is the value in the transcript: a target that can only watch
+  /// the LED watches it just long enough to distinguish this value from all others.
+  virtual step::Led::Shows led(step::Led::Shows expected) = 0;
+
+  // Functions for a bus with several modules and faults. They throw std::runtime_error if the module, the
+  // line or the fault does not exist; other targets always throw.
+
+  /// Chooses the module for the following calls by its position, from 0 across all lines. The master then
+  /// sends on the line of this module.
+  virtual void choose_module(std::size_t /*position*/) {
+    throw std::runtime_error("there is only one module");
+  }
+  /// Chooses the first module of the line with this name.
+  virtual void choose_line(const std::string& /*name*/) {
+    throw std::runtime_error("there is only one line");
+  }
+  /// Carries out `fault FAULT`, `fault off K|all` or `faults` for the chosen line, or `fault N FAULT` for a
+  /// module, from 1 across all lines.
+  virtual void run_fault_command(const std::string& /*command*/) {
+    throw std::runtime_error("this target has no faults");
+  }
+
+  /// Ends the transcript. Throws std::runtime_error if an earlier result turns out to be wrong.
+  virtual void end() {}
+};
+
+}  // namespace ex9000::play

@@ -1,0 +1,62 @@
+// Connects the ports of a line to the master's end of the line.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "sim/files_and_ports/ports/port.hpp"
+#include "sim/virtual_line/line/line.hpp"
+
+namespace ex9000::sim {
+
+/// Bytes that the master's end receives go to every port. The rate that a master sets at a port becomes the
+/// line's rate. Works the same way for paced and for stepped time.
+class LinePorts final : private BusObserver {
+ public:
+  using All = std::vector<std::unique_ptr<Port>>;
+  using Notice = std::function<void(const std::string&)>;
+
+  /// All arguments must live as long as the line's bus is used. `notice` receives a one-line message for each
+  /// module that cannot receive because of its rate or format, and for bytes that a port drops.
+  LinePorts(Line& line, const All& ports, Notice notice);
+
+  /// Stores a byte that the master's end of the line has received. The line calls this for each such byte.
+  void hear(std::uint8_t byte) { heard_.push_back(byte); }
+  /// Returns whether a station other than the master has stopped sending since the last `hand_out`.
+  [[nodiscard]] bool reply_is_complete() const { return stopped_sending_; }
+  /// Writes the bytes received since the last call to all ports. Does not block: if a port has no room, drops
+  /// the bytes and reports the first drop with a notice.
+  void hand_out();
+  /// Sets the line to the rate of the port, if the port has one, and reports mismatches.
+  void take_rate(const Port& port);
+  /// Returns the number of bytes written to each port so far, including dropped bytes.
+  [[nodiscard]] std::uint64_t sent() const { return sent_; }
+  /// Reports each mismatch of rates or formats once. A mismatch that ends and begins again is reported again.
+  void report_mismatches();
+
+  [[nodiscard]] const All& all() const { return ports_; }
+
+ private:
+  void report_dropped(const Port& port, std::size_t bytes);
+  void driver(std::size_t station, bool on, VirtualTime now) override;
+  void byte(std::size_t /*station*/, std::uint8_t /*byte*/, SerialMode /*mode*/, bool /*collided*/,
+            VirtualTime /*start*/, VirtualTime /*end*/) override {}
+
+  Line& line_;
+  const All& ports_;
+  Notice notice_;
+  using Mismatch = std::pair<SerialMode, SerialMode>;  ///< mode of the line, mode of a module
+  std::vector<Mismatch> reported_;                     ///< one for each module; zeros: no mismatch
+  bool mismatches_ = false;                            ///< `reported_` contains a mismatch
+  std::vector<std::uint8_t> heard_;
+  std::uint64_t sent_ = 0;
+  std::vector<const Port*> full_;  ///< ports whose dropped bytes have been reported
+  bool stopped_sending_ = false;   ///< see reply_is_complete
+};
+
+}  // namespace ex9000::sim

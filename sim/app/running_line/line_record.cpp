@@ -1,0 +1,85 @@
+#include "sim/app/running_line/line_record.hpp"
+
+#include <utility>
+#include <vector>
+
+#include "sim/line_monitor/log/json_log.hpp"
+#include "sim/line_monitor/log/text_log.hpp"
+#include "sim/text/values.hpp"
+
+namespace ex9000::sim {
+
+namespace {
+
+StationNames stations_of(Line& line) {
+  std::vector<std::string> names{"master"};
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    SimulatedModule& module = line.module(i);
+    names.push_back(hex_byte_text(module.module().state().in_force.address) + " " +
+                    std::string(module.model().designation));
+  }
+  return StationNames(std::move(names));
+}
+
+}  // namespace
+
+LineRecord::LineRecord(Line& line, std::string name, LogFormat format, const Print& print)
+    : line_(line), name_(std::move(name)) {
+  if (format == LogFormat::Json) {
+    log_ = std::make_unique<JsonLog>(name_, stations_of(line), print);
+  } else {
+    log_ = std::make_unique<TextLog>(stations_of(line), print);
+  }
+}
+
+void LineRecord::note(const std::string& text) {
+  if (over_) {
+    return;
+  }
+  const VirtualTime now = line_.clock().virtual_now();
+  log_->note(now, text);
+  if (also_note_) {
+    also_note_(now, text);
+  }
+}
+
+void LineRecord::tell(FrameWatch::Take take, BusLog::Note note) {
+  frames_.add_receiver(std::move(take));
+  also_note_ = std::move(note);
+  listen();
+}
+
+void LineRecord::print_frames() {
+  frames_.add_receiver([this](const Frame& frame) {
+    if (!over_) {
+      log_->frame(frame);
+    }
+  });
+  listen();
+}
+
+void LineRecord::keep_in(Capture& capture, VirtualTime began) {
+  const std::size_t line = capture.add_line(name_, line_.size(), began);
+  frames_.add_receiver([this, &capture, line](const Frame& frame) {
+    if (!over_) {
+      capture.write(line, frame);
+    }
+  });
+  listen();
+}
+
+void LineRecord::end_at(VirtualTime end) { line_.bus().attach(*this).run_at(end); }
+
+void LineRecord::run() {
+  frames_.finish();
+  over_ = true;
+}
+
+void LineRecord::listen() {
+  if (!listens_) {
+    line_.bus().observe(frames_);
+  }
+  listens_ = true;
+}
+
+}  // namespace ex9000::sim

@@ -1,0 +1,56 @@
+// The records of a line: its log and its capture.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "sim/app/run_setup/setup.hpp"
+#include "sim/line_monitor/capture/capture.hpp"
+#include "sim/line_monitor/frames/frame_watch.hpp"
+#include "sim/line_monitor/log/bus_log.hpp"
+#include "sim/virtual_line/line/line.hpp"
+
+namespace ex9000::sim {
+
+/// Records no frames until `print_frames`, `keep_in` or `tell` is called.
+class LineRecord final : private Station {
+ public:
+  using Print = BusLog::Print;
+
+  /// Records a line that has started up. `line` must outlive this object; `name` is its name in the records.
+  /// `print` receives the lines of its log.
+  LineRecord(Line& line, std::string name, LogFormat format, const Print& print);
+
+  /// Writes a note with the line's present time. Notes are printed even if frames are not.
+  void note(const std::string& text);
+  /// Starts to print frames.
+  void print_frames();
+  /// Starts to write frames to `capture`, which must outlive this object. `began` is the wall clock time
+  /// (since 1970-01-01 00:00:00 UTC) that corresponds to time 0 of the line.
+  void keep_in(Capture& capture, VirtualTime began);
+  /// Starts to call `take` with each frame when the frame has ended, and `note` with each note.
+  void tell(FrameWatch::Take take, BusLog::Note note);
+  /// Ends the log and the capture at `end` in the line's time. The line may run beyond `end`, because the
+  /// program reads the wall clock only at some moments; the log and the capture do not depend on this.
+  void end_at(VirtualTime end);
+  /// Returns the collector of the frames; null if no frames are recorded.
+  FrameWatch* frames() { return listens_ ? &frames_ : nullptr; }
+  /// Records the frames that are still in progress.
+  void finish() { frames_.finish(); }
+
+ private:
+  // --- Station: only observes the clock ---
+  void run() override;
+
+  void listen();
+
+  Line& line_;
+  std::string name_;
+  std::unique_ptr<BusLog> log_;
+  FrameWatch frames_{[this] { return line_.master().mode(); }};
+  BusLog::Note also_note_;
+  bool listens_ = false;
+  bool over_ = false;
+};
+
+}  // namespace ex9000::sim

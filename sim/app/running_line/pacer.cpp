@@ -1,0 +1,232 @@
+#include "sim/app/running_line/pacer.hpp"
+
+#include <sys/prctl.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "firmware/line/crc16.hpp"
+#include "sim/text/durations.hpp"
+
+namespace ex9000::sim {
+
+namespace {
+
+/// When this many bytes wait for the line, masters have to wait, as with a full UART.
+constexpr std::size_t kMostWaiting = 4096;
+
+/// Limits how far virtual time runs ahead, so that watchdogs do not expire early after many transactions in a
+/// row.
+constexpr std::chrono::milliseconds kFarthestAhead{5};
+
+/// By default the kernel may delay timers by 50 us to save power; this is more than half a character at
+/// 115200 baud.
+constexpr unsigned long kTimerSlackNanoseconds = 1;
+
+/// The shortest delay that is reported. A master may notice a reply that is late by this time, and a user
+/// must be able to find the reason.
+constexpr VirtualTime kReportedDelay = std::chrono::milliseconds(20);
+
+}  // namespace
+
+Pacer::Pacer(boost::asio::io_context& io, Line& line, const LinePorts::All& ports, FrameWatch* frames,
+             Pace pace, LinePorts::Notice notice)
+    : timer_(io),
+      line_(line),
+      notice_(std::move(notice)),
+      ports_(line, ports, notice_),
+      frames_(frames),
+      pace_(pace) {}
+
+void Pacer::start() {
+  prctl(PR_SET_TIMERSLACK, kTimerSlackNanoseconds);
+  began_ = std::chrono::steady_clock::now();
+  first_ = line_.clock().virtual_now();
+  ports_.report_mismatches();
+  for (const auto& port : ports_.all()) {
+    port->start(
+        [this, &port = *port](const std::uint8_t* bytes, std::size_t size, const Port::Positions& damaged) {
+          return receive(port, {bytes, size}, damaged);
+        });
+  }
+  follow();
+}
+
+void Pacer::serve(ModbusTcpServer& server) {
+  server_ = &server;
+  server.start([this](std::size_t /*size*/, const std::function<void()>& process) {
+    now(process);
+    return !pause_if_full();
+  });
+}
+
+VirtualTime Pacer::wall() const {
+  const VirtualTime real = std::chrono::steady_clock::now() - began_;
+  return first_ + (pace_.speed == 1 ? real : std::chrono::duration_cast<VirtualTime>(real * pace_.speed));
+}
+
+/// Returns the moment at which the wall clock reaches `time`. If the speed is not 1, the result is at most a
+/// century after the start, because the clock's range is finite.
+std::chrono::steady_clock::time_point Pacer::when(VirtualTime time) const {
+  constexpr VirtualTime kCentury = std::chrono::hours(24 * 365 * 100);
+  const VirtualTime ahead = time - first_;
+  if (pace_.speed == 1) {
+    return began_ + ahead;
+  }
+  const auto real = ahead / pace_.speed;
+  return began_ + (real < kCentury ? std::chrono::duration_cast<VirtualTime>(real) : kCentury);
+}
+
+/// Processes due events and leaves the clock at the last event, not at `until`: see Pace::host_latency.
+void Pacer::catch_up(VirtualTime until) {
+  VirtualTime next = line_.bus().next();
+  report_delay(next);
+  for (; next <= until || leads(next); next = line_.bus().next()) {
+    line_.bus().run_next();
+  }
+}
+
+/// Returns whether the event at `next` need not wait for the wall clock.
+bool Pacer::leads(VirtualTime next) const {
+  return pace_.lead != VirtualTime(0) &&
+         (line_.bus().carries() || next <= line_.spacing().last_byte() + pace_.lead);
+}
+
+/// Returns whether masters have to wait, because the line has many bytes to carry or virtual time has run too
+/// far ahead.
+bool Pacer::is_full() const {
+  return line_.master().waiting() >= kMostWaiting || line_.clock().virtual_now() > wall() + kFarthestAhead;
+}
+
+void Pacer::follow() {
+  const VirtualTime present = wall();
+  catch_up(present);
+  ports_.hand_out();
+  if (frames_ != nullptr) {
+    frames_->run(present);  // not a later time: an event that has become due since then may continue a frame
+  }
+  if (paused_ && !is_full()) {
+    paused_ = false;
+    for (const auto& port : ports_.all()) {
+      port->resume();
+    }
+    if (server_ != nullptr) {
+      server_->resume();
+    }
+  }
+  arm_timer();
+}
+
+/// Makes masters wait if the line is full. Returns whether masters wait.
+bool Pacer::pause_if_full() {
+  if (is_full()) {
+    paused_ = true;
+    arm_timer();
+  }
+  return paused_;
+}
+
+void Pacer::arm_timer() {
+  VirtualTime next = std::min(line_.bus().next(), frames_ == nullptr ? kNever : frames_->next());
+  if (paused_ && line_.clock().virtual_now() > wall()) {
+    next = std::min(next, line_.clock().virtual_now() - kFarthestAhead);
+  }
+  if (next >= timer_expires_) {
+    return;  // setting the timer later would cost more than one early `follow`
+  }
+  timer_expires_ = next;
+  timer_.expires_at(when(next));
+  timer_.async_wait([this](const boost::system::error_code& error) {
+    if (!error) {
+      timer_expires_ = kNever;
+      follow();
+    }
+  });
+}
+
+/// Reports the delay of an event that was due at `next`, if the wall clock has passed it. After the first
+/// report, only delays at least twice as long are reported, because a busy host is always late.
+void Pacer::report_delay(VirtualTime next) {
+  if (next > wall()) {
+    return;
+  }
+  const auto delay = std::chrono::duration_cast<VirtualTime>((wall() - next) / pace_.speed);
+  if (delay >= kReportedDelay && delay >= 2 * longest_delay_) {
+    longest_delay_ = delay;
+    notice_("the host was late by " +
+            time_text(std::chrono::duration_cast<std::chrono::milliseconds>(delay)) +
+            ": modules reply later, and separate frames of a master may reach them as one frame");
+  }
+}
+
+void Pacer::report_joined(Bytes bytes) {
+  const Bytes rest = bytes.from(first_frame_size(bytes));
+  if (rest.size != 0 && crc16(rest).value() == 0) {
+    notice_(
+        "two Modbus frames were read in one piece, and modules treat them as one frame: the master left no "
+        "silence between them, or the host was late");
+  }
+}
+
+void Pacer::now(const std::function<void()>& action) {
+  const VirtualTime present = wall();
+  catch_up(present);
+  line_.bus().run_until(std::max(present, line_.clock().virtual_now()));
+  action();
+  follow();
+}
+
+bool Pacer::receive(const Port& port, Bytes bytes, const Port::Positions& damaged) {
+  const VirtualTime travelled = port.is_a_line() ? line_.master().takes(bytes.size) : VirtualTime(0);
+  const auto latency = std::chrono::duration_cast<VirtualTime>(pace_.host_latency * pace_.speed);
+  const VirtualTime written = wall() - latency - travelled;
+  catch_up(written);
+  line_.bus().run_until(std::max(written, line_.clock().virtual_now()));
+  ports_.take_rate(port);
+  Bytes rest = bytes;
+  const bool splits = pace_.lead != VirtualTime(0) && damaged.empty();
+  if (!splits) {
+    report_joined(rest);
+  }
+  while (rest.size != 0) {
+    const Bytes piece = rest.first(splits ? first_frame_size(rest) : rest.size);
+    line_.master().send(piece.data, piece.size, earliest_frame(piece[0]), damaged);
+    rest = rest.from(piece.size);
+    if (rest.size != 0) {
+      catch_up(wall());
+    }
+  }
+  follow();
+  return !pause_if_full();
+}
+
+/// Returns the size of the first frame in `bytes`. Many masters send the next request immediately after a
+/// request without a reply, and the program reads both in one piece. On an instant line a frame ends as soon
+/// as its CRC is correct. If the CRC of all bytes is correct, they are a single frame.
+std::size_t Pacer::first_frame_size(Bytes bytes) {
+  constexpr std::size_t kShortest = 4;
+  Crc16 crc;
+  std::size_t first = bytes.size;
+  for (std::size_t i = 0; i < bytes.size; ++i) {
+    crc.add(bytes[i]);
+    if (crc.value() == 0 && i + 1 >= kShortest && first == bytes.size) {
+      first = i + 1;
+    }
+  }
+  return crc.value() == 0 ? bytes.size : first;
+}
+
+/// Returns the earliest start of a frame to `address`, see Pace::keep_frames_apart. The returned time may be
+/// in the past.
+VirtualTime Pacer::earliest_frame(std::uint8_t address) const {
+  if (!pace_.keep_frames_apart) {
+    return VirtualTime(0);
+  }
+  const FrameSpacing& spacing = line_.spacing();
+  if (spacing.master_was_last()) {
+    return pace_.lead == VirtualTime(0) ? VirtualTime(0) : spacing.after_own();
+  }
+  return spacing.after_others(address);
+}
+
+}  // namespace ex9000::sim

@@ -1,0 +1,99 @@
+// Keeps a virtual line in step with the wall clock and connects its master's end to the ports.
+#pragma once
+
+#include <algorithm>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <chrono>
+#include <cstdint>
+#include <functional>
+
+#include "sim/app/running_line/line_ports.hpp"
+#include "sim/front_ends/modbus_tcp/modbus_tcp_server.hpp"
+#include "sim/line_monitor/frames/frame_watch.hpp"
+#include "sim/virtual_line/line/line.hpp"
+
+namespace ex9000::sim {
+
+/// The relation between virtual time and the wall clock.
+struct Pace {
+  /// Compensates for the time that the process takes to wake up and read: bytes from a master count as
+  /// written up to this much earlier, but never before an event that has already happened. Without this, the
+  /// host's delays would extend every transaction.
+  VirtualTime host_latency = std::chrono::microseconds(300);
+  /// While a byte is on the wires, and for this time after it, the pacer processes events without waiting for
+  /// the wall clock. If virtual time is then more than 5 ms ahead, masters have to wait. If this value is
+  /// zero, every event waits for the wall clock.
+  VirtualTime lead{0};
+  /// After a Modbus reply, a frame to another module waits until a silence of T3.5 has passed. A frame to a
+  /// Modbus module after an ASCII reply, or after bytes of an unknown sender, waits until the module no
+  /// longer treats these bytes as part of a frame. If a master begins earlier, only the module that has just
+  /// replied receives the frame, because that module does not receive its own reply. All other modules
+  /// receive the reply and the frame as one frame. Many masters, for example libmodbus, begin too early. With
+  /// a real adapter this causes no problem, because the adapter delays the frame.
+  bool keep_frames_apart = true;
+  /// The ratio of virtual time to the wall clock.
+  double speed = 1;
+};
+
+/// Bytes take their real time.
+constexpr Pace kWallPace{};
+/// Bytes take their real time, for masters that follow the standard strictly.
+constexpr Pace kStrictWallPace{kWallPace.host_latency, kWallPace.lead, false};
+/// Bytes take no time: no timer delays a reply that the module sends immediately.
+constexpr Pace kInstantPace{VirtualTime(0), std::chrono::microseconds(200), true};
+
+/// Virtual time follows the wall clock from `start` on.
+class Pacer final {
+ public:
+  /// Sends the bytes that the master of `line` receives to all `ports`, and puts the bytes from the ports on
+  /// the line. `frames` may be null. All arguments must live as long as `io` runs. `notice`: see LinePorts;
+  /// it also receives a message if a delay of the host has affected the line, or if two frames were read in
+  /// one piece.
+  Pacer(boost::asio::io_context& io, Line& line, const LinePorts::All& ports, FrameWatch* frames, Pace pace,
+        LinePorts::Notice notice);
+
+  void start();
+  /// Starts `server` and puts its requests on the line. Call this after `start`; `server` must live as long
+  /// as `io` runs.
+  void serve(ModbusTcpServer& server);
+  /// See LinePorts::hear.
+  void hear(std::uint8_t byte) { ports_.hear(byte); }
+  /// See LinePorts::sent.
+  [[nodiscard]] std::uint64_t sent() const { return ports_.sent(); }
+  /// Returns the line's present time. The line's clock has the time of the last event, which may be earlier.
+  [[nodiscard]] VirtualTime present() const { return std::max(wall(), line_.clock().virtual_now()); }
+  /// Advances the line to its present time, then runs `action`, which acts on the line.
+  void now(const std::function<void()>& action);
+
+ private:
+  [[nodiscard]] VirtualTime wall() const;
+  [[nodiscard]] std::chrono::steady_clock::time_point when(VirtualTime time) const;
+  void follow();
+  void catch_up(VirtualTime until);
+  [[nodiscard]] bool leads(VirtualTime next) const;
+  [[nodiscard]] bool is_full() const;
+  void arm_timer();
+  bool pause_if_full();
+  void report_delay(VirtualTime next);
+  void report_joined(Bytes bytes);
+  bool receive(const Port& port, Bytes bytes, const Port::Positions& damaged);
+  static std::size_t first_frame_size(Bytes bytes);
+  [[nodiscard]] VirtualTime earliest_frame(std::uint8_t address) const;
+
+  boost::asio::steady_timer timer_;
+  VirtualTime timer_expires_ = kNever;  ///< kNever: the timer is not set
+  Line& line_;
+  LinePorts::Notice notice_;
+  LinePorts ports_;
+  FrameWatch* frames_;
+  ModbusTcpServer* server_ = nullptr;
+  Pace pace_;
+  std::chrono::steady_clock::time_point began_;
+  VirtualTime first_{0};  ///< the line's time at `began_`
+  bool paused_ = false;   ///< the ports and the server wait for `resume`
+  /// The longest delay of the host that was reported, in wall clock time.
+  VirtualTime longest_delay_{0};
+};
+
+}  // namespace ex9000::sim

@@ -1,0 +1,92 @@
+// One line of a run: the memories of its modules, its ports, its faults and its log.
+#pragma once
+
+#include <boost/asio/io_context.hpp>
+#include <functional>
+#include <list>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "sim/app/run_setup/setup.hpp"
+#include "sim/app/running_line/line_record.hpp"
+#include "sim/app/running_line/pacer.hpp"
+#include "sim/app/running_line/stepped_line.hpp"
+#include "sim/files_and_ports/files/eeprom_file.hpp"
+#include "sim/files_and_ports/files/new_file.hpp"
+#include "sim/front_ends/modbus_tcp/modbus_tcp_server.hpp"
+#include "sim/line_monitor/log/banner.hpp"
+#include "sim/virtual_line/line/line.hpp"
+
+namespace ex9000::sim {
+
+class RunningLine {
+ public:
+  using Print = std::function<void(const std::string& line)>;
+
+  /// Opens everything that `setup` names, except EEPROM files that do not exist. Throws std::invalid_argument
+  /// or std::runtime_error with a one-line message. After an exception, everything is closed again, and no
+  /// file has been created or changed. `io` and `setup` must outlive this object. If `stepped` is true, the
+  /// behaviour of the ports does not depend on the wall clock.
+  RunningLine(boost::asio::io_context& io, const LineSetup& setup, std::uint64_t seed, LogFormat format,
+              bool stepped, Print print);
+  RunningLine(const RunningLine&) = delete;
+  RunningLine& operator=(const RunningLine&) = delete;
+
+  /// Updates existing EEPROM files with the data that modules have stored during their start. Throws
+  /// std::runtime_error with a one-line message if a file cannot be written.
+  void renew_memories();
+  /// Creates the missing EEPROM files and appends them to `made`. Throws std::invalid_argument with a
+  /// one-line message if a file exists by now or cannot be created.
+  void make_missing_memories(std::list<NewFile>& made);
+
+  /// Returns the records of the line.
+  LineRecord& record() { return *record_; }
+  /// Connects the memories to their files: from now on, all data that modules store is written to the files.
+  void start();
+  /// Starts to process the line as soon as `io` runs, at `speed` times the speed of the wall clock.
+  void start_paced(boost::asio::io_context& io, double speed);
+  /// Starts to process the line. The line's time does not pass until the caller advances it. `arrived` is
+  /// called when bytes from masters have arrived.
+  SteppedLine& start_stepped(SteppedLine::Arrived arrived);
+  /// Ends the log and the capture when the modules have been up for `up`. Call this before `start`.
+  void end_at(VirtualTime up) { record_->end_at(came_up_ + up); }
+  /// Processes all events until the modules have been up for `up`, without waiting.
+  void run_until(VirtualTime up);
+  /// Records the frames that are still in progress.
+  void finish() { record_->finish(); }
+
+  [[nodiscard]] const std::string& name() const { return setup_.name; }
+  [[nodiscard]] bool has_serial_port() const { return setup_.serial.has_value(); }
+  Line& line() { return *line_; }
+  /// Call this only after `start_paced`.
+  Pacer& pacer() { return *pacer_; }
+  /// See LinePorts::sent.
+  [[nodiscard]] std::uint64_t sent() const {
+    return pacer_ ? pacer_->sent() : stepped_ ? stepped_->sent() : 0;
+  }
+  /// Returns the line's time at which the modules have been up for `up`.
+  [[nodiscard]] VirtualTime when_up_for(VirtualTime up) const { return came_up_ + up; }
+  [[nodiscard]] const LineSummary& introduced() const { return introduced_; }
+
+ private:
+  void use_memories();
+  void open_ports(boost::asio::io_context& io, bool stepped);
+  [[nodiscard]] std::string log_name() const;
+  [[nodiscard]] std::string remark(std::size_t index) const;
+  void introduce();
+
+  const LineSetup& setup_;
+  Print print_;
+  std::vector<std::unique_ptr<EepromFile>> memories_;  ///< one for each module; null: it has no EEPROM file
+  std::unique_ptr<Line> line_;
+  VirtualTime came_up_{0};  ///< the line's time at which all modules had started up
+  LineSummary introduced_;
+  LinePorts::All ports_;
+  std::unique_ptr<ModbusTcpServer> modbus_tcp_;  ///< null if `setup` names no Modbus TCP port
+  std::unique_ptr<LineRecord> record_;
+  std::unique_ptr<Pacer> pacer_;          ///< null until `start_paced`
+  std::unique_ptr<SteppedLine> stepped_;  ///< null until `start_stepped`
+};
+
+}  // namespace ex9000::sim

@@ -1,0 +1,73 @@
+#include "sim/app/running_line/stepped_line.hpp"
+
+#include <utility>
+
+namespace ex9000::sim {
+
+SteppedLine::SteppedLine(Line& line, const LinePorts::All& ports, FrameWatch* frames,
+                         LinePorts::Notice notice)
+    : line_(line), ports_(line, ports, std::move(notice)), frames_(frames) {}
+
+void SteppedLine::start(Arrived arrived) {
+  arrived_ = std::move(arrived);
+  ports_.report_mismatches();
+  for (const auto& port : ports_.all()) {
+    // Only serial ports report wrong parity, and they cannot be combined with stepped time.
+    port->start([this, &port = *port](const std::uint8_t* bytes, std::size_t size,
+                                      const Port::Positions& /*damaged*/) {
+      return receive(size, [this, &port, copy = std::vector<std::uint8_t>(bytes, bytes + size)] {
+        ports_.take_rate(port);
+        line_.master().send(copy.data(), copy.size());
+      });
+    });
+  }
+}
+
+void SteppedLine::serve(ModbusTcpServer& server) {
+  server_ = &server;
+  server.start([this](std::size_t size, Put process) { return receive(size, std::move(process)); });
+}
+
+bool SteppedLine::receive(std::size_t size, Put put) {
+  arrivals_.push_back(std::move(put));
+  waiting_ += size;
+  arrived_();
+  return !full();
+}
+
+void SteppedLine::read_ports() {
+  for (const auto& port : ports_.all()) {
+    port->read_waiting();
+  }
+  if (server_ != nullptr) {
+    server_->read_waiting();
+  }
+}
+
+void SteppedLine::put_on_line() {
+  for (const Put& put : std::exchange(arrivals_, {})) {
+    put();
+  }
+  const bool paused = full();
+  waiting_ = 0;
+  if (paused) {
+    for (const auto& port : ports_.all()) {
+      port->resume();
+    }
+    if (server_ != nullptr) {
+      server_->resume();
+    }
+  }
+}
+
+void SteppedLine::run_until(VirtualTime until) {
+  line_.bus().run_until(until);
+  if (ports_.reply_is_complete()) {
+    ports_.hand_out();  // passes on the complete reply in one piece
+  }
+  if (frames_ != nullptr) {
+    frames_->run(until);
+  }
+}
+
+}  // namespace ex9000::sim

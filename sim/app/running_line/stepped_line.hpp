@@ -1,0 +1,73 @@
+// A line in stepped time: only a command advances its clock.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "sim/app/running_line/line_ports.hpp"
+#include "sim/front_ends/modbus_tcp/modbus_tcp_server.hpp"
+#include "sim/line_monitor/frames/frame_watch.hpp"
+#include "sim/virtual_line/line/line.hpp"
+
+namespace ex9000::sim {
+
+/// Stores the bytes that arrive at the line's ports until they are put on the line. No function reads the
+/// wall clock or blocks.
+class SteppedLine {
+ public:
+  using Arrived = std::function<void()>;
+
+  /// If this many bytes are stored, the ports deliver no more until `put_on_line`.
+  static constexpr std::size_t kMostBytes = 65'536;
+
+  /// `frames` may be null. All arguments must outlive this object.
+  SteppedLine(Line& line, const LinePorts::All& ports, FrameWatch* frames, LinePorts::Notice notice);
+
+  /// Accepts masters. `arrived` is called whenever bytes have arrived.
+  void start(Arrived arrived);
+  /// Starts `server` and puts its requests on the line. Call this after `start`; `server` must outlive this
+  /// object.
+  void serve(ModbusTcpServer& server);
+  /// See LinePorts::hear.
+  void hear(std::uint8_t byte) { ports_.hear(byte); }
+
+  /// Returns how many bytes have arrived that are not on the line yet.
+  [[nodiscard]] std::size_t waiting() const { return waiting_; }
+  /// Reads everything that is available at the ports and at the server.
+  void read_ports();
+  /// Puts the stored bytes on the line, without a gap, after those that the master still has to send. Adds
+  /// the requests of the server to the queue of the line.
+  void put_on_line();
+
+  [[nodiscard]] VirtualTime now() const { return line_.clock().virtual_now(); }
+  /// Returns the time of the next event; kNever: none occurs without an action from outside.
+  [[nodiscard]] VirtualTime next() const { return line_.bus().next(); }
+  /// Processes all events up to and including `until`.
+  void run_until(VirtualTime until);
+  /// Returns whether a byte, a silence, a reply or a store is in progress: see Line::pending.
+  [[nodiscard]] bool pending() const { return line_.pending(); }
+  /// See LinePorts::sent.
+  [[nodiscard]] std::uint64_t sent() const { return ports_.sent(); }
+  /// Writes the bytes that the master's end has received from the line to the ports.
+  void hand_out() { ports_.hand_out(); }
+
+ private:
+  /// Puts bytes that have arrived together on the line.
+  using Put = std::function<void()>;
+
+  bool receive(std::size_t size, Put put);
+  /// Returns whether the ports wait for `resume`.
+  [[nodiscard]] bool full() const { return waiting_ >= kMostBytes; }
+
+  Line& line_;
+  LinePorts ports_;
+  FrameWatch* frames_;
+  Arrived arrived_;
+  ModbusTcpServer* server_ = nullptr;
+  std::vector<Put> arrivals_;  ///< in the order of arrival
+  std::size_t waiting_ = 0;    ///< number of bytes in them
+};
+
+}  // namespace ex9000::sim

@@ -1,0 +1,328 @@
+#include "sim/app/running_program/running_program.hpp"
+
+#include <algorithm>
+#include <boost/asio/dispatch.hpp>
+#include <boost/asio/post.hpp>
+#include <chrono>
+#include <thread>
+#include <utility>
+
+#include "sim/app/exports/formats.hpp"
+#include "sim/app/run_setup/paths_in_use.hpp"
+#include "sim/text/fail.hpp"
+
+namespace ex9000::sim {
+
+namespace {
+
+/// Returns the number of threads for the lines. Lines that do not follow the wall clock run on the main
+/// thread, which advances their time.
+std::size_t threads_of(const Setup& setup) {
+  if (!setup.speed.paced()) {
+    return 1;
+  }
+  const std::size_t processors =
+      std::clamp<std::size_t>(std::thread::hardware_concurrency(), 1, kMostThreads);
+  return std::min(setup.threads.value_or(processors), setup.lines.size());
+}
+
+}  // namespace
+
+RunningProgram::RunningProgram(boost::asio::io_context& io, Setup setup, Print print, Print greet,
+                               Terminal* terminal)
+    : io_(io),
+      setup_(std::move(setup)),
+      print_(std::move(print)),
+      greet_(std::move(greet)),
+      threads_(io, threads_of(setup_)),
+      end_(io),
+      next_look_(io) {
+  if (setup_.watch) {
+    watch_ = std::make_unique<Watch>(terminal, print_);
+    print_ = [this](const std::string& line) { watch_->print(line); };
+  }
+  for (const LineSetup& line : setup_.lines) {
+    // Each message begins with the line's name, if the line has one. JSON already contains the name.
+    const bool as_it_is = line.name.empty() || for_machines();
+    const std::string lead = as_it_is ? "" : line.name + ": ";
+    lines_.push_back(std::make_unique<RunningLine>(
+        threads_.io(lines_.size()), line, setup_.seed + lines_.size(), setup_.log.value_or(LogFormat::Text),
+        setup_.speed.stepped(), [this, lead](const std::string& text) { print_line(lead + text); }));
+  }
+  open_control();
+  open_panel();
+  watch_lines();
+  open_capture();
+}
+
+RunningProgram::~RunningProgram() { threads_.end(); }
+
+void RunningProgram::print_line(const std::string& line) {
+  const std::lock_guard<std::mutex> lock(printing_);
+  print_(line);
+}
+
+void RunningProgram::open_control() {
+  if (!setup_.control && !setup_.panel) {
+    return;
+  }
+  std::vector<Control::ControlledLine> lines;
+  for (const auto& running : lines_) {
+    lines.push_back({running->name(), running->line(), [&line = *running] { return line.sent(); },
+                     running->has_serial_port()});
+  }
+  control_.emplace(std::move(lines));
+  if (!setup_.control) {
+    return;
+  }
+  with_place(place_of(setup_.places, "control"), [this] {
+    control_socket_ = std::make_unique<ControlSocket>(
+        io_, *setup_.control,
+        [this](const std::string& command, const ControlSocket::Answer& to) { answer(command, to); },
+        [this] { io_.stop(); });
+  });
+}
+
+void RunningProgram::open_panel() {
+  if (!setup_.panel) {
+    return;
+  }
+  panel_ = std::make_unique<Panel>(
+      [this](const std::string& command) { return carry_out(command); },
+      [this](std::size_t line, RequestQueue::Request request) { ask(line, std::move(request)); },
+      setup_.speed.factor);
+  for (std::size_t i = 0; i < lines_.size(); ++i) {
+    RunningLine& running = *lines_[i];
+    panel_->add_line(running.introduced(), running.line(), [&running] { return running.pacer().present(); });
+    running.record().tell(
+        [this, i](const Frame& frame) {
+          boost::asio::dispatch(io_, [this, i, frame] { panel_->hear(i, frame); });
+        },
+        [this, i](VirtualTime now, const std::string& text) {
+          boost::asio::dispatch(io_, [this, i, now, text] { panel_->note(i, now, text); });
+        });
+  }
+  with_place(place_of(setup_.places, "panel"), [this] {
+    panel_server_ = std::make_unique<PanelServer>(io_, setup_.panel->port, json_of(all_models()),
+                                                  static_cast<PanelSource&>(*this));
+  });
+}
+
+void RunningProgram::look() {
+  threads_.pause_for([this] { panel_->look(); });
+}
+
+std::unique_ptr<PanelViewer> RunningProgram::viewer() { return panel_->viewer(); }
+
+void RunningProgram::watch_lines() {
+  if (!watch_) {
+    return;
+  }
+  for (const auto& line : lines_) {
+    RunningLine& running = *line;
+    watch_->add_line(running.introduced().name, running.line(), [this, &running] {
+      return setup_.speed.paced() ? running.pacer().present() : running.line().clock().virtual_now();
+    });
+  }
+}
+
+/// Updates the view of the modules every 50 ms. If the lines do not follow the wall clock, the code that
+/// advances their time calls look() instead.
+void RunningProgram::keep_watching() {
+  constexpr auto kBetweenLooks = std::chrono::milliseconds(50);
+  threads_.pause_for([this] { watch_->look(); });
+  if (!setup_.speed.paced()) {
+    return;
+  }
+  next_look_.expires_after(kBetweenLooks);
+  next_look_.async_wait([this](const boost::system::error_code& error) {
+    if (!error) {
+      keep_watching();
+    }
+  });
+}
+
+void RunningProgram::open_capture() {
+  if (!setup_.capture) {
+    return;
+  }
+  const std::string place = place_of(setup_.places, "capture");
+  with_place(place, [this] {
+    refuse_overwriting(*setup_.capture, in_use_by(setup_));  // the links and the control socket exist now
+  });
+  made_.emplace_back(*setup_.capture, is_there(*setup_.capture));
+  capture_ = std::make_unique<Capture>(*setup_.capture, place);
+}
+
+/// Advances all paced lines to the present time before the command, so that its replies are consistent.
+Control::Reply RunningProgram::carry_out(const std::string& command) {
+  if (stepper_) {
+    return control_->carry_out(command);
+  }
+  Control::Reply reply;
+  std::function<void()> action = [&] { reply = control_->carry_out(command); };
+  for (const auto& running : lines_) {
+    action = [&pacer = running->pacer(), action] { pacer.now(action); };
+  }
+  threads_.pause_for(action);
+  return reply;
+}
+
+/// Adds a request to the queue of a line. The line's thread receives the reply, and the main thread reports
+/// it.
+void RunningProgram::ask(std::size_t line, RequestQueue::Request request) {
+  request.done = [this, done = std::move(request.done)](const RequestQueue::Reply& reply) {
+    boost::asio::post(io_, [done, reply] { done(reply); });
+  };
+  RunningLine& running = *lines_[line];
+  threads_.pause_for(
+      [&] { running.pacer().now([&] { running.line().requests().ask(std::move(request)); }); });
+}
+
+void RunningProgram::answer(const std::string& command, const ControlSocket::Answer& answer) {
+  if (stepper_ && Stepper::is_advance(command)) {
+    stepper_->advance(command, [this, answer](const Control::Reply& reply) {
+      if (watch_) {
+        watch_->look();
+      }
+      answer(reply);
+    });
+  } else {
+    answer(carry_out(command));
+  }
+}
+
+/// Begins the capture. If the lines do not follow the wall clock, the times in the capture begin at 0, so
+/// that the capture does not depend on the time of day.
+void RunningProgram::keep_a_capture() {
+  capture_->begin();
+  const auto now = std::chrono::system_clock::now().time_since_epoch();
+  for (const auto& running : lines_) {
+    const VirtualTime began =
+        setup_.speed.paced() ? now - running->line().clock().virtual_now() : VirtualTime(0);
+    running->record().keep_in(*capture_, began);
+  }
+}
+
+void RunningProgram::make_files_and_greet() {
+  BannerContent introduced;
+  introduced.panel = panel_server_ ? panel_server_->address() : "";
+  introduced.control = setup_.control.value_or("");
+  for (const auto& running : lines_) {
+    running->make_missing_memories(made_);
+    introduced.lines.push_back(running->introduced());
+  }
+  if (capture_) {
+    keep_a_capture();
+  }
+  (for_machines() ? greet_ : print_)(greeting(introduced));
+  for (NewFile& file : made_) {
+    file.keep();
+  }
+}
+
+void RunningProgram::start() {
+  for (const auto& running : lines_) {
+    running->renew_memories();
+  }
+  threads_.start();
+  threads_.pause_for([this] { begin(); });
+  if (setup_.speed.stepped()) {
+    start_stepped();
+  }
+  if (control_socket_) {
+    control_socket_->start();
+  }
+  if (panel_server_) {
+    panel_server_->start();
+  }
+  if (watch_) {
+    keep_watching();
+  }
+  if (setup_.speed.paced() && ends()) {
+    end_by_the_clock();
+  }
+}
+
+/// Creates the files, and starts the lines. All other steps of the start that can fail come first, so that no
+/// file is created if one of them fails.
+void RunningProgram::begin() {
+  make_files_and_greet();
+  for (std::size_t i = 0; i < lines_.size(); ++i) {
+    RunningLine& running = *lines_[i];
+    if (setup_.log) {
+      running.record().print_frames();
+    }
+    if (ends()) {
+      running.end_at(*setup_.lasts);
+    }
+    running.start();
+    if (setup_.speed.paced()) {
+      running.start_paced(threads_.io(i), setup_.speed.factor);
+    }
+  }
+}
+
+/// Returns whether the run has an end. A duration of more than a century on the wall clock counts as endless,
+/// because the clock's range is finite.
+bool RunningProgram::ends() const {
+  constexpr auto kLongestRun = std::chrono::hours(24 * 365 * 100);
+  return setup_.lasts && (!setup_.speed.paced() || *setup_.lasts / setup_.speed.factor < kLongestRun);
+}
+
+/// Ends the run by the wall clock. The timer may expire after the end of the run, but the logs and the
+/// capture end exactly at the end of the run.
+void RunningProgram::end_by_the_clock() {
+  end_.expires_after(std::chrono::duration_cast<VirtualTime>(*setup_.lasts / setup_.speed.factor));
+  end_.async_wait([this](const boost::system::error_code& error) {
+    if (error) {
+      return;
+    }
+    threads_.pause_for([this] {
+      for (const auto& running : lines_) {
+        running->run_until(*setup_.lasts);
+      }
+    });
+    io_.stop();
+  });
+}
+
+void RunningProgram::start_stepped() {
+  std::vector<SteppedLine*> lines;
+  for (const auto& running : lines_) {
+    lines.push_back(&running->start_stepped([this] {
+      if (stepper_) {
+        stepper_->arrived();
+      }
+    }));
+  }
+  const VirtualTime end = setup_.lasts ? lines_.front()->when_up_for(*setup_.lasts) : kNever;
+  stepper_ = std::make_unique<Stepper>(std::move(lines), end, [this] { return stop_signals_.arrived(); });
+}
+
+void RunningProgram::run_unpaced() {
+  constexpr VirtualTime kStep = std::chrono::milliseconds(100);
+  for (VirtualTime now{0}; now < *setup_.lasts && !io_.stopped();) {
+    now = std::min(now + kStep, *setup_.lasts);
+    for (const auto& running : lines_) {
+      running->run_until(now);
+    }
+    if (watch_) {
+      watch_->look();
+    }
+    io_.poll();
+  }
+}
+
+void RunningProgram::finish() {
+  threads_.end();
+  threads_.rethrow();
+  for (const auto& running : lines_) {
+    running->finish();
+  }
+  if (watch_) {
+    watch_->look();
+  }
+}
+
+}  // namespace ex9000::sim

@@ -1,0 +1,96 @@
+// One run of the program: its lines, its control socket and its panel.
+#pragma once
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <list>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sim/app/run_setup/setup.hpp"
+#include "sim/app/running_line/running_line.hpp"
+#include "sim/app/running_program/line_threads.hpp"
+#include "sim/app/running_program/stepper.hpp"
+#include "sim/app/running_program/stop_signals.hpp"
+#include "sim/files_and_ports/files/new_file.hpp"
+#include "sim/front_ends/control/control.hpp"
+#include "sim/front_ends/control/control_socket.hpp"
+#include "sim/front_ends/panel/panel.hpp"
+#include "sim/front_ends/panel/panel_server.hpp"
+#include "sim/front_ends/terminal_view/watch.hpp"
+#include "sim/line_monitor/capture/capture.hpp"
+#include "sim/line_monitor/log/banner.hpp"
+
+namespace ex9000::sim {
+
+class RunningProgram : private PanelSource {
+ public:
+  using Print = RunningLine::Print;
+
+  /// Opens everything that `setup` names. Throws std::invalid_argument or std::runtime_error with a one-line
+  /// message. After an exception, everything is closed again, and no file has been created or changed.
+  /// `print` receives the log and the greeting; if the log is JSON, `greet` receives the greeting instead.
+  /// `terminal` is the terminal that `print` writes to, or null. `io` and `terminal` must outlive this
+  /// object.
+  RunningProgram(boost::asio::io_context& io, Setup setup, Print print, Print greet, Terminal* terminal);
+  ~RunningProgram() override;
+  RunningProgram(const RunningProgram&) = delete;
+  RunningProgram& operator=(const RunningProgram&) = delete;
+
+  /// Creates the missing files, prints the greeting, and prepares the lines. Paced lines advance from then
+  /// on, those on the main thread as soon as `io` runs. Stepped lines advance at each `advance`. Both stop
+  /// `io` at the end of the duration in `setup`. Throws like the constructor; files that it has created are
+  /// then removed.
+  void start();
+  /// Only for Speed::Kind::Max: processes all events in the duration of `setup`, unless `io` is stopped.
+  void run_unpaced();
+  /// Records the frames that are still in progress. Call this when `io` has stopped or `run_unpaced` has
+  /// returned. Throws like the constructor.
+  void finish();
+
+ private:
+  [[nodiscard]] bool for_machines() const { return setup_.log == LogFormat::Json; }
+  void keep_a_capture();
+  void print_line(const std::string& line);
+  void open_control();
+  [[nodiscard]] bool ends() const;
+  void end_by_the_clock();
+  void begin();
+  void make_files_and_greet();
+  void open_panel();
+  void open_capture();
+  void watch_lines();
+  void keep_watching();
+  // --- PanelSource ---
+  void look() override;
+  std::unique_ptr<PanelViewer> viewer() override;
+
+  Control::Reply carry_out(const std::string& command);
+  void ask(std::size_t line, RequestQueue::Request request);
+  void answer(const std::string& command, const ControlSocket::Answer& answer);
+  void start_stepped();
+
+  boost::asio::io_context& io_;
+  const Setup setup_;
+  Print print_;
+  Print greet_;
+  std::mutex printing_;
+  LineThreads threads_;
+  std::unique_ptr<Watch> watch_;
+  std::vector<std::unique_ptr<RunningLine>> lines_;
+  boost::asio::steady_timer end_;
+  boost::asio::steady_timer next_look_;
+  std::optional<Control> control_;
+  StopSignals stop_signals_;
+  std::unique_ptr<Stepper> stepper_;  ///< null unless time is stepped
+  std::unique_ptr<ControlSocket> control_socket_;
+  std::list<NewFile> made_;  ///< the destructor removes them unless the greeting has been printed
+  std::unique_ptr<Capture> capture_;
+  std::unique_ptr<Panel> panel_;
+  std::unique_ptr<PanelServer> panel_server_;
+};
+
+}  // namespace ex9000::sim

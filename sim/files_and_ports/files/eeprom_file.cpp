@@ -1,0 +1,151 @@
+#include "sim/files_and_ports/files/eeprom_file.hpp"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <filesystem>
+#include <utility>
+
+#include "hal/doubles/memory.hpp"
+#include "sim/text/fail.hpp"
+#include "sim/text/system_error.hpp"
+
+namespace ex9000::sim {
+
+namespace {
+
+constexpr std::size_t kSize = hal::doubles::Memory::kSize;
+
+/// A file that gets its final name only when it is complete.
+class Draft {
+ public:
+  /// Opens a file without a name in the folder of `path`, so that nothing remains if the process is killed.
+  /// If the file system does not support such files, or if /proc is missing, opens a file with a temporary
+  /// name instead. Without /proc, a file without a name cannot get a name.
+  explicit Draft(const std::string& path) {
+    const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+    constexpr mode_t kAsUmaskPermits = 0666;
+    constexpr int kFlags = O_RDWR | O_CLOEXEC;
+    file_ = FileDescriptor(open(folder.empty() ? "." : folder.c_str(), kFlags | O_TMPFILE, kAsUmaskPermits));
+    name_ = "/proc/self/fd/" + std::to_string(file_.get());
+    const bool supported =
+        file_.is_open() ? access(name_.c_str(), F_OK) == 0 : errno != EOPNOTSUPP && errno != EISDIR;
+    if (!supported) {
+      name_ = path + "." + std::to_string(getpid());
+      file_ = FileDescriptor(open(name_.c_str(), kFlags | O_CREAT | O_EXCL, kAsUmaskPermits));
+      temporary_ = file_.is_open();
+    }
+  }
+  ~Draft() {
+    if (temporary_) {
+      unlink(name_.c_str());
+    }
+  }
+  Draft(const Draft&) = delete;
+  Draft& operator=(const Draft&) = delete;
+
+  /// Transfers the file to the caller. The file is not open if opening has failed.
+  [[nodiscard]] FileDescriptor take_file() { return std::move(file_); }
+  /// Names the file `path`. Returns false if the system call fails, for example because `path` exists.
+  [[nodiscard]] bool link_to(const std::string& path) const {
+    return linkat(AT_FDCWD, name_.c_str(), AT_FDCWD, path.c_str(), AT_SYMLINK_FOLLOW) == 0;
+  }
+
+ private:
+  FileDescriptor file_;
+  std::string name_;
+  bool temporary_ = false;
+};
+
+/// Returns the reason why an open file cannot be an image; empty if it may be an image.
+std::string flaw_of(const struct stat& status) {
+  if (!S_ISREG(status.st_mode)) {
+    return "is not a regular file; name another path";
+  }
+  if (status.st_size != static_cast<off_t>(kSize)) {
+    return "has " + std::to_string(status.st_size) + " bytes, but an image of the EEPROM has " +
+           std::to_string(kSize) + "; remove it or name another path";
+  }
+  return "";
+}
+
+/// Reads the image in `file`. Throws std::invalid_argument with a one-line message if reading fails.
+std::vector<std::uint8_t> image_in(const FileDescriptor& file, const std::string& path) {
+  std::vector<std::uint8_t> image(kSize);
+  if (pread(file.get(), image.data(), kSize, 0) != static_cast<ssize_t>(kSize)) {
+    fail(path + ": cannot be read: " + reason() + "; name another path");
+  }
+  return image;
+}
+
+}  // namespace
+
+std::optional<std::vector<std::uint8_t>> read_eeprom_file(const std::string& path) {
+  const FileDescriptor file(open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+  if (!file.is_open() && errno == ENOENT) {
+    return std::nullopt;
+  }
+  struct stat status {};
+  const std::string why = !file.is_open() || fstat(file.get(), &status) != 0
+                              ? reason() + "; name a file that can be read"
+                              : flaw_of(status);
+  if (!why.empty()) {
+    fail(path + ": " + why);
+  }
+  return image_in(file, path);
+}
+
+EepromFile::EepromFile(std::string path)
+    : path_(std::move(path)), file_(open(path_.c_str(), O_RDWR | O_CLOEXEC | O_NONBLOCK)) {
+  if (!file_.is_open() && errno == ENOENT) {
+    return;
+  }
+  struct stat status {};
+  if (!file_.is_open() || fstat(file_.get(), &status) != 0) {
+    refuse(reason() + "; name a file that can be read and written");
+  }
+  if (const std::string why = flaw_of(status); !why.empty()) {
+    refuse(why);
+  }
+  // A file without any write permission is protected; open() alone would let root write to it.
+  if ((status.st_mode & (S_IWUSR | S_IWGRP | S_IWOTH)) == 0) {
+    refuse("is read-only; make it writable with chmod u+w, or name another path");
+  }
+  lock();
+  found_ = image_in(file_, path_);
+}
+
+void EepromFile::create(const std::vector<std::uint8_t>& image) {
+  Draft draft(path_);
+  file_ = draft.take_file();
+  if (!file_.is_open() || !write(0, {image.data(), image.size()}) ||
+      flock(file_.get(), LOCK_EX | LOCK_NB) != 0 || !draft.link_to(path_)) {
+    const std::string why =
+        errno == EEXIST ? "another program has created the file, or the path is a link to a missing file"
+                        : reason();
+    refuse("cannot be created: " + why + "; name a path that can be written");
+  }
+}
+
+bool EepromFile::write(std::uint16_t address, Bytes bytes) const {
+  // After an incomplete write, the next write fails and sets errno to the reason.
+  ssize_t written = 0;
+  for (std::size_t done = 0; done < bytes.size && written >= 0; done += static_cast<std::size_t>(written)) {
+    written = pwrite(file_.get(), bytes.data + done, bytes.size - done, static_cast<off_t>(address + done));
+  }
+  return written >= 0;
+}
+
+void EepromFile::lock() const {
+  if (flock(file_.get(), LOCK_EX | LOCK_NB) != 0) {
+    refuse(errno == EWOULDBLOCK ? "is in use by another module; end that simulator or name another path"
+                                : reason() + "; name another path");
+  }
+}
+
+void EepromFile::refuse(const std::string& why) const { fail(path_ + ": " + why); }
+
+}  // namespace ex9000::sim

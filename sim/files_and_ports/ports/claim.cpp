@@ -1,0 +1,33 @@
+#include "sim/files_and_ports/ports/claim.hpp"
+
+#include <sys/socket.h>
+#include <sys/un.h>
+
+#include <functional>
+
+#include "sim/files_and_ports/files/one_spelling.hpp"
+
+namespace ex9000::sim {
+
+namespace {
+
+/// Returns the same name for all spellings of a path, short enough for the name of a socket.
+std::string name_of(const std::string& path) {
+  return "ex9000-sim/" + std::to_string(std::hash<std::string>()(one_spelling(path)));
+}
+
+}  // namespace
+
+/// Uses an abstract socket: the kernel gives the name to only one process and releases it automatically.
+Claim::Claim(const std::string& path) : socket_(socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  const std::string name = name_of(path);
+  name.copy(address.sun_path + 1, sizeof address.sun_path - 1);
+  const auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + name.size());
+  if (held() && bind(socket_.get(), reinterpret_cast<const sockaddr*>(&address), size) != 0) {
+    socket_ = FileDescriptor();
+  }
+}
+
+}  // namespace ex9000::sim

@@ -1,0 +1,115 @@
+#include "sim/files_and_ports/ports/pty.hpp"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/stat.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include <array>
+#include <climits>
+#include <cstdlib>
+#include <stdexcept>
+#include <utility>
+
+#include "sim/files_and_ports/ports/termios_rates.hpp"
+#include "sim/text/system_error.hpp"
+
+namespace ex9000::sim {
+
+namespace {
+
+std::optional<std::string> link_target(const std::string& link) {
+  std::array<char, PATH_MAX> target{};
+  const ssize_t size = readlink(link.c_str(), target.data(), target.size() - 1);
+  return size < 0 ? std::nullopt
+                  : std::optional<std::string>(std::string(target.data(), static_cast<std::size_t>(size)));
+}
+
+/// Removes a link to a pseudo-terminal at `link`. Throws if another simulator uses the path, or if any
+/// other file is there.
+void remove_stale(const std::string& link, const Claim& claim) {
+  if (!claim.held()) {
+    throw std::invalid_argument(link + ": another simulator is running there; end it or name another path");
+  }
+  struct stat status {};
+  if (lstat(link.c_str(), &status) != 0) {
+    return;
+  }
+  const auto target = link_target(link);
+  if (!target || target->rfind("/dev/pts/", 0) != 0) {
+    throw std::invalid_argument(
+        link + ": exists and is not a link to a pseudo-terminal; remove it or name another path");
+  }
+  unlink(link.c_str());
+}
+
+/// Opens the slave briefly, for operations that work only there. The system reports this as if a master had
+/// opened the slave. Therefore create a Slave only before visits are watched or while a master has the slave
+/// open.
+class Slave {
+ public:
+  explicit Slave(const std::string& device)
+      : file_(open(device.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC)) {}
+
+  [[nodiscard]] bool set_up(std::uint32_t baud) const {
+    termios settings{};
+    if (!file_.is_open() || tcgetattr(file_.get(), &settings) != 0) {
+      return false;
+    }
+    cfmakeraw(&settings);
+    if (const auto speed = termios_speed(baud)) {
+      cfsetspeed(&settings, *speed);
+    }
+    return tcsetattr(file_.get(), TCSANOW, &settings) == 0;
+  }
+  void forget_unread() const { tcflush(file_.get(), TCIFLUSH); }
+
+ private:
+  FileDescriptor file_;
+};
+
+}  // namespace
+
+Pty::Pty(std::string link, std::uint32_t baud) : link_(std::move(link)), claim_(link_) {
+  remove_stale(link_, claim_);
+  master_ = FileDescriptor(posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC | O_NONBLOCK));
+  std::array<char, 64> name{};
+  if (!master_.is_open() || grantpt(master_fd()) != 0 || unlockpt(master_fd()) != 0 ||
+      ptsname_r(master_fd(), name.data(), name.size()) != 0) {
+    throw std::runtime_error(link_ + ": cannot create a pseudo-terminal: " + reason());
+  }
+  device_ = name.data();
+  if (!Slave(device_).set_up(baud)) {
+    throw std::runtime_error(link_ + ": cannot set up " + device_ + ": " + reason());
+  }
+  if (symlink(device_.c_str(), link_.c_str()) != 0) {
+    throw std::invalid_argument(link_ + ": " + reason() + "; name a path that can be written");
+  }
+}
+
+Pty::~Pty() {
+  if (link_target(link_) == device_) {
+    unlink(link_.c_str());
+  }
+}
+
+bool Pty::visited() const {
+  pollfd master{master_fd(), 0, 0};
+  return poll(&master, 1, 0) == 0 || (master.revents & POLLHUP) == 0;
+}
+
+void Pty::take_visit() {
+  const bool there = visited();
+  if (there && deserted_) {
+    Slave(device_).forget_unread();
+  }
+  deserted_ = !there;
+}
+
+std::optional<std::uint32_t> Pty::baud() const {
+  termios settings{};
+  return tcgetattr(master_fd(), &settings) == 0 ? termios_rate(settings) : std::nullopt;
+}
+
+}  // namespace ex9000::sim

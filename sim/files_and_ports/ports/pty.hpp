@@ -1,0 +1,53 @@
+// A pseudo-terminal with a link to it.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "sim/files_and_ports/files/file_descriptor.hpp"
+#include "sim/files_and_ports/ports/claim.hpp"
+
+namespace ex9000::sim {
+
+/// Owns the simulator's end. Masters open and close the other end (the slave), which keeps its settings. The
+/// terminal is in raw mode.
+class Pty {
+ public:
+  /// Creates a pseudo-terminal set to `baud` and a symbolic link to its slave at `link`. Replaces a link
+  /// to a pseudo-terminal that no running simulator uses. Throws std::invalid_argument with a one-line
+  /// message if anything else exists there, another simulator uses the path, or the path cannot be created,
+  /// and std::runtime_error if the system cannot create a pseudo-terminal. After an exception, neither the
+  /// link nor the pseudo-terminal remains.
+  Pty(std::string link, std::uint32_t baud);
+  /// Removes the link, if it still belongs to this object.
+  ~Pty();
+  Pty(const Pty&) = delete;
+  Pty& operator=(const Pty&) = delete;
+
+  /// Returns the simulator's end for reading and writing; non-blocking. Reading fails while no master has the
+  /// slave open.
+  [[nodiscard]] int master_fd() const { return master_.get(); }
+  [[nodiscard]] const std::string& link() const { return link_; }
+  /// Returns the path of the slave, for example /dev/pts/5.
+  [[nodiscard]] const std::string& device() const { return device_; }
+  /// Call this when a master has opened or closed the slave. If a master has opened it after a time without
+  /// any master, discards unread bytes, as a serial port does: a new master must not receive a reply to the
+  /// previous one.
+  void take_visit();
+  /// Returns whether a master has the slave open. If none has, do not write: the bytes would wait for the
+  /// next master.
+  [[nodiscard]] bool visited() const;
+
+  /// Returns the rate set on the slave, in bits per second; nullopt if it is not a known rate.
+  [[nodiscard]] std::optional<std::uint32_t> baud() const;
+
+ private:
+  std::string link_;
+  Claim claim_;
+  std::string device_;
+  FileDescriptor master_;
+  bool deserted_ = true;  ///< at the last check, no master had the slave open
+};
+
+}  // namespace ex9000::sim

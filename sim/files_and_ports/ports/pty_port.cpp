@@ -1,0 +1,81 @@
+#include "sim/files_and_ports/ports/pty_port.hpp"
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <utility>
+
+#include "sim/text/fail.hpp"
+
+namespace ex9000::sim {
+
+PtyPort::PtyPort(boost::asio::io_context& io, const std::string& link, std::uint32_t baud)
+    : pty_(link, baud),
+      visits_(boost::asio::use_service<Visits>(io)),
+      watch_(watch()),
+      descriptor_(io, pty_.master_fd()) {}
+
+int PtyPort::watch() {
+  const auto visited = [this] {
+    pty_.take_visit();
+    read();
+  };
+  return with_place(pty_.link() + ": ", [&] { return visits_.watch(pty_.device(), visited); });
+}
+
+/// Releases the file descriptor without closing it, because the pseudo-terminal owns it.
+PtyPort::~PtyPort() {
+  visits_.ignore(watch_);
+  descriptor_.release();
+}
+
+void PtyPort::start(Received received) {
+  received_ = std::move(received);
+  read();
+}
+
+void PtyPort::resume() {
+  paused_ = false;
+  read();
+}
+
+void PtyPort::read() {
+  if (!received_ || reading_ || paused_) {
+    return;
+  }
+  reading_ = true;
+  descriptor_.async_wait(boost::asio::posix::stream_descriptor::wait_read,
+                         [this](const boost::system::error_code& error) {
+                           reading_ = false;
+                           if (!error && take() >= 0) {
+                             read();
+                           }
+                         });
+}
+
+void PtyPort::read_waiting() {
+  while (!paused_ && take() > 0) {
+  }
+}
+
+/// Returns the number of bytes read; 0 if there are none, negative if no master has the pseudo-terminal open.
+ssize_t PtyPort::take() {
+  visits_.take();  // a new master must be detected before the program replies to its bytes
+  const ssize_t size = ::read(pty_.master_fd(), bytes_.data(), bytes_.size());
+  if (size > 0) {
+    paused_ = !received_(bytes_.data(), static_cast<std::size_t>(size), {});
+    return size;
+  }
+  return size < 0 && errno == EAGAIN ? 0 : -1;
+}
+
+/// Writes the bytes. The pseudo-terminal stores about 4 KiB that no master has read; further bytes are lost.
+std::size_t PtyPort::send(const std::vector<std::uint8_t>& bytes) {
+  if (!pty_.visited()) {
+    return 0;
+  }
+  const ssize_t written = write(pty_.master_fd(), bytes.data(), bytes.size());
+  return bytes.size() - (written < 0 ? 0 : static_cast<std::size_t>(written));
+}
+
+}  // namespace ex9000::sim

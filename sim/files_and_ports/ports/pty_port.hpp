@@ -1,0 +1,48 @@
+// A pseudo-terminal that masters open like a serial port.
+#pragma once
+
+#include <sys/types.h>
+
+#include <array>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/posix/stream_descriptor.hpp>
+#include <cstdint>
+#include <string>
+
+#include "sim/files_and_ports/ports/port.hpp"
+#include "sim/files_and_ports/ports/pty.hpp"
+#include "sim/files_and_ports/ports/visits.hpp"
+
+namespace ex9000::sim {
+
+class PtyPort final : public Port {
+ public:
+  /// See Pty::Pty. Throws std::runtime_error too if the system cannot watch the pseudo-terminal.
+  PtyPort(boost::asio::io_context& io, const std::string& link, std::uint32_t baud);
+  ~PtyPort() override;
+
+  void start(Received received) override;
+  void resume() override;
+  void read_waiting() override;
+  std::size_t send(const std::vector<std::uint8_t>& bytes) override;
+  [[nodiscard]] std::optional<std::uint32_t> baud() const override { return pty_.baud(); }
+
+  [[nodiscard]] const Pty& pty() const { return pty_; }
+
+ private:
+  /// Reads again whenever bytes arrive, until no master has the slave open or `received` returns false.
+  void read();
+  [[nodiscard]] ssize_t take();
+  int watch();
+
+  Pty pty_;
+  Visits& visits_;
+  int watch_;
+  boost::asio::posix::stream_descriptor descriptor_;
+  Received received_;
+  bool reading_ = false;
+  bool paused_ = false;
+  std::array<std::uint8_t, 4096> bytes_{};  ///< a member, because clearing it for each read takes long
+};
+
+}  // namespace ex9000::sim

@@ -1,0 +1,171 @@
+#include "sim/files_and_ports/ports/serial_port.hpp"
+
+#include <fcntl.h>
+#include <linux/serial.h>
+#include <sys/file.h>
+#include <sys/ioctl.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <boost/asio/buffer.hpp>
+#include <cerrno>
+#include <stdexcept>
+#include <utility>
+
+#include "sim/files_and_ports/files/file_descriptor.hpp"
+#include "sim/files_and_ports/ports/termios_rates.hpp"
+#include "sim/text/fail.hpp"
+#include "sim/text/system_error.hpp"
+#include "sim/text/values.hpp"
+
+namespace ex9000::sim {
+
+namespace {
+
+/// The port holds back the beginning of a reply for this time, or until the reply is complete, so that delays
+/// of the host do not cause gaps in the reply.
+constexpr std::chrono::milliseconds kCushion{10};
+
+/// Asks the driver for low latency, because adapters may wait up to 16 ms for more bytes, which splits
+/// frames. Not all drivers support this setting.
+void ask_for_low_latency(int fd) {
+  serial_struct settings{};
+  if (ioctl(fd, TIOCGSERIAL, &settings) == 0) {
+    settings.flags |= ASYNC_LOW_LATENCY;
+    ioctl(fd, TIOCSSERIAL, &settings);
+  }
+}
+
+/// Configures the open port; throws if that fails.
+void set_up(int fd, const std::string& device, hal::SerialMode mode) {
+  const auto refuse = [&device](const std::string& why) { throw std::invalid_argument(device + ": " + why); };
+  termios before{};
+  if (tcgetattr(fd, &before) != 0) {
+    refuse("is not a serial port; name one, for example /dev/ttyUSB0");
+  }
+  if (flock(fd, LOCK_EX | LOCK_NB) != 0 || ioctl(fd, TIOCEXCL) != 0) {
+    refuse("is in use by another program; end that program or name another port");
+  }
+  termios settings = before;
+  cfmakeraw(&settings);
+  // Disables XON/XOFF, because the port would send XOFF on the line. Bytes with wrong parity are marked, see
+  // ParityMarks.
+  settings.c_iflag = has_parity(mode.format) ? INPCK | PARMRK : 0;
+  settings.c_cflag &= ~static_cast<tcflag_t>(kTermiosFormat | CRTSCTS);
+  settings.c_cflag |= CLOCAL | CREAD | termios_format(mode.format);
+  const auto speed = termios_speed(mode.baud);
+  termios taken{};  // tcsetattr succeeds even if it applies only a part of the settings
+  if (!speed || cfsetspeed(&settings, *speed) != 0 || tcsetattr(fd, TCSANOW, &settings) != 0 ||
+      tcgetattr(fd, &taken) != 0 || termios_rate(taken) != mode.baud ||
+      ((taken.c_cflag ^ settings.c_cflag) & kTermiosFormat) != 0) {
+    tcsetattr(fd, TCSANOW, &before);
+    refuse("cannot be set to " + mode_text(mode.baud, mode.format) +
+           "; choose another rate or format for the line");
+  }
+  ask_for_low_latency(fd);
+  tcflush(fd, TCIOFLUSH);
+}
+
+/// Opens the port. The caller has to close it.
+int open_port(const std::string& device, hal::SerialMode mode) {
+  FileDescriptor port(open(device.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
+  if (!port.is_open()) {
+    throw std::invalid_argument(device + ": " +
+                                (errno == EBUSY
+                                     ? "is in use by another program; end that program or name another port"
+                                     : reason() + "; name a serial port that can be read and written"));
+  }
+  set_up(port.get(), device, mode);
+  return port.release();
+}
+
+}  // namespace
+
+SerialPort::SerialPort(boost::asio::io_context& io, const std::string& place, const std::string& device,
+                       hal::SerialMode mode, bool echo)
+    : where_(place + device), descriptor_(io, with_place(place, [&] { return open_port(device, mode); })) {
+  if (echo) {
+    echo_.emplace(mode);
+  }
+  if (has_parity(mode.format)) {
+    marks_.emplace();
+  }
+}
+
+void SerialPort::start(Received received) {
+  received_ = std::move(received);
+  read();
+}
+
+void SerialPort::resume() {
+  if (paused_) {
+    read();
+  }
+}
+
+void SerialPort::read() {
+  paused_ = false;
+  descriptor_.async_read_some(
+      boost::asio::buffer(buffer_), [this](const boost::system::error_code& error, std::size_t size) {
+        if (error == boost::asio::error::operation_aborted) {
+          return;
+        }
+        if (error) {
+          throw std::runtime_error(where_ + ": the port has disappeared (" + error.message() +
+                                   "); connect it and start the simulator again");
+        }
+        take(size);
+        if (!paused_) {
+          read();
+        }
+      });
+}
+
+void SerialPort::take(std::size_t size) {
+  Positions damaged;
+  std::size_t taken = size;
+  if (marks_) {
+    taken = 0;
+    for (const ParityMarks::Arrived each : marks_->read(buffer_.data(), size)) {
+      if (each.damaged) {
+        damaged.push_back(taken);
+      }
+      buffer_[taken++] = each.byte;
+    }
+  }
+  const std::size_t echo = echo_ ? echo_->in({buffer_.data(), taken}, OwnEcho::Clock::now()) : 0;
+  damaged.erase(damaged.begin(), std::lower_bound(damaged.begin(), damaged.end(), echo));
+  for (std::size_t& position : damaged) {
+    position -= echo;
+  }
+  paused_ = echo < taken && !received_(buffer_.data() + echo, taken - echo, damaged);
+}
+
+std::size_t SerialPort::send(const std::vector<std::uint8_t>& bytes) {
+  if (held_back_.empty()) {
+    began_ = OwnEcho::Clock::now();
+  }
+  held_back_.insert(held_back_.end(), bytes.begin(), bytes.end());
+  if (under_way_ || OwnEcho::Clock::now() - began_ >= kCushion) {
+    write_out();
+    under_way_ = true;
+  }
+  return 0;  // the port sends the bytes even if no master reads them
+}
+
+void SerialPort::sent() {
+  write_out();
+  under_way_ = false;
+}
+
+void SerialPort::write_out() {
+  if (echo_) {
+    echo_->sent({held_back_.data(), held_back_.size()}, OwnEcho::Clock::now());
+  }
+  [[maybe_unused]] const ssize_t written =
+      write(descriptor_.native_handle(), held_back_.data(), held_back_.size());
+  held_back_.clear();
+}
+
+}  // namespace ex9000::sim

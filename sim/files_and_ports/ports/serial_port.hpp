@@ -1,0 +1,50 @@
+// A real serial port, for example a USB RS-485 adapter. Masters on the line at this port can reach the
+// simulated modules.
+#pragma once
+
+#include <array>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/posix/stream_descriptor.hpp>
+#include <optional>
+#include <string>
+
+#include "hal/serial_mode.hpp"
+#include "sim/files_and_ports/ports/own_echo.hpp"
+#include "sim/files_and_ports/ports/parity_marks.hpp"
+#include "sim/files_and_ports/ports/port.hpp"
+
+namespace ex9000::sim {
+
+class SerialPort final : public Port {
+ public:
+  /// Opens `device` in `mode` and prevents others from opening it. `echo`: the adapter receives what it
+  /// sends. Throws std::invalid_argument with a one-line message if the device or the settings are not
+  /// available. `place` is the prefix of the device in all messages.
+  SerialPort(boost::asio::io_context& io, const std::string& place, const std::string& device,
+             hal::SerialMode mode, bool echo);
+
+  /// If the port disappears, `run` of the io_context throws std::runtime_error.
+  void start(Received received) override;
+  void resume() override;
+  std::size_t send(const std::vector<std::uint8_t>& bytes) override;
+  void sent() override;
+  [[nodiscard]] bool is_a_line() const override { return true; }
+
+ private:
+  void read();
+  void take(std::size_t size);
+  void write_out();
+
+  std::string where_;  ///< for messages
+  boost::asio::posix::stream_descriptor descriptor_;
+  Received received_;
+  std::array<std::uint8_t, 4096> buffer_{};
+  bool paused_ = false;
+  std::vector<std::uint8_t> held_back_;
+  OwnEcho::Clock::time_point began_;  ///< when the first byte in held_back_ was stored
+  bool under_way_ = false;            ///< the beginning of a reply has been written
+  std::optional<OwnEcho> echo_;
+  std::optional<ParityMarks> marks_;  ///< of formats with parity
+};
+
+}  // namespace ex9000::sim

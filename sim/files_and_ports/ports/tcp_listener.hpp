@@ -1,0 +1,37 @@
+// Listens on a TCP address and accepts clients.
+#pragma once
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <functional>
+#include <string>
+
+#include "sim/files_and_ports/ports/tcp_address.hpp"
+
+namespace ex9000::sim {
+
+/// No function blocks.
+class TcpListener {
+ public:
+  /// Receives the socket of each client. The socket does not block, sends without delay, and detects clients
+  /// that have disappeared.
+  using Admit = std::function<void(boost::asio::ip::tcp::socket socket)>;
+
+  /// Starts to listen. Throws std::invalid_argument with a one-line message if the address is not available.
+  TcpListener(boost::asio::io_context& io, const TcpAddress& address);
+
+  /// Calls `admit` for each client while the io_context runs. Call this once.
+  void start(Admit admit);
+  /// Calls `admit` during this call for all clients that have connected; the io_context need not run.
+  void accept_waiting();
+  /// Returns the HOST:PORT on which this object listens.
+  [[nodiscard]] std::string address() const;
+
+ private:
+  boost::asio::ip::tcp::acceptor acceptor_;
+  boost::asio::steady_timer next_try_;
+  Admit admit_;
+};
+
+}  // namespace ex9000::sim

@@ -1,0 +1,159 @@
+#include "sim/files_and_ports/ports/tcp_port.hpp"
+
+#include <algorithm>
+#include <array>
+#include <boost/asio/buffer.hpp>
+#include <utility>
+
+namespace ex9000::sim {
+
+namespace {
+
+using boost::asio::ip::tcp;
+
+/// The maximum number of masters on one line. In practice only clients that never disconnect reach this
+/// limit.
+constexpr std::size_t kMostMasters = 64;
+
+}  // namespace
+
+struct TcpPort::Client {
+  Client(boost::asio::io_context& io, tcp::socket its_socket) : socket(std::move(its_socket)), linger(io) {}
+
+  tcp::socket socket;
+  boost::asio::steady_timer linger;
+  /// Cancels pending operations. Their handlers then do nothing.
+  void close() {
+    boost::system::error_code ignored;
+    linger.cancel(ignored);
+    socket.close(ignored);
+  }
+
+  std::array<std::uint8_t, 4096> bytes{};
+  bool reading = false;  ///< waits for more bytes
+  bool paused = false;
+  bool lingers = false;  ///< has closed its sending side
+};
+
+TcpPort::TcpPort(boost::asio::io_context& io, const TcpAddress& address, Linger linger)
+    : io_(io), listener_(io, address), linger_(linger) {}
+
+TcpPort::~TcpPort() {
+  for (const ClientPointer& client : clients_) {
+    client->close();
+  }
+}
+
+void TcpPort::start(Received received) {
+  received_ = std::move(received);
+  listener_.start([this](tcp::socket socket) { admit(std::move(socket)); });
+}
+
+void TcpPort::admit(tcp::socket socket) {
+  make_room();
+  if (clients_.size() < kMostMasters) {
+    clients_.push_back(std::make_shared<Client>(io_, std::move(socket)));
+    read(clients_.back());
+  }
+}
+
+/// Errors of a client are handled later, when the io_context runs.
+void TcpPort::read_waiting() {
+  listener_.accept_waiting();
+  const std::list<ClientPointer> clients = clients_;
+  for (const ClientPointer& client : clients) {
+    while (!client->paused && !take(*client)) {
+    }
+  }
+}
+
+/// Reads the available bytes, up to the size of a buffer. Returns the error if there are none.
+boost::system::error_code TcpPort::take(Client& client) {
+  boost::system::error_code error;
+  const std::size_t size = client.socket.read_some(boost::asio::buffer(client.bytes), error);
+  if (!error) {
+    client.paused = !received_(client.bytes.data(), size, {});
+  }
+  return error;
+}
+
+/// If the limit is reached, removes the lingering client that connected first. Does nothing if no client
+/// lingers.
+void TcpPort::make_room() {
+  if (clients_.size() >= kMostMasters) {
+    const auto oldest =
+        std::find_if(clients_.begin(), clients_.end(), [](const auto& client) { return client->lingers; });
+    if (oldest != clients_.end()) {
+      forget(ClientPointer(*oldest));
+    }
+  }
+}
+
+void TcpPort::read(const ClientPointer& client) {
+  if (client->reading || client->paused) {
+    return;
+  }
+  client->reading = true;
+  client->socket.async_wait(tcp::socket::wait_read, [this, client](const boost::system::error_code& error) {
+    if (!client->socket.is_open()) {
+      return;  // the client was removed, or the port was destroyed
+    }
+    client->reading = false;
+    const boost::system::error_code ended = error ? error : take(*client);
+    if (ended && ended != boost::asio::error::would_block) {
+      part_with(client, ended == boost::asio::error::eof);
+    } else {
+      read(client);
+    }
+  });
+}
+
+void TcpPort::resume() {
+  for (const ClientPointer& client : clients_) {
+    client->paused = false;
+    if (!client->lingers) {
+      read(client);
+    }
+  }
+}
+
+/// Removes a client that has closed the connection. If the client still `listens`, because it has only closed
+/// its sending side, the client stays for the linger time.
+void TcpPort::part_with(const ClientPointer& client, bool listens) {
+  if (!listens) {
+    forget(client);
+    return;
+  }
+  client->lingers = true;
+  if (!linger_) {
+    return;
+  }
+  client->linger.expires_after(*linger_);
+  client->linger.async_wait([this, client](const boost::system::error_code& error) {
+    if (error != boost::asio::error::operation_aborted) {
+      forget(client);
+    }
+  });
+}
+
+void TcpPort::forget(const ClientPointer& client) {
+  client->close();
+  clients_.remove(client);
+}
+
+std::size_t TcpPort::send(const std::vector<std::uint8_t>& bytes) {
+  std::size_t dropped = 0;
+  clients_.remove_if([&](const auto& client) {
+    boost::system::error_code error;
+    const std::size_t written = client->socket.write_some(boost::asio::buffer(bytes), error);
+    const bool gone = error && error != boost::asio::error::would_block;
+    dropped = std::max(dropped, gone ? 0 : bytes.size() - written);
+    if (gone) {
+      client->close();
+    }
+    return gone;
+  });
+  return dropped;
+}
+
+}  // namespace ex9000::sim

@@ -1,0 +1,59 @@
+// Transfers the bytes of a line over TCP, like a serial device server.
+#pragma once
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <chrono>
+#include <list>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "sim/files_and_ports/ports/port.hpp"
+#include "sim/files_and_ports/ports/tcp_listener.hpp"
+
+namespace ex9000::sim {
+
+/// Transfers only the bytes: no MBAP header, no telnet negotiation. The port sends the bytes from the line to
+/// all clients, and puts everything that a client sends on the line.
+class TcpPort final : public Port {
+ public:
+  /// How long a client that has closed its sending side may wait for the rest of the replies; nullopt:
+  /// without limit.
+  using Linger = std::optional<std::chrono::milliseconds>;
+  static constexpr std::chrono::milliseconds kUsualLinger{1000};
+
+  /// Starts to listen. Throws std::invalid_argument with a one-line message if the address is not available.
+  TcpPort(boost::asio::io_context& io, const TcpAddress& address, Linger linger);
+  ~TcpPort() override;
+
+  void start(Received received) override;
+  void resume() override;
+  void read_waiting() override;
+  std::size_t send(const std::vector<std::uint8_t>& bytes) override;
+  /// Returns the HOST:PORT on which the port listens.
+  [[nodiscard]] std::string address() const { return listener_.address(); }
+
+ private:
+  struct Client;
+
+  void admit(boost::asio::ip::tcp::socket socket);
+  /// Shared with pending asynchronous reads: a client may be removed during a read, because the port cannot
+  /// send a reply to it.
+  using ClientPointer = std::shared_ptr<Client>;
+
+  void read(const ClientPointer& client);
+  [[nodiscard]] boost::system::error_code take(Client& client);
+  void make_room();
+  void part_with(const ClientPointer& client, bool listens);
+  void forget(const ClientPointer& client);
+
+  boost::asio::io_context& io_;
+  TcpListener listener_;
+  Linger linger_;
+  Received received_;
+  std::list<ClientPointer> clients_;
+};
+
+}  // namespace ex9000::sim

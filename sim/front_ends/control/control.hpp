@@ -1,0 +1,46 @@
+// Commands that act on lines and their modules from outside. Each command is a text without a newline.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "sim/virtual_line/line/line.hpp"
+
+namespace ex9000::sim {
+
+/// The largest number of pulses on an input in one command. The program needs some milliseconds for them.
+constexpr unsigned long kMostPulses = 1'000'000;
+
+/// The commands of `--control`, without the socket and without `advance`.
+class Control {
+ public:
+  struct ControlledLine {
+    std::string name;  ///< may be empty if there is only one line
+    Line& line;
+    /// Returns the number of bytes written to the line's ports so far; null: the line has no ports.
+    std::function<std::uint64_t()> sent = nullptr;
+    bool has_serial_port = false;  ///< commands cannot change the rate and the format of a serial port
+  };
+
+  /// Modules are numbered from 1 across all `lines`.
+  explicit Control(std::vector<ControlledLine> lines) : lines_(std::move(lines)) {}
+
+  struct Reply {
+    std::string text;  ///< `ok`, `ok ...` or `error: ...`, without newline
+    bool quit = false;
+  };
+
+  /// Carries out a command and returns the reply. `command` is a text without a newline. A rejected command
+  /// changes nothing.
+  Reply carry_out(const std::string& command);
+
+ private:
+  std::vector<ControlledLine> lines_;
+};
+
+/// Returns the commands and what they do, one per line, for --help and the manual.
+std::string control_commands();
+
+}  // namespace ex9000::sim

@@ -1,0 +1,57 @@
+// The requests and replies of one client of Modbus TCP, without its connection.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "sim/front_ends/modbus_tcp/gateway.hpp"
+#include "sim/front_ends/modbus_tcp/mbap.hpp"
+
+namespace ex9000::sim {
+
+/// Takes the requests from the bytes of a client, and passes them to the gateway one after the other, so that
+/// the clients of a line take turns. Replies have the order of the requests. The destructor drops requests
+/// that have not been sent. No function blocks.
+class MbapSession {
+ public:
+  /// Sends a reply to the client. Returns false if the client accepts no more at present.
+  using Send = std::function<bool(const std::vector<std::uint8_t>& bytes)>;
+
+  /// `gateway` must outlive this object. `answered` is called after each answer of the gateway.
+  MbapSession(Gateway& gateway, Send send, std::function<void()> answered)
+      : gateway_(gateway), send_(std::move(send)), answered_(std::move(answered)) {}
+  MbapSession(const MbapSession&) = delete;
+  MbapSession& operator=(const MbapSession&) = delete;
+
+  /// Takes bytes that have arrived.
+  void receive(Bytes bytes);
+  /// Continues after `send` has returned false.
+  void resume();
+
+  /// Returns how many bytes wait to become requests.
+  [[nodiscard]] std::size_t unread() const { return reader_.size(); }
+  /// Returns whether the client has sent a wrong header. Its later bytes are ignored.
+  [[nodiscard]] bool broken() const { return reader_.broken(); }
+  /// Returns whether all complete requests have been answered.
+  [[nodiscard]] bool idle() const { return !waiting_ && !blocked_ && !passing_on_; }
+
+ private:
+  void pass_on();
+  void answer(const MbapFrame& request, const std::optional<std::vector<std::uint8_t>>& pdu);
+
+  Gateway& gateway_;
+  Send send_;
+  std::function<void()> answered_;
+  MbapReader reader_;
+  bool waiting_ = false;  ///< a request is not answered yet
+  bool blocked_ = false;  ///< `send` has returned false
+  bool passing_on_ = false;
+  std::shared_ptr<MbapSession*> lives_ = std::make_shared<MbapSession*>(this);
+};
+
+}  // namespace ex9000::sim

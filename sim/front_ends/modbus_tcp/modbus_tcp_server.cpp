@@ -1,0 +1,202 @@
+#include "sim/front_ends/modbus_tcp/modbus_tcp_server.hpp"
+
+#include <array>
+#include <boost/asio/buffer.hpp>
+#include <boost/asio/post.hpp>
+#include <utility>
+#include <vector>
+
+#include "sim/front_ends/modbus_tcp/mbap_session.hpp"
+
+namespace ex9000::sim {
+
+namespace {
+
+using boost::asio::ip::tcp;
+
+/// The maximum number of clients. The server disconnects each further client.
+constexpr std::size_t kMostClients = 64;
+/// The server stops reading from a client while this many bytes of the client wait to become requests. The
+/// limit is not lower than SteppedLine::kMostBytes, the largest N of `advance ... after N`.
+constexpr std::size_t kMostUnread = 65536;
+/// The size of the send buffer of each client, in bytes. When the buffer of a client that does not read is
+/// full, the server passes on no more requests of this client.
+constexpr int kMostUnsent = 65536;
+
+}  // namespace
+
+struct ModbusTcpServer::Client : std::enable_shared_from_this<Client> {
+  Client(ModbusTcpServer& server, tcp::socket its_socket)
+      : socket(std::move(its_socket)),
+        session(
+            server.gateway_,
+            [this, &server](const std::vector<std::uint8_t>& reply) {
+              replies.insert(replies.end(), reply.begin(), reply.end());
+              return server.write(shared_from_this());
+            },
+            [this, &server] { server.go_on(shared_from_this()); }) {}
+
+  /// Returns whether the server may read more bytes.
+  [[nodiscard]] bool may_read() const {
+    return socket.is_open() && !ended && !session.broken() && session.unread() < kMostUnread;
+  }
+
+  tcp::socket socket;
+  std::array<std::uint8_t, 4096> bytes{};
+  std::size_t arriving = 0;           ///< calls of `deliver` whose `action` has not run yet
+  std::vector<std::uint8_t> replies;  ///< bytes that the client has not accepted yet
+  bool reading = false;               ///< an asynchronous read is pending
+  bool writing = false;               ///< an asynchronous write is pending
+  bool ended = false;                 ///< the client sends nothing more
+  MbapSession session;
+};
+
+ModbusTcpServer::ModbusTcpServer(boost::asio::io_context& io, Line& line, const TcpAddress& address)
+    : io_(io), gateway_(line), listener_(io, address) {}
+
+ModbusTcpServer::~ModbusTcpServer() {
+  for (const ClientPointer& client : clients_) {
+    boost::system::error_code ignored;
+    client->socket.close(ignored);
+  }
+}
+
+void ModbusTcpServer::start(Received received) {
+  received_ = std::move(received);
+  listener_.start([this](tcp::socket socket) { admit(std::move(socket)); });
+}
+
+void ModbusTcpServer::admit(tcp::socket socket) {
+  if (clients_.size() < kMostClients) {
+    boost::system::error_code ignored;
+    socket.set_option(tcp::socket::send_buffer_size(kMostUnsent), ignored);
+    clients_.push_back(std::make_shared<Client>(*this, std::move(socket)));
+    read(clients_.back());
+  }
+}
+
+void ModbusTcpServer::resume() {
+  paused_ = false;
+  for (const ClientPointer& client : clients_) {
+    read(client);
+  }
+}
+
+/// Errors of a client are handled later, when the io_context runs.
+void ModbusTcpServer::read_waiting() {
+  listener_.accept_waiting();
+  const std::list<ClientPointer> clients = clients_;
+  for (const ClientPointer& client : clients) {
+    while (!paused_ && client->may_read() && !take(client)) {
+    }
+  }
+}
+
+void ModbusTcpServer::read(const ClientPointer& client) {
+  if (client->reading || paused_ || !client->may_read()) {
+    return;
+  }
+  client->reading = true;
+  client->socket.async_wait(tcp::socket::wait_read, [this, client](const boost::system::error_code& error) {
+    if (!client->socket.is_open()) {
+      return;  // the client was removed, or the server was destroyed
+    }
+    client->reading = false;
+    const boost::system::error_code ended = error ? error : take(client);
+    if (ended == boost::asio::error::eof) {
+      client->ended = true;
+      go_on(client);
+    } else if (ended && ended != boost::asio::error::would_block) {
+      forget(client);
+    } else {
+      read(client);
+    }
+  });
+}
+
+/// Reads the available bytes, up to the size of a buffer. Returns the error if there are none.
+boost::system::error_code ModbusTcpServer::take(const ClientPointer& client) {
+  boost::system::error_code error;
+  const std::size_t size = client->socket.read_some(boost::asio::buffer(client->bytes), error);
+  if (!error) {
+    const auto begin = client->bytes.begin();
+    deliver(client, size,
+            [client, piece = std::vector<std::uint8_t>(begin, begin + static_cast<std::ptrdiff_t>(size))] {
+              client->session.receive({piece.data(), piece.size()});
+            });
+  }
+  return error;
+}
+
+/// Passes `action` to `received_`, which runs it when the line's clock has reached the present time.
+void ModbusTcpServer::deliver(const ClientPointer& client, std::size_t size,
+                              const std::function<void()>& action) {
+  ++client->arriving;
+  paused_ = !received_(size, [this, client, action] {
+    --client->arriving;
+    if (client->socket.is_open()) {
+      action();
+      go_on(client);
+    }
+  });
+}
+
+/// Writes the replies that the client accepts now, and the rest when the client accepts more. Returns whether
+/// all replies have been written.
+bool ModbusTcpServer::write(const ClientPointer& client) {
+  if (client->writing || !client->socket.is_open()) {
+    return false;
+  }
+  boost::system::error_code error;
+  const std::size_t written = client->socket.write_some(boost::asio::buffer(client->replies), error);
+  if (error && error != boost::asio::error::would_block) {
+    forget(client);
+    return false;
+  }
+  const auto begin = client->replies.begin();
+  client->replies.erase(begin, begin + static_cast<std::ptrdiff_t>(written));
+  if (client->replies.empty()) {
+    return true;
+  }
+  client->writing = true;
+  client->socket.async_wait(tcp::socket::wait_write, [this, client](const boost::system::error_code& failed) {
+    if (!client->socket.is_open()) {
+      return;
+    }
+    client->writing = false;
+    if (failed) {
+      forget(client);
+    } else if (write(client)) {
+      deliver(client, 0, [client] { client->session.resume(); });
+    }
+  });
+  return false;
+}
+
+/// Reads from the client again, or disconnects it if it can send no more requests and has received all
+/// replies.
+void ModbusTcpServer::go_on(const ClientPointer& client) {
+  const bool sends_no_more = client->ended || client->session.broken();
+  if (!sends_no_more) {
+    read(client);
+  } else if (client->arriving == 0 && client->session.idle() && client->replies.empty()) {
+    forget(client);
+  }
+}
+
+/// Closes the connection. Before that, reads the bytes that have already arrived. Otherwise the close would
+/// reset the connection, and the client could lose its last replies. The Client object remains until the
+/// functions that are running now have returned.
+void ModbusTcpServer::forget(const ClientPointer& client) {
+  constexpr int kMostPieces = 64;
+  boost::system::error_code ended;
+  for (int i = 0; i < kMostPieces && !ended; ++i) {
+    client->socket.read_some(boost::asio::buffer(client->bytes), ended);
+  }
+  boost::system::error_code ignored;
+  client->socket.close(ignored);
+  boost::asio::post(io_, [client] {});
+  clients_.remove(client);
+}
+
+}  // namespace ex9000::sim

@@ -1,0 +1,68 @@
+// Accepts the Modbus TCP clients of one line.
+#pragma once
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <cstddef>
+#include <functional>
+#include <list>
+#include <memory>
+#include <string>
+
+#include "sim/files_and_ports/ports/tcp_address.hpp"
+#include "sim/files_and_ports/ports/tcp_listener.hpp"
+#include "sim/front_ends/modbus_tcp/gateway.hpp"
+#include "sim/virtual_line/line/line.hpp"
+
+namespace ex9000::sim {
+
+/// Receives requests over Modbus TCP and sends them on the line as Modbus RTU frames, like a serial device
+/// server. Each client may send further requests before it has received its replies. A client that sends a
+/// frame with a wrong protocol or length is disconnected after the replies to its earlier requests. No
+/// function blocks.
+class ModbusTcpServer {
+ public:
+  /// The server calls this function when `size` bytes of a client have arrived. The function must call
+  /// `process` once, immediately or later, when the line's clock has the present time, because `process`
+  /// sends requests on the line. The function returns false if the server must stop reading until `resume`.
+  using Received = std::function<bool(std::size_t size, std::function<void()> process)>;
+
+  /// Starts to listen. Throws std::invalid_argument with a one-line message if the address is not available.
+  /// `line` must outlive this object.
+  ModbusTcpServer(boost::asio::io_context& io, Line& line, const TcpAddress& address);
+  ModbusTcpServer(const ModbusTcpServer&) = delete;
+  ModbusTcpServer& operator=(const ModbusTcpServer&) = delete;
+  ~ModbusTcpServer();
+
+  /// Starts to accept clients. Call this once. The server calls `received` while the io_context runs.
+  void start(Received received);
+  /// Continues to read after `received` has returned false.
+  void resume();
+  /// Calls `received` during this call for all bytes that have arrived, until `received` returns false; the
+  /// io_context need not run. Call this only if `received` can accept more bytes.
+  void read_waiting();
+  /// Returns the HOST:PORT on which the server listens.
+  [[nodiscard]] std::string address() const { return listener_.address(); }
+
+ private:
+  struct Client;
+  /// The server and pending asynchronous operations share a client.
+  using ClientPointer = std::shared_ptr<Client>;
+
+  void admit(boost::asio::ip::tcp::socket socket);
+  void read(const ClientPointer& client);
+  [[nodiscard]] boost::system::error_code take(const ClientPointer& client);
+  void deliver(const ClientPointer& client, std::size_t size, const std::function<void()>& action);
+  [[nodiscard]] bool write(const ClientPointer& client);
+  void go_on(const ClientPointer& client);
+  void forget(const ClientPointer& client);
+
+  boost::asio::io_context& io_;
+  Gateway gateway_;
+  TcpListener listener_;
+  Received received_;
+  bool paused_ = false;
+  std::list<ClientPointer> clients_;
+};
+
+}  // namespace ex9000::sim

@@ -1,0 +1,35 @@
+// Requests that a person sends to a line from the page.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "sim/front_ends/panel/messages.hpp"
+#include "sim/virtual_line/line/request_queue.hpp"
+
+namespace ex9000::sim {
+
+/// A request of the page for a line: a PDU for a Modbus address, or a DCON command.
+struct ConsoleRequest {
+  std::uint64_t id = 0;      ///< chosen by the page, for the reply
+  std::size_t line = 0;      ///< position of the line, from 0
+  std::uint8_t address = 0;  ///< of the module; 0: all modules. Unused for a DCON command
+  std::string text;          ///< a DCON command if it begins with a delimiter, otherwise a PDU in hex
+};
+
+/// Returns nullopt if `message` is not a request for the console.
+std::optional<ConsoleRequest> parse_console_request(const Message& message);
+
+/// Returns the frame to send. `done` and `owner` are not set. Throws std::invalid_argument with a one-line
+/// message if the text is neither a DCON command nor a PDU.
+RequestQueue::Request frame_of(const ConsoleRequest& request);
+
+/// Returns the message for the page: the bytes of the reply, their meaning and their delay, or the reason why
+/// there is none.
+Message answer_to(const ConsoleRequest& request, const RequestQueue::Reply& reply);
+/// Returns the message for a request that is not sent.
+Message rejection_of(const ConsoleRequest& request, const std::string& why);
+
+}  // namespace ex9000::sim

@@ -1,0 +1,176 @@
+#include "sim/front_ends/panel/messages.hpp"
+
+#include <chrono>
+#include <utility>
+
+#include "sim/line_monitor/frames/frame_errors.hpp"
+#include "sim/line_monitor/frames/frame_meaning.hpp"
+#include "sim/line_monitor/module_view/terminals.hpp"
+#include "sim/text/values.hpp"
+
+namespace ex9000::sim {
+
+namespace {
+
+std::int64_t microseconds(VirtualTime time) {
+  return std::chrono::duration_cast<std::chrono::microseconds>(time).count();
+}
+
+std::string_view protocol_text(Protocol protocol) { return protocol == Protocol::Ascii ? "ascii" : "modbus"; }
+
+Message message_of(const Settings& settings) {
+  Message filters = Message::array();
+  for (unsigned channel = 0; channel < kMaxInputs; ++channel) {
+    filters.push_back(settings.input_filters.of(channel));
+  }
+  return {{"address", settings.address},
+          {"baud", baud_rate(settings.baud_code)},
+          {"format", line_format_text(line_format(settings.baud_code))},
+          {"protocol", protocol_text(settings.protocol)},
+          {"checksum", (settings.format & kFormatChecksum) != 0},
+          {"edge", (settings.format & kFormatRisingEdge) != 0 ? "rising" : "falling"},
+          {"name", name_text(settings)},
+          {"powerOn", settings.power_on_value},
+          {"safe", settings.safe_value},
+          {"watchdog", settings.watchdog_enabled},
+          {"timeout", settings.watchdog_timeout},
+          {"timedOut", settings.timeout_status},
+          {"responseDelay", settings.response_delay},
+          {"fedByRequests", settings.fed_by_requests},
+          {"inverted", settings.inverted_inputs},
+          {"filters", filters}};
+}
+
+}  // namespace
+
+Message plate_layout(const Model& model) {
+  Message inputs = Message::array();
+  for (unsigned channel = 0; channel < model.inputs; ++channel) {
+    inputs.push_back(input_terminal(channel));
+  }
+  Message outputs = Message::array();
+  for (unsigned channel = 0; channel < model.outputs; ++channel) {
+    outputs.push_back(output_terminal(model, channel));
+  }
+  return {{"model", model.designation},      {"description", model.description},
+          {"modbus", model.speaks_modbus()}, {"inputs", std::move(inputs)},
+          {"outputs", std::move(outputs)},   {"initTerminal", has_init_terminal(model)}};
+}
+
+Message message_of(const Plate& plate) {
+  Message message{{"switch", plate.switched_on},
+                  {"powered", plate.powered},
+                  {"init", plate.init},
+                  {"listening", plate.listening}};
+  if (plate.listening) {
+    message["initMode"] = plate.init_mode;
+    message["address"] = plate.address;
+    message["baud"] = plate.mode.baud;
+    message["format"] = line_format_text(plate.mode.format);
+    message["protocol"] = protocol_text(plate.protocol);
+    message["checksum"] = plate.checksum;
+  }
+  message["led"] = led_text(plate.led);
+  message["outputs"] = plate.outputs;
+  message["inputs"] = plate.inputs;
+  message["timers"] = plate.timers;
+  message["resets"] = plate.watchdog_resets;
+  return message;
+}
+
+Message message_of(const InputRecords& gathered, unsigned inputs) {
+  const auto counters = gathered.counters.begin();
+  return {{"high", gathered.latched_high},
+          {"low", gathered.latched_low},
+          {"counters", std::vector<std::uint32_t>(counters, counters + inputs)}};
+}
+
+Message message_of(const HostWatchdogState& guard) {
+  return {{"enabled", guard.enabled},
+          {"timedOut", guard.timed_out},
+          {"timeout", guard.timeout},
+          {"expires", guard.expires ? Message(microseconds(*guard.expires)) : Message()},
+          {"resetStatus", guard.reset_status}};
+}
+
+Message message_of(const Stored& stored) {
+  Message copies = Message::array();
+  for (std::size_t i = 0; i < stored.copies.size(); ++i) {
+    const Stored::Copy& copy = stored.copies[i];
+    copies.push_back({{"bytes", hex_text(copy.bytes)},
+                      {"sequence", copy.sequence ? Message(*copy.sequence) : Message()},
+                      {"old", kPlaces[i].old}});
+  }
+  return {{"copies", std::move(copies)},
+          {"current", stored.current ? Message(*stored.current) : Message()},
+          {"blank", stored.blank},
+          {"settings", message_of(stored.settings)}};
+}
+
+Message message_of(const std::vector<Faults::Info>& faults, std::size_t first) {
+  Message message = Message::array();
+  for (const Faults::Info& fault : faults) {
+    message.push_back({{"number", fault.number},
+                       {"text", fault.text},
+                       {"module", fault.module ? Message(first + *fault.module) : Message()},
+                       {"inProgress", fault.in_progress},
+                       {"soFar", fault.occurrences_so_far}});
+  }
+  return message;
+}
+
+Message message_of(const RecentTraffic::Entry& entry, std::uint64_t number, std::size_t modules) {
+  const Frame& frame = entry.frame;
+  Message message{{"number", number}, {"began", microseconds(frame.began)}};
+  if (entry.note) {
+    message["note"] = *entry.note;
+    return message;
+  }
+  const bool known = frame.station <= modules;
+  message["ended"] = microseconds(frame.ended);
+  message["station"] = known ? Message(frame.station) : Message();
+  message["bytes"] = hex_text(frame.bytes);
+  if (looks_like_dcon(frame.bytes)) {
+    message["text"] = shown(frame.bytes);
+  }
+  const std::string means = frame.collided || !known ? "" : meaning(frame.bytes, frame.speaker());
+  const std::string error = known ? errors(frame) : line_error(frame);
+  if (!means.empty()) {
+    message["meaning"] = means;
+  }
+  if (!error.empty()) {
+    message["error"] = error;
+  }
+  return message;
+}
+
+Message message_in(const std::string& text) { return Message::parse(text, nullptr, false); }
+
+std::optional<PageRequest> parse_page_request(const Message& message) {
+  constexpr std::size_t kLongest = 1000;
+  if (!message.is_object()) {
+    return std::nullopt;
+  }
+  const auto id = message.find("id");
+  const auto command = message.find("do");
+  const auto undo = message.find("undo");
+  const bool undone = undo != message.end();
+  if (message.size() != (undone ? 3 : 2) || id == message.end() || !id->is_number_unsigned() ||
+      command == message.end() || !command->is_string() || (undone && !undo->is_string())) {
+    return std::nullopt;
+  }
+  PageRequest request{id->get<std::uint64_t>(), command->get<std::string>(), std::nullopt};
+  if (undone) {
+    request.undo = undo->get<std::string>();
+  }
+  if (request.command.size() > kLongest || (request.undo && request.undo->size() > kLongest)) {
+    return std::nullopt;
+  }
+  return request;
+}
+
+std::string text_of(const Message& message) {
+  return message.dump(-1, ' ', false, Message::error_handler_t::replace);
+}
+
+}  // namespace ex9000::sim

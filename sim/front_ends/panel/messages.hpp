@@ -1,0 +1,50 @@
+// The JSON messages between the program and the page in sim/front_ends/panel/page.
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sim/front_ends/panel/recent_traffic.hpp"
+#include "sim/line_monitor/module_view/face.hpp"
+#include "sim/virtual_line/faults/faults.hpp"
+
+namespace ex9000::sim {
+
+using Message = nlohmann::ordered_json;
+
+/// Returns the constant data that the page requires to draw a module's plate.
+Message plate_layout(const Model& model);
+
+// The parts of a face are separate messages because they change independently.
+Message message_of(const Plate& plate);
+/// Returns a message that contains the first `inputs` counters.
+Message message_of(const InputRecords& gathered, unsigned inputs);
+Message message_of(const HostWatchdogState& guard);
+Message message_of(const Stored& stored);
+
+/// Returns the list of a line's faults. `first` is the position of the line's first module, from 0.
+Message message_of(const std::vector<Faults::Info>& faults, std::size_t first);
+
+/// Returns an entry of the traffic. `modules` is the number of modules on the line; a fault has added each
+/// station with a higher number.
+Message message_of(const RecentTraffic::Entry& entry, std::uint64_t number, std::size_t modules);
+
+/// A request of the page to carry out a command.
+struct PageRequest {
+  std::uint64_t id = 0;             ///< chosen by the page, for the reply
+  std::string command;              ///< a command of the control socket
+  std::optional<std::string> undo;  ///< carried out if the page disconnects before it sends this command
+};
+
+/// Returns nullopt if `message` is not a request.
+std::optional<PageRequest> parse_page_request(const Message& message);
+
+/// Returns the message in `text`; a message that is not an object if `text` is not JSON.
+Message message_in(const std::string& text);
+/// Returns the text to send over the socket; invalid UTF-8 is replaced.
+std::string text_of(const Message& message);
+
+}  // namespace ex9000::sim

@@ -1,0 +1,337 @@
+#include "sim/front_ends/panel/panel.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <optional>
+#include <random>
+#include <set>
+#include <stdexcept>
+#include <string_view>
+#include <utility>
+
+#include "firmware/model/model.hpp"
+#include "sim/front_ends/panel/change_tracked.hpp"
+#include "sim/front_ends/panel/console.hpp"
+#include "sim/front_ends/panel/messages.hpp"
+#include "sim/front_ends/panel/recent_traffic.hpp"
+#include "sim/line_monitor/module_view/face.hpp"
+#include "sim/text/values.hpp"
+#include "sim/text/words.hpp"
+
+namespace ex9000::sim {
+
+namespace {
+
+/// The maximum number of frames in one message, for all lines together, unless kFewestFrames applies. Between
+/// two messages, two lines at 115200 baud carry fewer frames. Writing this number of frames causes no delay
+/// that a master notices.
+constexpr std::size_t kMostFrames = 250;
+/// The limit for each line is at least this number, even if there are many lines.
+constexpr std::size_t kFewestFrames = 20;
+
+/// The limit for actions that a page holds active; only a faulty page exceeds it.
+constexpr std::size_t kMostHeld = 256;
+
+/// The limit for requests of the console of one page that wait for the line.
+constexpr std::size_t kMostAsked = 16;
+
+/// The longest time between two messages to a page. Without messages, the page cannot distinguish an idle
+/// simulator from a stopped one.
+constexpr std::chrono::seconds kHeartbeat{1};
+
+/// Returns an id that distinguishes this run of the program from other runs.
+std::string random_id() {
+  constexpr std::string_view kDigits = "0123456789abcdef";
+  constexpr std::size_t kLength = 16;
+  std::random_device device;
+  std::string id;
+  while (id.size() < kLength) {
+    id += kDigits[device() % kDigits.size()];
+  }
+  return id;
+}
+
+}  // namespace
+
+bool operator==(const Faults::Info& a, const Faults::Info& b) {
+  return a.number == b.number && a.text == b.text && a.module == b.module && a.in_progress == b.in_progress &&
+         a.occurrences_so_far == b.occurrences_so_far;
+}
+
+struct Panel::Module {
+  const SimulatedModule* module = nullptr;
+  ChangeTracked<Plate> plate;
+  ChangeTracked<InputRecords> gathered;
+  ChangeTracked<HostWatchdogState> guard;
+  ChangeTracked<Stored> stored;
+};
+
+struct Panel::Watched {
+  LineSummary summary;
+  const Line* line = nullptr;
+  std::function<VirtualTime()> present;
+  VirtualTime now{0};            ///< the line's time at the last look
+  std::size_t first_module = 0;  ///< position across all lines
+  std::vector<Module> modules;
+  RecentTraffic recent;
+  ChangeTracked<SerialMode> mode;
+  ChangeTracked<std::vector<Faults::Info>> faults;
+};
+
+struct Panel::State {
+  std::string run = random_id();
+  double speed = 1;
+  std::vector<Watched> lines;
+  std::uint64_t looks = 0;
+};
+
+class Panel::Viewer final : public PanelViewer {
+ public:
+  explicit Viewer(Panel& panel) : panel_(panel) {
+    for (const Watched& watched : state().lines) {
+      next_entries_.push_back(watched.recent.first_of(0, most_frames()));
+    }
+  }
+
+  /// Undoes the actions that the page held active when it disconnected.
+  ~Viewer() override {
+    for (const std::string& undo : held_) {
+      static_cast<void>(carry_out(undo));
+    }
+  }
+
+  bool ask(const std::string& text) override {
+    const Message message = message_in(text);
+    if (const std::optional<ConsoleRequest> request = parse_console_request(message)) {
+      return ask_line(*request);
+    }
+    const std::optional<PageRequest> request = parse_page_request(message);
+    if (!request || (request->undo && held_.size() >= kMostHeld)) {
+      return false;
+    }
+    const std::string answer = carry_out(request->command);
+    const bool ok = answer.rfind("ok", 0) == 0;
+    held_.erase(request->command);
+    if (ok && request->undo) {
+      held_.insert(*request->undo);
+    }
+    reply_ = Message{{"id", request->id}, {"ok", ok}, {"text", answer}};
+    return true;
+  }
+
+  std::string next() override {
+    Message message;
+    if (sent_look_ == 0) {
+      message["hello"] = hello();
+    }
+    if (reply_) {
+      message["reply"] = *std::exchange(reply_, std::nullopt);
+    }
+    if (!answers_.empty()) {
+      message["answers"] = std::exchange(answers_, Message::array());
+    }
+    Message modules = Message::array();
+    Message lines = Message::array();
+    Message frames = Message::array();
+    bool news = false;
+    for (std::size_t i = 0; i < state().lines.size(); ++i) {
+      const Watched& watched = state().lines[i];
+      for (std::size_t at = 0; at < watched.modules.size(); ++at) {
+        Message module = news_of(watched.modules[at]);
+        if (!module.is_null()) {
+          module["module"] = watched.first_module + at;
+          modules.push_back(std::move(module));
+        }
+      }
+      lines.push_back(news_of(watched));
+      news = news || lines.back().size() > 1;
+      if (next_entries_[i] < watched.recent.end()) {
+        frames.push_back(frames_of(i));
+      }
+    }
+    const auto now = panel_.wall_clock_();
+    news = news || !modules.empty() || !frames.empty() || now - last_sent_at_ >= kHeartbeat;
+    if (news) {
+      message["state"]["lines"] = std::move(lines);
+      message["state"]["modules"] = std::move(modules);
+    }
+    if (!frames.empty()) {
+      message["frames"] = std::move(frames);
+    }
+    sent_look_ = state().looks;
+    if (message.is_null()) {
+      return "";
+    }
+    last_sent_at_ = now;
+    return text_of(message);
+  }
+
+ private:
+  /// Sends a request of the console. Its answer follows in a later message.
+  bool ask_line(const ConsoleRequest& request) {
+    if (request.line >= state().lines.size()) {
+      return false;
+    }
+    if (asked_ >= kMostAsked) {
+      answers_.push_back(
+          rejection_of(request, "too many requests wait for the line; wait for their replies"));
+      return true;
+    }
+    try {
+      RequestQueue::Request frame = frame_of(request);
+      frame.owner = lives_;
+      frame.done = [lives = std::weak_ptr<Viewer*>(lives_), request](const RequestQueue::Reply& reply) {
+        if (const auto viewer = lives.lock()) {
+          --(*viewer)->asked_;
+          (*viewer)->answers_.push_back(answer_to(request, reply));
+        }
+      };
+      ++asked_;
+      panel_.ask_(request.line, std::move(frame));
+    } catch (const std::invalid_argument& error) {
+      answers_.push_back(rejection_of(request, error.what()));
+    }
+    return true;
+  }
+
+  [[nodiscard]] std::string carry_out(const std::string& command) const {
+    const Words words = words_of(command);
+    return !words.empty() && words[0] == "quit"
+               ? "error: a page cannot end the simulator; press Ctrl-C in its terminal"
+               : panel_.carry_out_(command).text;
+  }
+
+  [[nodiscard]] State& state() const { return *panel_.state_; }
+  [[nodiscard]] std::size_t most_frames() const {
+    return std::max(kFewestFrames, kMostFrames / std::max<std::size_t>(1, state().lines.size()));
+  }
+
+  [[nodiscard]] Message hello() const {
+    Message lines = Message::array();
+    Message modules = Message::array();
+    for (const Watched& watched : state().lines) {
+      for (const Module& module : watched.modules) {
+        modules.push_back(plate_layout(module.module->model()));
+        modules.back()["line"] = lines.size();
+      }
+      Message ports = Message::array();
+      for (const std::string& port :
+           {watched.summary.pty, watched.summary.tcp, watched.summary.modbus_tcp, watched.summary.serial}) {
+        if (!port.empty()) {
+          ports.push_back(port);
+        }
+      }
+      lines.push_back({{"name", watched.summary.name},
+                       {"instant", watched.summary.instant},
+                       {"ports", std::move(ports)}});
+    }
+    return {{"version", kFirmwareVersion},   {"run", state().run},        {"speed", state().speed},
+            {"usualFaults", usual_faults()}, {"lines", std::move(lines)}, {"modules", std::move(modules)}};
+  }
+
+  [[nodiscard]] Message news_of(const Module& module) const {
+    Message message;
+    if (module.plate.has_changed_since(sent_look_)) {
+      message["plate"] = message_of(module.plate.value());
+    }
+    if (module.gathered.has_changed_since(sent_look_)) {
+      message["gathered"] = message_of(module.gathered.value(), module.module->model().inputs);
+    }
+    if (module.guard.has_changed_since(sent_look_)) {
+      message["guard"] = message_of(module.guard.value());
+    }
+    if (module.stored.has_changed_since(sent_look_)) {
+      message["stored"] = message_of(module.stored.value());
+    }
+    return message;
+  }
+
+  [[nodiscard]] Message news_of(const Watched& watched) const {
+    Message message;
+    message["now"] = std::chrono::duration_cast<std::chrono::microseconds>(watched.now).count();
+    if (watched.mode.has_changed_since(sent_look_)) {
+      message["baud"] = watched.mode.value().baud;
+      message["format"] = line_format_text(watched.mode.value().format);
+    }
+    if (watched.faults.has_changed_since(sent_look_)) {
+      message["faults"] = message_of(watched.faults.value(), watched.first_module);
+    }
+    return message;
+  }
+
+  Message frames_of(std::size_t line) {
+    const Watched& watched = state().lines[line];
+    const std::uint64_t first = watched.recent.first_of(next_entries_[line], most_frames());
+    Message entries = Message::array();
+    for (std::uint64_t number = first; number < watched.recent.end(); ++number) {
+      entries.push_back(message_of(watched.recent.entry(number), number, watched.modules.size()));
+    }
+    next_entries_[line] = watched.recent.end();
+    return {{"line", line}, {"entries", std::move(entries)}};
+  }
+
+  Panel& panel_;
+  std::uint64_t sent_look_ = 0;
+  std::vector<std::uint64_t> next_entries_;  ///< number of the next entry, for each line
+  std::optional<Message> reply_;
+  Message answers_ = Message::array();  ///< to requests of the console
+  std::size_t asked_ = 0;               ///< requests of the console without an answer
+  std::shared_ptr<Viewer*> lives_ = std::make_shared<Viewer*>(this);
+  std::set<std::string> held_;  ///< commands that undo the actions that the page holds active
+  std::chrono::steady_clock::time_point last_sent_at_;
+};
+
+Panel::Panel(CarryOut carry_out, Ask ask, double speed, WallClock wall_clock)
+    : carry_out_(std::move(carry_out)),
+      ask_(std::move(ask)),
+      wall_clock_(std::move(wall_clock)),
+      state_(std::make_unique<State>()) {
+  state_->speed = speed;
+}
+
+Panel::~Panel() = default;
+
+void Panel::add_line(const LineSummary& summary, const Line& line, std::function<VirtualTime()> present) {
+  Watched watched;
+  watched.summary = summary;
+  watched.line = &line;
+  watched.present = std::move(present);
+  for (const Watched& before : state_->lines) {
+    watched.first_module += before.modules.size();
+  }
+  watched.modules.resize(line.size());
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    watched.modules[i].module = &line.module(i);
+  }
+  state_->lines.push_back(std::move(watched));
+}
+
+void Panel::hear(std::size_t line, const Frame& frame) { state_->lines[line].recent.add({frame, {}}); }
+
+void Panel::note(std::size_t line, VirtualTime now, const std::string& text) {
+  Frame frame;
+  frame.began = frame.ended = now;
+  state_->lines[line].recent.add({frame, text});
+}
+
+void Panel::look() {
+  const std::uint64_t look = ++state_->looks;
+  for (Watched& watched : state_->lines) {
+    watched.now = watched.present();
+    const VirtualTime now = watched.line->clock().virtual_now();
+    for (Module& module : watched.modules) {
+      Face face = face_of(*module.module, now);
+      module.plate.set(face.plate, look);
+      module.gathered.set(face.gathered, look);
+      module.guard.set(face.guard, look);
+      module.stored.set(face.stored, look);
+    }
+    watched.mode.set(watched.line->master().mode(), look);
+    const Faults* faults = watched.line->faults_so_far();
+    watched.faults.set(faults == nullptr ? std::vector<Faults::Info>() : faults->list(), look);
+  }
+}
+
+std::unique_ptr<PanelViewer> Panel::viewer() { return std::make_unique<Viewer>(*this); }
+
+}  // namespace ex9000::sim

@@ -1,0 +1,445 @@
+#include "sim/front_ends/panel/panel_server.hpp"
+
+#include <algorithm>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/beast/core.hpp>
+#include <boost/beast/http.hpp>
+#include <boost/beast/websocket.hpp>
+#include <chrono>
+#include <list>
+#include <stdexcept>
+#include <string_view>
+#include <utility>
+
+#include "sim/files_and_ports/ports/listening.hpp"
+#include "sim/front_ends/panel/loopback.hpp"
+#include "sim/front_ends/panel/page_files.hpp"
+
+namespace ex9000::sim {
+
+namespace {
+
+namespace beast = boost::beast;
+namespace http = beast::http;
+namespace websocket = beast::websocket;
+using boost::asio::ip::tcp;
+using boost::system::error_code;
+
+constexpr std::uint16_t kDefaultPort = 9042;
+/// The largest number of open pages. This limit protects the program from clients that never disconnect.
+constexpr std::size_t kMostPages = 16;
+/// The largest number of requests in progress. Open pages do not count. A browser sends up to six at a time,
+/// for all its pages together.
+constexpr std::size_t kMostRequests = 64;
+constexpr std::uint32_t kLongestHeader = 8192;
+constexpr std::size_t kLongestPageRequest = 4096;
+/// The timeout of each step: receiving a request, sending its response, the handshake of a WebSocket.
+constexpr std::chrono::seconds kRequestTimeout{5};
+/// The server disconnects a page that sends nothing for this time, not even the replies to pings.
+constexpr std::chrono::seconds kIdle{20};
+/// The interval at which the server captures the state while a page is open. A page must show a change within
+/// 100 ms. The rest of the 100 ms is for sending and drawing the change.
+constexpr std::chrono::milliseconds kLookEvery{30};
+
+tcp::endpoint here(std::uint16_t port) { return {boost::asio::ip::address_v4::loopback(), port}; }
+
+/// The complete response for connections beyond the limit. It is constant, so that it requires no memory for
+/// each connection.
+constexpr std::string_view kTooManyRequestsResponse =
+    "HTTP/1.1 503 Service Unavailable\r\nContent-Type: text/plain\r\nContent-Length: 34\r\n"
+    "Connection: close\r\n\r\ntoo many requests are in progress\n";
+
+std::string_view view_of(beast::string_view text) { return {text.data(), text.size()}; }
+
+using Request = http::request<http::empty_body>;
+using Response = http::response<http::string_body>;
+
+}  // namespace
+
+class PanelServer::Listener : public std::enable_shared_from_this<PanelServer::Listener> {
+ public:
+  Listener(boost::asio::io_context& io, std::string models, PanelSource& source)
+      : acceptor_(io), next_try_(io), next_look_(io), models_(std::move(models)), source_(source) {}
+
+  void listen(std::optional<std::uint16_t> port) {
+    error_code error = listen_at(acceptor_, here(port.value_or(kDefaultPort)));
+    if (error && !port) {
+      error = listen_at(acceptor_, here(0));
+    }
+    if (error) {
+      throw std::invalid_argument(std::to_string(port.value_or(kDefaultPort)) + ": " +
+                                  why_not_listening(error, "name another port"));
+    }
+    port_ = acceptor_.local_endpoint().port();
+  }
+
+  [[nodiscard]] std::uint16_t port() const { return port_; }
+  void accept();
+  /// Stops accepting connections and closes the open ones. After this call, the source may be destroyed.
+  void stop();
+
+ private:
+  class Client;
+
+  void accept_later();
+  [[nodiscard]] std::size_t pages() const;
+  void watch();
+  void look_later();
+  void look();
+
+  tcp::acceptor acceptor_;
+  boost::asio::steady_timer next_try_;
+  boost::asio::steady_timer next_look_;
+  std::string models_;
+  PanelSource& source_;
+  std::uint16_t port_ = 0;
+  std::list<std::weak_ptr<Client>> clients_;
+  bool looking_ = false;
+  bool stopped_ = false;
+};
+
+/// A connection: a single request, or a page that gets messages until it disconnects.
+class PanelServer::Listener::Client : public std::enable_shared_from_this<Client> {
+ public:
+  Client(std::shared_ptr<Listener> listener, tcp::socket socket)
+      : listener_(std::move(listener)), socket_(beast::tcp_stream(std::move(socket))) {}
+
+  void read_request() {
+    parser_.header_limit(kLongestHeader);
+    parser_.body_limit(0);
+    stream().expires_after(kRequestTimeout);
+    http::async_read(stream(), buffer_, parser_,
+                     [self = shared_from_this()](const error_code& error, std::size_t /*size*/) {
+                       self->have_request(error);
+                     });
+  }
+
+  [[nodiscard]] bool is_page() const { return viewer_ != nullptr; }
+  /// Returns whether the connection is a page or will become one.
+  [[nodiscard]] bool takes_a_page() const { return takes_a_page_; }
+
+  /// Sends the next message for the page if there is one and the previous message has been sent.
+  void tell() {
+    if (!viewer_ || writing_) {
+      return;
+    }
+    outgoing_ = viewer_->next();
+    if (outgoing_.empty()) {
+      return;
+    }
+    writing_ = true;
+    socket_.text(true);
+    socket_.async_write(boost::asio::buffer(outgoing_),
+                        [self = shared_from_this()](const error_code& error, std::size_t /*size*/) {
+                          self->writing_ = false;
+                          if (error) {
+                            self->part();
+                          } else if (self->answering_) {
+                            self->answer_page_request();
+                          }
+                        });
+  }
+
+  void part() {
+    viewer_.reset();
+    error_code ignored;
+    stream().socket().close(ignored);
+  }
+
+ private:
+  beast::tcp_stream& stream() { return socket_.next_layer(); }
+
+  void have_request(const error_code& error) {
+    if (listener_->stopped_ || error == http::error::end_of_stream ||
+        error == boost::asio::error::operation_aborted || error == beast::error::timeout) {
+      return;
+    }
+    if (error == http::error::header_limit) {
+      answer(http::status::request_header_fields_too_large, "text/plain",
+             "the header is too long; expected up to 8192 bytes\n");
+    } else if (error == http::error::body_limit && reads(parser_.get())) {
+      answer(http::status::payload_too_large, "text/plain", "requests with a body are not supported\n");
+    } else if (error && error != http::error::body_limit) {
+      answer(http::status::bad_request, "text/plain", "the request is not valid HTTP\n");
+    } else {
+      serve(parser_.get());
+    }
+  }
+
+  void serve(const Request& request) {
+    const Loopback here(listener_->port());
+    const auto origin = request.find(http::field::origin);
+    const bool has_origin = origin != request.end();
+    const bool live = request.target() == "/live";
+    if (request.count(http::field::host) != 1 || !here.is_host(view_of(request[http::field::host]))) {
+      answer(http::status::forbidden, "text/plain", "the host name must be 127.0.0.1 or localhost\n");
+    } else if (request.count(http::field::origin) > 1 ||
+               (has_origin && !here.is_origin(view_of(origin->value()))) || (live && !has_origin)) {
+      answer(http::status::forbidden, "text/plain", "requests from pages of other sites are not allowed\n");
+    } else if (!is_fetched_by_us(request)) {
+      answer(http::status::forbidden, "text/plain", "requests from other sites are not allowed\n");
+    } else if (!reads(request)) {
+      answer(http::status::method_not_allowed, "text/plain", "only GET and HEAD are supported\n");
+    } else if (live && !websocket::is_upgrade(request)) {
+      answer(http::status::upgrade_required, "text/plain", "this path requires a WebSocket\n");
+    } else if (live) {
+      accept_page(request);
+    } else if (request.target() == "/models.json") {
+      answer(http::status::ok, "application/json", listener_->models_);
+    } else if (const PageFile* file = page_file(view_of(request.target()))) {
+      answer(http::status::ok, file->type, file->content);
+    } else {
+      answer(http::status::not_found, "text/plain", "no such page\n");
+    }
+  }
+
+  [[nodiscard]] static bool reads(const Request& request) {
+    return request.method() == http::verb::get || request.method() == http::verb::head;
+  }
+
+  /// Returns false if a page of another site has caused the request. Browsers do not send Origin with every
+  /// request, but newer browsers always send Sec-Fetch-Site. Accepts requests without Sec-Fetch-Site.
+  [[nodiscard]] static bool is_fetched_by_us(const Request& request) {
+    const auto fetched = request.equal_range("Sec-Fetch-Site");
+    return std::all_of(fetched.first, fetched.second, [](const auto& field) {
+      return field.value() == "same-origin" || field.value() == "none";
+    });
+  }
+
+  void answer(http::status status, std::string_view type, std::string_view text) {
+    response_.result(status);
+    response_.version(11);
+    response_.keep_alive(false);
+    response_.set(http::field::content_type, beast::string_view(type.data(), type.size()));
+    response_.set(http::field::cache_control, "no-store");
+    response_.set("X-Content-Type-Options", "nosniff");
+    response_.set("Content-Security-Policy",
+                  "default-src 'self'; img-src 'self' data:; frame-ancestors 'none'; base-uri 'none'; "
+                  "form-action 'none'");
+    response_.set("Cross-Origin-Resource-Policy", "same-origin");
+    response_.set("Referrer-Policy", "no-referrer");
+    if (status == http::status::method_not_allowed) {
+      response_.set(http::field::allow, "GET, HEAD");
+    }
+    response_.content_length(text.size());
+    if (parser_.get().method() != http::verb::head) {
+      response_.body() = text;
+    }
+    stream().expires_after(kRequestTimeout);
+    http::async_write(
+        stream(), response_,
+        [self = shared_from_this()](const error_code& /*error*/, std::size_t /*size*/) { self->leave(); });
+  }
+
+  /// Reads the rest of the request before the connection closes. If unread bytes were left, the close would
+  /// reset the connection, and the client could lose the response.
+  void leave() {
+    error_code ignored;
+    stream().socket().shutdown(tcp::socket::shutdown_send, ignored);
+    drain();
+  }
+
+  void drain() {
+    constexpr std::size_t kMostDrained = 1 << 20;
+    if (drained_ > kMostDrained) {
+      return;
+    }
+    buffer_.clear();
+    stream().async_read_some(buffer_.prepare(kLongestPageRequest),
+                             [self = shared_from_this()](const error_code& error, std::size_t size) {
+                               self->drained_ += size;
+                               if (!error) {
+                                 self->drain();
+                               }
+                             });
+  }
+
+  void accept_page(const Request& request) {
+    takes_a_page_ = listener_->pages() < kMostPages;
+    stream().expires_never();
+    websocket::stream_base::timeout timeout{};
+    timeout.handshake_timeout = kRequestTimeout;
+    timeout.idle_timeout = kIdle;
+    timeout.keep_alive_pings = true;
+    socket_.set_option(timeout);
+    socket_.read_message_max(kLongestPageRequest);
+    socket_.auto_fragment(false);
+    socket_.async_accept(request, [self = shared_from_this()](const error_code& error) {
+      if (error || self->listener_->stopped_) {
+        return;
+      }
+      if (!self->takes_a_page_) {
+        self->reject_page();
+      } else {
+        self->buffer_.clear();
+        self->viewer_ = self->listener_->source_.viewer();
+        self->listener_->watch();
+        self->read_page_request();
+      }
+    });
+  }
+
+  /// Closes the WebSocket after the server has accepted it. A browser tells the page why a WebSocket was
+  /// closed, but not why a WebSocket was rejected.
+  void reject_page() {
+    socket_.async_close({websocket::close_code::try_again_later, "too many pages are open already"},
+                        [self = shared_from_this()](const error_code& /*error*/) {});
+  }
+
+  void read_page_request() {
+    socket_.async_read(buffer_, [self = shared_from_this()](const error_code& error, std::size_t /*size*/) {
+      if (error || !self->viewer_) {
+        self->viewer_.reset();
+        return;
+      }
+      self->answering_ = true;
+      if (!self->writing_) {
+        self->answer_page_request();
+      }
+    });
+  }
+
+  /// Processes a request of the page. Reads the next request only when the reply to this one has been queued,
+  /// so a client cannot send requests faster than the server answers them.
+  void answer_page_request() {
+    answering_ = false;
+    const std::string asked = beast::buffers_to_string(buffer_.data());
+    buffer_.clear();
+    if (!viewer_ || !socket_.got_text() || !viewer_->ask(asked)) {
+      viewer_.reset();
+      socket_.async_close({websocket::close_code::policy_error, "the message is not a valid request"},
+                          [self = shared_from_this()](const error_code& /*error*/) {});
+      return;
+    }
+    listener_->look();
+    read_page_request();
+  }
+
+  std::shared_ptr<Listener> listener_;
+  websocket::stream<beast::tcp_stream> socket_;
+  beast::flat_buffer buffer_{kLongestHeader + kLongestPageRequest};
+  http::request_parser<http::empty_body> parser_;
+  Response response_;
+  std::size_t drained_ = 0;
+  bool takes_a_page_ = false;
+  std::unique_ptr<PanelViewer> viewer_;
+  std::string outgoing_;
+  bool writing_ = false;
+  bool answering_ = false;  ///< a request waits until the present message has been sent
+};
+
+void PanelServer::Listener::accept() {
+  acceptor_.async_accept([self = shared_from_this()](const error_code& error, tcp::socket socket) {
+    if (error == boost::asio::error::operation_aborted || self->stopped_) {
+      return;
+    }
+    if (error) {
+      self->accept_later();
+      return;
+    }
+    error_code ignored;
+    socket.set_option(tcp::no_delay(true), ignored);
+    self->clients_.remove_if([](const auto& client) { return client.expired(); });
+    if (self->clients_.size() - self->pages() < kMostRequests) {
+      const auto client = std::make_shared<Client>(self, std::move(socket));
+      self->clients_.push_back(client);
+      client->read_request();
+    } else {
+      socket.non_blocking(true, ignored);
+      socket.write_some(boost::asio::buffer(kTooManyRequestsResponse), ignored);
+    }
+    self->accept();
+  });
+}
+
+/// Accepts again after a delay. If the process has no free file descriptor, an immediate retry would use all
+/// of the processor's time.
+void PanelServer::Listener::accept_later() {
+  constexpr std::chrono::milliseconds kRetryDelay{100};
+  next_try_.expires_after(kRetryDelay);
+  next_try_.async_wait([self = shared_from_this()](const error_code& error) {
+    if (!error && !self->stopped_) {
+      self->accept();
+    }
+  });
+}
+
+std::size_t PanelServer::Listener::pages() const {
+  return static_cast<std::size_t>(std::count_if(clients_.begin(), clients_.end(), [](const auto& weak) {
+    const auto client = weak.lock();
+    return client && client->takes_a_page();
+  }));
+}
+
+/// Captures the present state immediately for a new page. When the first page opens, starts to capture the
+/// state regularly.
+void PanelServer::Listener::watch() {
+  if (looking_) {
+    look();
+  } else {
+    looking_ = true;
+    look();
+    look_later();
+  }
+}
+
+void PanelServer::Listener::look_later() {
+  next_look_.expires_after(kLookEvery);
+  next_look_.async_wait([self = shared_from_this()](const error_code& error) {
+    if (error || self->stopped_) {
+      return;
+    }
+    self->look();
+    if (self->looking_) {
+      self->look_later();
+    }
+  });
+}
+
+void PanelServer::Listener::look() {
+  looking_ = false;
+  for (const auto& weak : clients_) {
+    const auto client = weak.lock();
+    looking_ = looking_ || (client && client->is_page());
+  }
+  if (!looking_) {
+    return;
+  }
+  source_.look();
+  for (const auto& weak : clients_) {
+    if (const auto client = weak.lock()) {
+      client->tell();
+    }
+  }
+}
+
+void PanelServer::Listener::stop() {
+  stopped_ = true;
+  error_code ignored;
+  acceptor_.close(ignored);
+  next_look_.cancel(ignored);
+  next_try_.cancel(ignored);
+  for (const auto& weak : clients_) {
+    if (const auto client = weak.lock()) {
+      client->part();
+    }
+  }
+}
+
+PanelServer::PanelServer(boost::asio::io_context& io, std::optional<std::uint16_t> port, std::string models,
+                         PanelSource& source)
+    : listener_(std::make_shared<Listener>(io, std::move(models), source)) {
+  listener_->listen(port);
+}
+
+PanelServer::~PanelServer() { listener_->stop(); }
+
+std::string PanelServer::address() const {
+  return "http://127.0.0.1:" + std::to_string(listener_->port()) + "/";
+}
+
+void PanelServer::start() { listener_->accept(); }
+
+}  // namespace ex9000::sim

@@ -1,0 +1,105 @@
+#include "sim/front_ends/terminal_view/terminal_output.hpp"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <cctype>
+#include <cerrno>
+#include <cstdlib>
+#include <string>
+
+namespace ex9000::sim {
+
+namespace {
+
+constexpr std::size_t kMostWaiting = 1 << 20;
+
+std::string environment(const char* name) {
+  const char* const value = std::getenv(name);
+  return value == nullptr ? "" : value;
+}
+
+/// Returns the value of the first variable that is not empty, because that variable applies (POSIX.1-2017,
+/// XBD 8.2).
+std::string locale() {
+  for (const char* variable : {"LC_ALL", "LC_CTYPE", "LANG"}) {
+    if (std::string value = environment(variable); !value.empty()) {
+      return value;
+    }
+  }
+  return "";
+}
+
+}  // namespace
+
+bool names_utf8(const std::string& locale) {
+  std::string plain;
+  for (const char character : locale) {
+    if (character != '-') {
+      plain += static_cast<char>(std::tolower(static_cast<unsigned char>(character)));
+    }
+  }
+  return plain.find("utf8") != std::string::npos;
+}
+
+TerminalOutput::TerminalOutput(int descriptor) {
+  if (isatty(descriptor) != 0 && environment("TERM") != "dumb") {
+    const std::string terminal = "/proc/self/fd/" + std::to_string(descriptor);
+    fd_ = open(terminal.c_str(), O_WRONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
+  }
+}
+
+TerminalOutput::~TerminalOutput() {
+  if (is_open()) {
+    flush();
+    close(fd_);
+  }
+}
+
+Screen TerminalOutput::screen() const {
+  Screen screen;
+  winsize size{};
+  if (ioctl(fd_, TIOCGWINSZ, &size) == 0 && size.ws_row != 0 && size.ws_col != 0) {
+    screen.rows = size.ws_row;
+    screen.columns = size.ws_col;
+  }
+  screen.utf8 = names_utf8(locale());
+  return screen;
+}
+
+void TerminalOutput::write(const std::string& text) {
+  waiting_ += text;
+  flush();
+  while (waiting_.size() > kMostWaiting) {
+    pollfd ready{fd_, POLLOUT, 0};
+    poll(&ready, 1, -1);
+    flush();
+  }
+}
+
+bool TerminalOutput::keeps_up() {
+  flush();
+  return waiting_.empty();
+}
+
+/// Writes until the terminal accepts no more. If the terminal has disappeared, discards the output; a signal
+/// then ends the program.
+void TerminalOutput::flush() {
+  while (!waiting_.empty()) {
+    const ssize_t taken = ::write(fd_, waiting_.data(), waiting_.size());
+    if (taken < 0 && errno == EINTR) {
+      continue;
+    }
+    if (taken < 0 && errno != EAGAIN) {
+      waiting_.clear();
+    }
+    if (taken <= 0) {
+      return;
+    }
+    waiting_.erase(0, static_cast<std::size_t>(taken));
+  }
+}
+
+}  // namespace ex9000::sim

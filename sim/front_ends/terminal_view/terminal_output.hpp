@@ -1,0 +1,43 @@
+// The terminal on standard output, or on another descriptor.
+#pragma once
+
+#include <string>
+
+#include "sim/front_ends/terminal_view/terminal.hpp"
+
+namespace ex9000::sim {
+
+/// Returns whether the name of a locale or character map, for example `UTF-8` or `en_US.utf8`, means UTF-8.
+bool names_utf8(const std::string& locale);
+
+/// Stores output that the terminal has not accepted yet, so that a terminal stopped by Ctrl-S does not stop
+/// the program. Opens the terminal a second time, because the shell shares the file description of
+/// `descriptor`, and O_NONBLOCK there would also affect the shell.
+class TerminalOutput final : public Terminal {
+ public:
+  /// Opens the terminal of `descriptor`, which remains open.
+  explicit TerminalOutput(int descriptor);
+  /// Writes as much output as the terminal accepts without blocking, and discards the rest.
+  ~TerminalOutput() override;
+  TerminalOutput(const TerminalOutput&) = delete;
+  TerminalOutput& operator=(const TerminalOutput&) = delete;
+
+  /// Returns false if the descriptor is not a terminal, if TERM is `dumb` because the cursor cannot be moved,
+  /// or if the terminal could not be opened. In these cases no other function may be called.
+  [[nodiscard]] bool is_open() const { return fd_ != kClosed; }
+
+  // --- Terminal ---
+  [[nodiscard]] Screen screen() const override;
+  /// Blocks while more than 1 MiB of output is waiting.
+  void write(const std::string& text) override;
+  bool keeps_up() override;
+
+ private:
+  void flush();
+
+  static constexpr int kClosed = -1;  ///< the result of open(2) after an error
+  int fd_ = kClosed;
+  std::string waiting_;
+};
+
+}  // namespace ex9000::sim

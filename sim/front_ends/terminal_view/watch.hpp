@@ -1,0 +1,54 @@
+// Shows the modules' faces in a terminal.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "sim/front_ends/terminal_view/terminal.hpp"
+#include "sim/line_monitor/module_view/face.hpp"
+#include "sim/virtual_line/line/line.hpp"
+
+namespace ex9000::sim {
+
+/// Redraws the faces in place. If the output is not a terminal, prints a line for each change.
+class Watch {
+ public:
+  /// Gets lines of text; the last one has no newline.
+  using Print = std::function<void(const std::string& lines)>;
+
+  /// `terminal` may be null; then `print` gets the lines. `terminal` must outlive this object.
+  Watch(Terminal* terminal, Print print) : terminal_(terminal), print_(std::move(print)) {}
+
+  /// Adds a line; call this before `look`. `line` must outlive this object, and `present` returns its time.
+  /// An empty name is not shown.
+  void add_line(std::string name, const Line& line, std::function<VirtualTime()> present);
+  /// Shows the changes since the last look. Does nothing while the terminal has not accepted all earlier
+  /// output.
+  void look();
+  /// Prints lines of other output above the faces.
+  void print(const std::string& lines);
+
+ private:
+  struct Watched {
+    std::string name;
+    const Line& line;
+    std::function<VirtualTime()> present;
+    std::vector<std::optional<Face>> faces;  ///< as last shown; nullopt: not shown yet
+  };
+
+  [[nodiscard]] std::vector<std::string> painting() const;
+  [[nodiscard]] std::vector<std::vector<std::string>> all_faces() const;
+  void print_changes();
+  void put(const std::string& lines);
+
+  Terminal* terminal_;
+  Print print_;
+  std::vector<Watched> lines_;
+  Screen screen_;                     ///< the screen at the last drawing
+  std::vector<std::string> painted_;  ///< the lines above the cursor; empty: no faces
+};
+
+}  // namespace ex9000::sim

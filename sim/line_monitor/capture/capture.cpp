@@ -1,0 +1,69 @@
+#include "sim/line_monitor/capture/capture.hpp"
+
+#include "firmware/model/model.hpp"
+#include "sim/line_monitor/capture/pcapng.hpp"
+#include "sim/line_monitor/capture/upper_pdu.hpp"
+#include "sim/line_monitor/frames/frame_errors.hpp"
+#include "sim/line_monitor/frames/frame_meaning.hpp"
+
+namespace ex9000::sim {
+
+namespace {
+
+UpperPdu dissected_by(const Frame& frame) {
+  constexpr std::size_t kShortestThatMbrtuTakes = 5;
+  UpperPdu pdu;
+  if (was_dcon(frame.bytes)) {
+    pdu.dissector = "data-text-lines";
+    pdu.protocol = "DCON";
+  } else {
+    pdu.dissector = frame.bytes.size() < kShortestThatMbrtuTakes ? "data" : "mbrtu";
+    pdu.protocol = "Modbus RTU";  // even if the dissector cannot decode the frame
+  }
+  return pdu;
+}
+
+/// Sets the ports of a frame. The master of each line has its own port, because Wireshark matches replies
+/// with requests by their ports. A station that is neither the master nor a module has no port, because it
+/// may send both requests and replies.
+void set_ports(UpperPdu& pdu, std::size_t line, std::size_t modules, const Frame& frame) {
+  constexpr std::size_t kFirstMastersPort = 10000;
+  const auto master = static_cast<std::uint16_t>(kFirstMastersPort + line);
+  if (frame.speaker() == Speaker::Master) {
+    pdu.source_port = master;
+    pdu.destination_port = kCapturedModulesPort;
+  } else if (frame.station <= modules) {
+    pdu.source_port = kCapturedModulesPort;
+    pdu.destination_port = master;
+  }
+}
+
+}  // namespace
+
+void Capture::begin() {
+  file_.begin();
+  file_.append(pcapng::section_header("ex9000-sim " + std::string(kFirmwareVersion)));
+}
+
+std::size_t Capture::add_line(const std::string& name, std::size_t modules, std::chrono::nanoseconds began) {
+  file_.append(pcapng::interface_description(kLinkTypeWiresharkUpperPdu, name));
+  lines_.push_back({modules, began});
+  return lines_.size() - 1;
+}
+
+void Capture::write(std::size_t line, const Frame& frame) {
+  UpperPdu pdu = dissected_by(frame);
+  set_ports(pdu, line, lines_[line].modules, frame);
+  pcapng::EnhancedPacket packet;
+  packet.interface_id = static_cast<std::uint32_t>(line);
+  packet.timestamp = lines_[line].began + frame.began;
+  packet.direction =
+      frame.speaker() == Speaker::Master ? pcapng::Direction::Outbound : pcapng::Direction::Inbound;
+  packet.data = pdu.header();
+  packet.data.insert(packet.data.end(), frame.bytes.begin(), frame.bytes.end());
+  packet.comment = errors(frame);
+  const std::lock_guard<std::mutex> lock(writing_);
+  file_.append(pcapng::enhanced_packet(packet));
+}
+
+}  // namespace ex9000::sim

@@ -1,0 +1,235 @@
+#include "sim/line_monitor/frames/frame_meaning.hpp"
+
+#include <algorithm>
+#include <string_view>
+
+#include "firmware/dcon/commands.hpp"
+#include "firmware/line/crc16.hpp"
+#include "firmware/modbus/functions.hpp"
+#include "firmware/modbus/registers.hpp"
+#include "sim/text/values.hpp"
+
+namespace ex9000::sim {
+
+namespace {
+
+constexpr std::string_view kDelimiters = "#$%@~";
+constexpr std::string_view kLeads = "!>?";
+
+bool printable(std::uint8_t byte) { return byte >= 0x20 && byte <= 0x7E; }
+
+constexpr std::size_t kChecksumDigits = 2;
+
+std::string escaped(std::uint8_t byte) {
+  switch (byte) {
+    case '\r':
+      return "\\r";
+    case '\n':
+      return "\\n";
+    case 0x00:
+      return "\\0";
+    default:
+      return {static_cast<char>(byte)};
+  }
+}
+
+struct DconRequest {
+  const dcon::Command* command = nullptr;  ///< null: no matching command
+  bool checksum = false;                   ///< its last two characters are a checksum, correct or not
+};
+
+DconRequest dcon_request_of(const std::string& text) {
+  const bool broadcast = text.compare(1, 2, "**") == 0;
+  // The checksum is optional, so each command is possible with and without two more characters.
+  for (const std::size_t checksum : {std::size_t{0}, kChecksumDigits}) {
+    for (const dcon::Command& command : dcon::kCommands) {
+      const dcon::Dispatch& row = command.dispatch;
+      const bool keyed = row.key != dcon::kNoKey && row.key != dcon::kBroadcastKey;
+      const std::size_t lead = keyed ? 4 : 3;
+      if (text[0] != row.delimiter || broadcast != (row.key == dcon::kBroadcastKey) ||
+          text.size() < lead + checksum || (keyed && text[3] != row.key)) {
+        continue;
+      }
+      const std::size_t args = text.size() - lead - checksum;
+      if (args >= row.fewest_args && args <= row.most_args) {
+        return {&command, checksum != 0};
+      }
+    }
+  }
+  return {};
+}
+
+bool checksum_is_right(const std::string& text) {
+  unsigned sum = 0;
+  for (const char character : text.substr(0, text.size() - kChecksumDigits)) {
+    sum += static_cast<unsigned char>(character);
+  }
+  return text.substr(text.size() - kChecksumDigits) == hex_byte_text(sum & 0xFFU);
+}
+
+/// Modules ignore these bytes before a delimiter (wire.md 3): the turn-around of a line can produce 00, and
+/// terminals send LF after CR.
+bool is_skipped(std::uint8_t byte) { return byte == 0x00 || byte == '\n'; }
+
+/// Returns the position of the delimiter if only skipped bytes precede it; otherwise the beginning.
+FrameBytes::const_iterator dcon_begin(const FrameBytes& bytes) {
+  const auto first = std::find_if_not(bytes.begin(), bytes.end(), is_skipped);
+  const bool delimits =
+      first != bytes.end() && kDelimiters.find(static_cast<char>(*first)) != std::string_view::npos;
+  return delimits ? first : bytes.begin();
+}
+
+/// Returns the text from the delimiter to the character before CR.
+std::string dcon_text(const FrameBytes& bytes) {
+  return {dcon_begin(bytes), bytes.end() - (bytes.back() == '\r' ? 1 : 0)};
+}
+
+std::string dcon_request(const FrameBytes& bytes) {
+  const std::string text = dcon_text(bytes);
+  if (text.size() < 3) {
+    return "";
+  }
+  const dcon::Command* command = dcon_request_of(text).command;
+  if (command == nullptr) {
+    return "unknown command";
+  }
+  const std::string error = check_error(bytes, Speaker::Master);
+  return std::string(command->syntax) + ": " + std::string(command->meaning) +
+         (error.empty() ? "" : ", " + error);
+}
+
+std::string dcon_reply(const FrameBytes& bytes) {
+  switch (bytes.front()) {
+    case '?':
+      return "rejected";
+    case '!':
+      return bytes.size() == 2 ? "ignored: the timeout status is set" : "reply";
+    default:
+      return "reply";
+  }
+}
+
+/// Returns whether the address is in `row` on at least one model and a function of `listed` can access it.
+template <class Row>
+bool lies_in(const Row& row, modbus::Functions listed, unsigned address) {
+  return (row.functions & listed) != 0 &&
+         std::any_of(kModels.begin(), kModels.end(), [&](const Model& model) {
+           return meets(model, row.needs) && address - row.first < modbus::width_of(row.width, model);
+         });
+}
+
+std::string row_meaning(unsigned function, unsigned address, unsigned value) {
+  if (function > 0x10 || function == 0x08) {
+    return "";
+  }
+  const auto listed = static_cast<modbus::Functions>(1U << (function == 0x10 ? 6U : function));
+  constexpr unsigned kHostOk = 0x3038;
+  if (address == kHostOk && (function == 3 || function == 4) && value <= 1) {
+    return ", host OK";
+  }
+  for (const auto& entry : modbus::kBitRegisters) {
+    if (lies_in(entry.row, listed, address)) {
+      return ", " + std::string(entry.meaning);
+    }
+  }
+  for (const auto& entry : modbus::kWordRegisters) {
+    if (lies_in(entry.row, listed, address)) {
+      return ", " + std::string(entry.meaning);
+    }
+  }
+  return ", unknown address";
+}
+
+constexpr std::size_t kShortestModbus = 4;
+
+std::string modbus_check_error(const FrameBytes& bytes) {
+  if (bytes.size() < kShortestModbus) {
+    const bool noise = bytes.size() == 1 && bytes[0] < 0x20;  // for example an LF after CR
+    return noise ? "" : "too short for a frame";
+  }
+  return crc16({bytes.data(), bytes.size()}).value() == 0 ? "" : "wrong CRC";
+}
+
+std::string modbus_meaning(const FrameBytes& bytes, Speaker speaker) {
+  std::string error = modbus_check_error(bytes);
+  if (bytes.size() < kShortestModbus || !error.empty()) {
+    return error;
+  }
+  const std::string who = bytes[0] == 0 ? "all modules: " : hex_byte_text(bytes[0]) + ": ";
+  const unsigned function = bytes[1];
+  const auto* row =
+      std::find_if(modbus::kFunctions.begin(), modbus::kFunctions.end(),
+                   [function](const modbus::Function& f) { return f.row.code == (function & 0x7FU); });
+  const std::string name =
+      row == modbus::kFunctions.end() ? "function " + hex_byte_text(function) : std::string(row->name);
+  if (speaker == Speaker::Module) {
+    return who + name + (function >= 0x80 ? ", exception " + hex_byte_text(bytes[2]) : ", reply");
+  }
+  if (bytes.size() < 8 || row == modbus::kFunctions.end() || function > 0x10 || function == 0x08) {
+    return who + name;
+  }
+  const unsigned address = bytes[2] * 256U + bytes[3];
+  const unsigned value = bytes[4] * 256U + bytes[5];
+  const bool single = function == 5 || function == 6;
+  return who + name + " " + hex_word_text(address) +
+         (single ? " = " + hex_word_text(value) : " x " + std::to_string(value)) +
+         row_meaning(function, address, value);
+}
+
+}  // namespace
+
+bool looks_like_dcon(const FrameBytes& bytes) {
+  if (bytes.empty()) {
+    return false;
+  }
+  const auto begin = dcon_begin(bytes);
+  const char first = static_cast<char>(*begin);
+  if (kDelimiters.find(first) == std::string_view::npos && kLeads.find(first) == std::string_view::npos) {
+    return false;
+  }
+  const auto text_end = bytes.back() == '\r' ? bytes.end() - 1 : bytes.end();
+  return std::all_of(begin, text_end, printable);
+}
+
+bool was_dcon(const FrameBytes& bytes) {
+  return looks_like_dcon(bytes) || (!bytes.empty() && looks_like_dcon({bytes.front()}) &&
+                                    bytes.back() == '\r' && !modbus_check_error(bytes).empty());
+}
+
+std::string shown(const FrameBytes& bytes) {
+  if (!looks_like_dcon(bytes)) {
+    return hex_text(bytes, " ");
+  }
+  std::string text;
+  for (const std::uint8_t byte : bytes) {
+    text += escaped(byte);
+  }
+  return text;
+}
+
+std::string check_error(const FrameBytes& bytes, Speaker speaker) {
+  if (!was_dcon(bytes)) {
+    return modbus_check_error(bytes);
+  }
+  if (!looks_like_dcon(bytes)) {
+    return "contains characters that are not printable";
+  }
+  if (speaker == Speaker::Module) {
+    return "";  // the module's setting decides whether the last two characters are a checksum
+  }
+  const std::string text = dcon_text(bytes);
+  const DconRequest request = text.size() < 3 ? DconRequest() : dcon_request_of(text);
+  return request.checksum && !checksum_is_right(text) ? "wrong checksum" : "";
+}
+
+std::string meaning(const FrameBytes& bytes, Speaker speaker) {
+  if (!was_dcon(bytes)) {
+    return modbus_meaning(bytes, speaker);
+  }
+  if (!looks_like_dcon(bytes)) {
+    return check_error(bytes, speaker);
+  }
+  return speaker == Speaker::Master ? dcon_request(bytes) : dcon_reply(bytes);
+}
+
+}  // namespace ex9000::sim

@@ -1,0 +1,132 @@
+#include "sim/line_monitor/frames/frame_watch.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "firmware/line/crc16.hpp"
+
+namespace ex9000::sim {
+
+namespace {
+
+constexpr std::size_t kMaster = 0;
+
+/// The longest pauses inside a frame: between the pieces of a master's write, and between two key presses of
+/// a person. If four characters take longer than 5 ms, the first limit is the time of four characters.
+constexpr VirtualTime kLongestPauseInWrite = std::chrono::milliseconds(5);
+constexpr VirtualTime kLongestPauseInTyping = std::chrono::seconds(5);
+
+constexpr Levels kStartBit = 1U;
+
+}  // namespace
+
+std::optional<std::uint8_t> Frame::Change::byte() const {
+  if ((arrives & kStartBit) != 0) {
+    return std::nullopt;
+  }
+  return byte_of(arrives);
+}
+
+FrameWatch::Sender& FrameWatch::sender(std::size_t station) {
+  while (senders_.size() <= station) {
+    senders_.emplace_back();
+    senders_.back().frame.station = senders_.size() - 1;
+  }
+  return senders_[station];
+}
+
+/// Returns whether this byte of the master begins a new frame. A time limit alone cannot detect a new frame:
+/// gaps between requests without a reply may be shorter than gaps between the pieces of one request.
+bool FrameWatch::begins_another(VirtualTime start, VirtualTime end) {
+  constexpr std::size_t kShortest = 4;
+  const Frame& frame = sender(kMaster).frame;
+  const VirtualTime character = end - start;
+  return frame.bytes.size() >= kShortest && (start - frame.ended) * 2 > character * 3 &&
+         crc16({frame.bytes.data(), frame.bytes.size()}).value() == 0;
+}
+
+void FrameWatch::changed(std::size_t station, Levels arrives) { sender(station).change = arrives; }
+
+void FrameWatch::byte(std::size_t station, std::uint8_t byte, SerialMode mode, bool collided,
+                      VirtualTime start, VirtualTime end) {
+  if (station == kMaster && begins_another(start, end)) {
+    hand_out(kMaster);
+  }
+  Sender& sending = sender(station);
+  Frame& frame = sending.frame;
+  if (sending.sent == 0) {
+    frame.began = start;
+    frame.sent_in = mode;
+    frame.line_in = line_mode_();
+  }
+  std::optional<std::uint8_t> arrives = byte;
+  if (const auto levels = std::exchange(sending.change, std::nullopt)) {
+    frame.changes.push_back({sending.sent, byte, *levels, mode.format});
+    arrives = frame.changes.back().byte();
+  }
+  if (arrives) {
+    frame.bytes.push_back(*arrives);
+  }
+  ++sending.sent;
+  frame.collided |= collided;
+  frame.ended = end;
+  constexpr std::size_t kLongest = 300;
+  const bool dcon = looks_like_dcon(frame.bytes);
+  if ((dcon && frame.bytes.back() == '\r') || sending.sent >= kLongest) {
+    hand_out(station);
+  } else {
+    constexpr VirtualTime kFourCharacters{44'000'000'000};  // the time of 44 bits at 1 baud, in ns
+    sending.frame_deadline =
+        end + (dcon ? kLongestPauseInTyping : std::max(kLongestPauseInWrite, kFourCharacters / mode.baud));
+  }
+}
+
+void FrameWatch::driver(std::size_t station, bool on, VirtualTime /*now*/) {
+  if (!on) {
+    sender(station).change.reset();  // the byte in progress is cut off and will not arrive
+    if (station != kMaster) {
+      hand_out(station);
+    }
+  }
+  if (on && station != kMaster && !looks_like_dcon(sender(kMaster).frame.bytes)) {
+    hand_out(kMaster);  // another station sends, so the request has ended
+  }
+}
+
+VirtualTime FrameWatch::next() const {
+  VirtualTime next = kNever;
+  for (const Sender& each : senders_) {
+    next = std::min(next, each.frame_deadline);
+  }
+  return next;
+}
+
+void FrameWatch::run(VirtualTime now) {
+  for (std::size_t station = 0; station < senders_.size(); ++station) {
+    if (senders_[station].frame_deadline <= now) {
+      hand_out(station);
+    }
+  }
+}
+
+void FrameWatch::finish() {
+  for (std::size_t station = 0; station < senders_.size(); ++station) {
+    hand_out(station);
+  }
+}
+
+void FrameWatch::hand_out(std::size_t station) {
+  Sender& sending = sender(station);
+  if (std::exchange(sending.sent, 0) == 0) {
+    return;
+  }
+  sending.frame_deadline = kNever;
+  Frame next;
+  next.station = station;
+  const Frame frame = std::exchange(sending.frame, next);
+  for (const Take& take : takers_) {
+    take(frame);
+  }
+}
+
+}  // namespace ex9000::sim

@@ -1,0 +1,158 @@
+#include "sim/line_monitor/log/banner.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <map>
+
+#include "firmware/model/model.hpp"
+#include "sim/text/values.hpp"
+
+namespace ex9000::sim {
+
+namespace {
+
+/// Returns the path, in quotes if the shell requires them.
+std::string quoted(const std::string& path) {
+  const std::string plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./-+:@%";
+  if (path.find_first_not_of(plain) == std::string::npos) {
+    return path;
+  }
+  std::string text = "'";
+  for (const char character : path) {
+    text += character == '\'' ? std::string("'\\''") : std::string(1, character);
+  }
+  return text + "'";
+}
+
+/// The options that set a line format.
+struct FormatOptions {
+  LineFormat format;
+  const char* mbpoll;   ///< for mbpoll, whose default is 8E1
+  const char* picocom;  ///< for picocom, whose default is 8N1
+};
+
+constexpr FormatOptions kFormatOptions[] = {
+    {LineFormat::k8N1, " -P none", ""},
+    {LineFormat::k8N2, " -P none -s 2", " -p 2"},
+    {LineFormat::k8E1, " -P even", " -y e"},
+    {LineFormat::k8O1, " -P odd", " -y o"},
+};
+
+/// Returns the options for `format`. A pseudo-terminal ignores the format, but a real bus does not.
+const FormatOptions& options_of(LineFormat format) {
+  return *std::find_if(std::begin(kFormatOptions), std::end(kFormatOptions),
+                       [format](const FormatOptions& options) { return options.format == format; });
+}
+
+/// The part of an mbpoll command that names the port.
+struct MbpollPort {
+  std::string options;
+  std::string name;
+};
+
+MbpollPort pty_of(const LineSummary& line, const ModuleSummary& module) {
+  return {"-m rtu -b " + std::to_string(module.mode.baud) + options_of(module.mode.format).mbpoll,
+          quoted(line.pty)};
+}
+
+MbpollPort gateway_of(const LineSummary& line) {
+  const auto colon = line.modbus_tcp.rfind(':');
+  return {"-m tcp -p " + line.modbus_tcp.substr(colon + 1), line.modbus_tcp.substr(0, colon)};
+}
+
+/// Returns commands for mbpoll, which counts addresses from 1.
+std::string mbpoll(const ModuleSummary& module, const MbpollPort& port) {
+  const std::string common = "    mbpoll " + port.options + " -a " + std::to_string(module.address);
+  const auto read = [&](const char* type, unsigned count, const char* what) {
+    return common + " -t " + type + " -r 1 -c " + std::to_string(count) + " -1 " + port.name +
+           "    # read the " + what + "\n";
+  };
+  std::string text;
+  if (module.outputs != 0) {
+    text += read("0", module.outputs, "outputs");
+    text += common + " -t 0 -r 1 " + port.name + " 1    # switch output 0 on\n";
+  }
+  if (module.inputs != 0) {
+    text += read("1", module.inputs, "inputs");
+    text += read("3", module.inputs, "counters");
+  }
+  return text;
+}
+
+/// Returns a command for a terminal program.
+std::string terminal(const ModuleSummary& module, const std::string& link) {
+  return "    picocom -q -b " + std::to_string(module.mode.baud) + options_of(module.mode.format).picocom +
+         " --imap crcrlf --echo " + link + "    # then type $" + hex_byte_text(module.address) +
+         "M and Enter\n";
+}
+
+/// Returns commands that a user can paste to use the module; empty if there is no port for them.
+std::string commands(const LineSummary& line, const ModuleSummary& module) {
+  if (!line.pty.empty()) {
+    return module.speaks_ascii ? terminal(module, quoted(line.pty)) : mbpoll(module, pty_of(line, module));
+  }
+  return line.modbus_tcp.empty() || module.speaks_ascii ? "" : mbpoll(module, gateway_of(line));
+}
+
+std::string ports(const LineSummary& line) {
+  std::string text;
+  if (!line.pty.empty()) {
+    text += "  pseudo-terminal " + quoted(line.pty) + " (" + line.pty_device + ")\n";
+  }
+  if (!line.tcp.empty()) {
+    text += "  TCP " + line.tcp + ", raw bytes: Modbus RTU (not Modbus TCP) and ASCII\n";
+  }
+  if (!line.modbus_tcp.empty()) {
+    text += "  Modbus TCP " + line.modbus_tcp + ", a gateway to the modules that speak Modbus RTU\n";
+  }
+  if (!line.serial.empty()) {
+    text += "  serial port " + line.serial + "\n";
+  }
+  return text;
+}
+
+std::string shared_addresses(const std::vector<ModuleSummary>& modules) {
+  std::map<unsigned, unsigned> users;
+  for (const ModuleSummary& module : modules) {
+    ++users[module.address];
+  }
+  std::string text;
+  for (const auto& [address, count] : users) {
+    if (count > 1) {
+      text += std::to_string(count) + " modules are at address " + hex_byte_text(address) +
+              " and will reply at the same time; use MODEL@ADDR to give them different addresses\n";
+    }
+  }
+  return text;
+}
+
+std::string introduction(const LineSummary& line) {
+  std::string text = (line.name.empty() ? "line" : line.name) + " at " +
+                     mode_text(line.mode.baud, line.mode.format) +
+                     (line.instant ? ", bytes take no time" : "") + ":\n" + ports(line);
+  for (const ModuleSummary& module : line.modules) {
+    text += "  " + module.designation + " at " + hex_byte_text(module.address) + ", " +
+            (module.speaks_ascii ? "ASCII" : "Modbus RTU") + ", " +
+            mode_text(module.mode.baud, module.mode.format) +
+            (module.remark.empty() ? "" : "; " + module.remark) + "\n";
+    text += commands(line, module);
+  }
+  return text + shared_addresses(line.modules);
+}
+
+}  // namespace
+
+std::string greeting(const BannerContent& all) {
+  std::string text = all.panel.empty() ? "" : "panel: " + all.panel + "\n";
+  text += "ex9000-sim " + std::string(kFirmwareVersion);
+  text += all.lines.size() == 1 ? ", " : ":\n";
+  for (const LineSummary& line : all.lines) {
+    text += introduction(line);
+  }
+  if (!all.control.empty()) {
+    text += "  control socket " + quoted(all.control) + "\n";
+  }
+  return text + "press Ctrl-C to end";
+}
+
+}  // namespace ex9000::sim

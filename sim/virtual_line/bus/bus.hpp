@@ -1,0 +1,179 @@
+// The virtual RS-485 line: any number of stations on two wires, in virtual time.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "firmware/line/verdict.hpp"
+#include "hal/doubles/serial_line.hpp"
+#include "hal/doubles/virtual_clock.hpp"
+#include "sim/virtual_line/bus/due_times.hpp"
+#include "sim/virtual_line/bus/uart_sampler.hpp"
+
+namespace ex9000::sim {
+
+using hal::SerialMode;
+using hal::doubles::VirtualClock;
+using hal::doubles::Wire;
+
+/// A user of the bus. Most stations are devices on the two wires, for example a module or a master. Other
+/// stations do not send or receive; the bus only calls their `run`.
+class Station {
+ public:
+  /// The bus calls this at the time that the station has set with BusEnd::run_at. Before the call, the bus
+  /// clears that time.
+  virtual void run() = 0;
+  /// The bus calls this after the first stop bit of a byte, if the station listens; `status` says whether the
+  /// byte has an error. A station also receives its own bytes, because both directions share the two wires.
+  virtual void receive(std::uint8_t /*byte*/, ByteStatus /*status*/) {}
+
+ protected:
+  ~Station() = default;
+};
+
+/// A station's end of the wires.
+class BusEnd : public Wire {
+ public:
+  /// Makes the station receive in this mode from now on; a rate of 0: the station does not listen. A receiver
+  /// that begins in the middle of a byte samples the rest of it.
+  virtual void listen(SerialMode mode) = 0;
+  /// Sets the time of the station's next `run`, in place of an earlier setting; kNever: the bus does not call
+  /// `run`.
+  virtual void run_at(VirtualTime when) = 0;
+  /// Like `put`, but the byte has wrong parity if the format has a parity bit.
+  virtual void put_with_wrong_parity(std::uint8_t byte, SerialMode mode) = 0;
+
+ protected:
+  ~BusEnd() = default;
+};
+
+/// The bus notifies observers of events on the wires.
+class BusObserver {
+ public:
+  /// Called after the driver of `station` is enabled or disabled. `station` counts from 0 in the order of
+  /// attachment.
+  virtual void driver(std::size_t /*station*/, bool /*on*/, VirtualTime /*now*/) {}
+  /// Called when the byte that `station` begins to send now has wrong parity, or when the disturbance has
+  /// changed it. Receivers get the levels `arrives` instead of those of the byte.
+  virtual void changed(std::size_t /*station*/, Levels /*arrives*/) {}
+  /// Called at the end of the first stop bit of a byte that began at `start` and whose last stop bit ends at
+  /// `end`. A byte is not reported if its driver was disabled before its first stop bit was over. `byte` is
+  /// the byte that was sent. `collided`: at least two drivers were enabled, or another byte was on the wires,
+  /// during this byte.
+  virtual void byte(std::size_t station, std::uint8_t byte, SerialMode mode, bool collided, VirtualTime start,
+                    VirtualTime end) = 0;
+
+ protected:
+  ~BusObserver() = default;
+};
+
+/// Changes bytes on their way to the receivers, for example by noise.
+class Disturbance {
+ public:
+  struct Sent {
+    Levels levels;
+    SerialMode mode;
+    VirtualTime ends;  ///< the end of the first stop bit
+    bool contended;    ///< another driver is enabled
+  };
+  /// Returns the levels that all receivers get instead of those of `sent`.
+  virtual Levels disturbed(const Sent& sent) = 0;
+
+ protected:
+  ~Disturbance() = default;
+};
+
+/// A half-duplex line. A byte lasts ten or eleven bit times at the rate of its sender. A receiver with the
+/// same rate and parity gets the byte after its first stop bit. A receiver with another rate or parity
+/// samples the wave in its own mode and gets framing errors, parity errors and wrong bytes. If several
+/// drivers are enabled at the same time, the level of the line is 0 while at least one of them sends a 0, and
+/// receivers sample the resulting wave.
+///
+/// The clock jumps from event to event; this class does not depend on real time.
+///
+/// `times_faster` multiplies all nominal rates of the line. This factor does not change which stations
+/// understand each other.
+class Bus {
+ public:
+  explicit Bus(VirtualClock& clock, std::uint32_t times_faster = 1);
+  Bus(const Bus&) = delete;
+  Bus& operator=(const Bus&) = delete;
+  ~Bus();
+
+  /// Adds a station, which does not listen yet. `station` must live as long as the bus is used; the returned
+  /// end of the wires is valid for the same time.
+  BusEnd& attach(Station& station);
+  /// Adds an observer. `observer` must live as long as the bus is used.
+  void observe(BusObserver& observer) { observers_.push_back(&observer); }
+  /// Lets `disturbance` change the bytes that are sent from now on, in place of an earlier one. `disturbance`
+  /// must live as long as the bus is used.
+  void disturb(Disturbance& disturbance) { disturbance_ = &disturbance; }
+
+  /// Returns the time of the next event of the bus or of a station; kNever if there is none.
+  [[nodiscard]] VirtualTime next() const {
+    return std::min(std::min(next_byte_end_, next_sample_), due_times_.next());
+  }
+  /// Processes all events at the time `next`, which must not be kNever. Sets the clock to that time.
+  void run_next();
+  /// Processes all events up to and including `until`. Sets the clock to `until`.
+  void run_until(VirtualTime until);
+  void run_for(VirtualTime duration) { run_until(clock_.virtual_now() + duration); }
+
+  /// Returns whether at least one byte is on the wires.
+  [[nodiscard]] bool carries() const { return carried_ != 0; }
+  /// Returns whether a byte is on the wires or a driver is enabled.
+  [[nodiscard]] bool busy() const { return carries() || drivers_on_ != 0; }
+  /// Returns whether all stations that listen have the rate and the parity of `mode`.
+  [[nodiscard]] bool all_hear(SerialMode mode) const { return !has_other_listeners(on_the_wires(mode)); }
+  VirtualClock& clock() { return clock_; }
+
+ private:
+  struct End;
+
+  /// The receiver of a station. The receivers of a line are in one array, because each byte reaches all of
+  /// them.
+  struct Receiver {
+    Station* station = nullptr;
+    SerialMode mode = {};  ///< on the wires; a rate of 0: the station does not listen
+    bool samples = false;  ///< samples the wires, because it cannot get every byte unchanged
+    UartSampler sampler = {};
+  };
+
+  [[nodiscard]] std::uint32_t bit_rate(std::uint32_t baud) const;
+  [[nodiscard]] SerialMode on_the_wires(SerialMode mode) const;
+  void drive(End& end, bool on);
+  void put(End& end, std::uint8_t byte, SerialMode mode, Levels right, Levels sent);
+  void listen(End& end, SerialMode mode);
+  static bool has_heard_from_the_start(const Receiver& receiver, const Wave& wave);
+  [[nodiscard]] bool has_to_sample(const Receiver& receiver) const;
+  void count_listener(SerialMode mode, int change);
+  [[nodiscard]] bool has_other_listeners(SerialMode mode) const;
+  void begin_sampling();
+  void end_sampling();
+  void run_wire();
+  void run_samplers();
+  void finish_bytes();
+  void deliver(const Wave& over);
+  void forget_waves();
+
+  VirtualClock& clock_;
+  std::uint32_t times_faster_;
+  std::vector<std::unique_ptr<End>> ends_;  ///< one for each station
+  std::vector<Receiver> receivers_;         ///< one for each station
+  DueTimes due_times_;
+  std::vector<BusObserver*> observers_;
+  Disturbance* disturbance_ = nullptr;
+  Waves waves_;           ///< the bytes on the wires, and older ones that samplers may still read
+  unsigned carried_ = 0;  ///< number of bytes on the wires
+  unsigned drivers_on_ = 0;
+  std::map<std::pair<std::uint32_t, LineFormat>, int> listeners_;  ///< number of receivers for each mode
+  unsigned sampling_ = 0;                                          ///< number of receivers that sample
+  VirtualTime next_byte_end_ = kNever;
+  VirtualTime next_sample_ = kNever;
+};
+
+}  // namespace ex9000::sim

@@ -1,0 +1,80 @@
+// The master's end of the line: sends bytes on the wires one after the other, and receives bytes.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <vector>
+
+#include "sim/virtual_line/bus/bus.hpp"
+
+namespace ex9000::sim {
+
+class Master final : public Station {
+ public:
+  using Receive = std::function<void(std::uint8_t byte, ByteStatus status)>;
+
+  /// Attaches itself to `bus`. `receive` is called for each byte that arrives while the driver of the master
+  /// is off.
+  Master(Bus& bus, SerialMode mode, Receive receive);
+  Master(const Master&) = delete;
+  Master& operator=(const Master&) = delete;
+
+  /// Returns how long `bytes` bytes take on this line.
+  [[nodiscard]] VirtualTime takes(std::size_t bytes) const { return wire_.takes(bytes, mode_); }
+  /// Sends the bytes after those that already wait or are on the wires. If no byte waits or is on the wires,
+  /// sends them immediately, but not before `not_before`. The driver is enabled from the first byte to the
+  /// last. Does not block. The bytes at the positions `damaged`, counted from 0, have wrong parity if the
+  /// format has a parity bit.
+  void send(const std::uint8_t* bytes, std::size_t size, VirtualTime not_before = VirtualTime(0),
+            const std::vector<std::size_t>& damaged = {});
+  /// Returns whether bytes wait or are on the wires.
+  [[nodiscard]] bool sending() const { return next_ != kNever; }
+  /// Returns how many bytes `send` has taken so far.
+  [[nodiscard]] std::uint64_t taken() const { return taken_; }
+  /// Returns how many bytes wait for their start bit.
+  [[nodiscard]] std::size_t waiting() const { return waiting_.size(); }
+
+  /// Sets the rate and format. The receiver uses them immediately, and the sender uses them from the next
+  /// byte on.
+  void set_mode(SerialMode mode);
+  /// Sets the rate in bits per second and keeps the format.
+  void set_baud(std::uint32_t baud) { set_mode({baud, mode_.format}); }
+  /// Sets the format and keeps the rate.
+  void set_format(LineFormat format) { set_mode({mode_.baud, format}); }
+
+  /// Sets a second function to call for each received byte. The master calls it before the `receive` of the
+  /// constructor.
+  void also_receive(Receive receive) { also_receive_ = std::move(receive); }
+
+  [[nodiscard]] SerialMode mode() const { return mode_; }
+  /// Sets a function to call when the rate or the format changes.
+  void on_mode(std::function<void(SerialMode mode)> changed) { changed_ = std::move(changed); }
+
+  // --- Station ---
+  void run() override;
+  void receive(std::uint8_t byte, ByteStatus status) override;
+
+ private:
+  VirtualClock& clock_;
+  BusEnd& wire_;
+  SerialMode mode_;
+  Receive receive_;
+  Receive also_receive_;
+  std::function<void(SerialMode mode)> changed_;
+  struct Waiting {
+    std::uint8_t byte;
+    bool damaged;
+  };
+
+  std::deque<Waiting> waiting_;
+  std::uint64_t taken_ = 0;
+  bool driving_ = false;
+  VirtualTime burst_began_{0};
+  std::size_t burst_bytes_ = 0;
+  VirtualTime next_ = kNever;  ///< when the present byte ends, or when the first one begins
+
+  void wake_at(VirtualTime when);
+};
+
+}  // namespace ex9000::sim

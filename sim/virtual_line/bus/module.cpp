@@ -1,0 +1,278 @@
+#include "sim/virtual_line/bus/module.hpp"
+
+#include <algorithm>
+
+#include "firmware/settings/places.hpp"
+
+namespace ex9000::sim {
+
+namespace {
+
+/// The wake timer handles all deadlines of the main loop of a simulated module. The tick only feeds the
+/// hardware watchdog, so a slow tick is sufficient.
+constexpr Duration kTick = milliseconds(400);
+
+}  // namespace
+
+SimulatedModule::Mcu::Mcu(SimulatedModule& module)
+    : line(module.clock_, module.wire_),
+      silence_timer(module.clock_),
+      wake_timer(module.clock_),
+      tick(module.clock_, kTick),
+      watchdog(module.clock_),
+      device(module.model_, module.timing_at_,
+             {module.clock_, line, silence_timer, wake_timer, module.inputs_, module.outputs_, module.memory_,
+              module.init_switch_, module.led_, watchdog}) {}
+
+SimulatedModule::SimulatedModule(Bus& bus, const Model& model, TimingAt timing_at)
+    : clock_(bus.clock()),
+      model_(model),
+      timing_at_(timing_at),
+      end_(bus.attach(*this)),
+      memory_(clock_),
+      wire_(clock_, end_) {}
+
+void SimulatedModule::power(bool on) {
+  switched_on_ = on;
+  follow_supply();
+}
+
+void SimulatedModule::interrupt_supply(bool interrupted) {
+  supply_interrupted_ = interrupted;
+  follow_supply();
+}
+
+void SimulatedModule::follow_supply() {
+  const bool on = switched_on_ && !supply_interrupted_;
+  if (on == powered()) {
+    return;
+  }
+  if (on) {
+    start(ResetReason::PowerOn);
+  } else {
+    stop();
+    led_.light(false);
+  }
+  settle();
+}
+
+void SimulatedModule::reset() { restart(ResetReason::ResetPin); }
+
+void SimulatedModule::restart(ResetReason reason) {
+  if (powered()) {
+    stop();
+    start(reason);
+    settle();
+  }
+}
+
+void SimulatedModule::start(ResetReason reason) {
+  hung_ = false;
+  mcu_.emplace(*this);
+  mcu_->line.release_late(driver_late_by_);
+  mcu_->tick.start();
+  mcu_->device.start(reason);
+  turn();
+}
+
+void SimulatedModule::stop() {
+  mcu_->line.abort();
+  wire_.abort();
+  // A memory job uses buffers in `mcu_`, so the job must end before these buffers are destroyed.
+  memory_.cut();
+  mcu_.reset();
+  outputs_.drive(0);
+}
+
+void SimulatedModule::set_init(bool asserted) {
+  init_switch_.set(asserted);
+  if (powered()) {
+    turn();
+    settle();
+  }
+}
+
+void SimulatedModule::set_input(unsigned channel, bool level) {
+  if (inputs_.set(channel, level)) {
+    edge(channel, level);
+    take_edges();
+  }
+}
+
+void SimulatedModule::pulse_input(unsigned channel, std::uint32_t count) {
+  const bool level = inputs_.level(channel);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    edge(channel, !level);
+    edge(channel, level);
+    if (i % 1024 == 0) {
+      take_edges();
+    }
+  }
+  take_edges();
+}
+
+/// Makes the device process the edges. On a real board, the main loop does this continuously.
+void SimulatedModule::take_edges() {
+  if (powered()) {
+    turn();
+    settle();
+  }
+}
+
+void SimulatedModule::edge(unsigned channel, bool level) {
+  if (powered() && channel < model_.inputs) {
+    mcu_->device.on_edge(channel, level);
+  }
+}
+
+void SimulatedModule::release_driver_late(VirtualTime by) {
+  driver_late_by_ = by;
+  if (powered()) {
+    mcu_->line.release_late(by);
+    settle();
+  }
+}
+
+void SimulatedModule::force_rate(std::uint32_t baud) {
+  wire_.force_rate(baud);
+  settle();
+}
+
+void SimulatedModule::release_late_replies() {
+  wire_.end_first_delay();
+  settle();
+}
+
+void SimulatedModule::stop_tick() {
+  mcu_->tick.stop();
+  settle();
+}
+
+void SimulatedModule::store(const Settings& settings) { memory_.contents() = memory_image(model_, settings); }
+
+/// Returns a blank image for factory settings, because the memory of a factory-fresh module is blank (wire.md
+/// D8).
+std::vector<std::uint8_t> SimulatedModule::memory_image(const Model& model, const Settings& settings) {
+  std::vector<std::uint8_t> image(hal::doubles::Memory::kSize, 0xFF);
+  if (settings != Settings::factory(model)) {
+    RecordBytes record{};
+    write_record(model, settings, 1, record);
+    std::copy_n(record.begin(), record_size({record.data(), record.size()}),
+                image.begin() + kPlaces[0].address);
+  }
+  return image;
+}
+
+bool SimulatedModule::pending() const {
+  return wire_.next() != kNever || memory_.next() != kNever ||
+         (mcu_ &&
+          (mcu_->silence_timer.next() != kNever || mcu_->line.sending() || !mcu_->device.module().at_rest()));
+}
+
+/// Passes the mode of the receiver and the time of the next `run` to the bus.
+void SimulatedModule::settle() {
+  if (mode() != listens_in_) {
+    listens_in_ = mode();
+    end_.listen(listens_in_);
+  }
+  if (mcu_) {
+    const VirtualTime sends = std::min(wire_.next(), mcu_->line.next());
+    const VirtualTime stores = memory_.next();
+    const VirtualTime wakes = std::min(mcu_->wake_timer.next(), mcu_->tick.next());
+    next_without_silence_ = std::min(std::min(sends, stores), std::min(wakes, mcu_->watchdog.next()));
+    wait();
+  } else {
+    run_at(kNever);
+  }
+}
+
+void SimulatedModule::run() {
+  runs_at_ = kNever;
+  if (next_without_silence_ > clock_.virtual_now()) {
+    end_silence();  // usually this is the only event
+    return;
+  }
+  if (mcu_->watchdog.has_expired()) {
+    ++watchdog_resets_;
+    restart(ResetReason::ModuleWatchdog);
+    return;
+  }
+  run_line();
+  run_memory();
+  if (mcu_->silence_timer.fire()) {
+    mcu_->device.on_silence();
+  }
+  run_timers();
+  if (mcu_->device.has_work()) {
+    turn();
+  }
+  settle();
+}
+
+void SimulatedModule::end_silence() {
+  if (mcu_->silence_timer.fire()) {
+    mcu_->device.on_silence();
+  }
+  work_or_wait();
+}
+
+void SimulatedModule::run_line() {
+  wire_.run();
+  const bool was_sending = mcu_->line.sending();
+  mcu_->line.run();
+  if (was_sending && !mcu_->line.sending()) {
+    mcu_->device.on_sent();
+  }
+}
+
+void SimulatedModule::run_memory() {
+  if (memory_.next() <= clock_.virtual_now()) {
+    memory_.run();
+    mcu_->device.on_memory();
+  }
+}
+
+void SimulatedModule::run_timers() {
+  if (mcu_->wake_timer.fire()) {
+    mcu_->device.on_wake_timer();
+  }
+  if (mcu_->tick.fire()) {
+    mcu_->device.on_tick();
+  }
+}
+
+void SimulatedModule::receive(std::uint8_t byte, ByteStatus status) {
+  if (mcu_->line.sending() || wire_.sends_late()) {
+    return;
+  }
+  if (mcu_->silence_timer.next() <= clock_.virtual_now()) {
+    receive_after_silence(byte, status);
+    return;
+  }
+  mcu_->device.on_receive(byte, status);
+  work_or_wait();  // most bytes only restart the silence timer
+}
+
+/// Runs the interrupt of the silence timer first, see hal/one_shot_timer.hpp.
+void SimulatedModule::receive_after_silence(std::uint8_t byte, ByteStatus status) {
+  mcu_->silence_timer.fire();
+  mcu_->device.on_silence();
+  receive(byte, status);
+}
+
+void SimulatedModule::work() {
+  turn();
+  settle();
+}
+
+/// Runs the main loop until it has no work, unless the main loop is stopped by `hang`. Takes no virtual time.
+void SimulatedModule::turn() {
+  if (hung_) {
+    return;
+  }
+  do {
+    mcu_->device.on_wake_timer();  // makes `turn` poll INIT* and collect edges now, not at the next tick
+  } while (mcu_->device.turn() || mcu_->device.has_work());
+}
+
+}  // namespace ex9000::sim

@@ -1,0 +1,96 @@
+#include "sim/virtual_line/bus/module_wire.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace ex9000::sim {
+
+void ModuleWire::watch(Begins begins, Ends ends, OnTheWires on_the_wires) {
+  begins_ = std::move(begins);
+  ends_ = std::move(ends);
+  on_the_wires_ = std::move(on_the_wires);
+}
+
+void ModuleWire::drive(bool on) {
+  drives_ = on;
+  if (on) {
+    ++reply_;
+    fate_ = begins_ ? begins_() : ReplyFate();
+    fate_.lost = fate_.lost || late_.size() > kMostLate;
+    forced_for_reply_ = forced_;
+    if (!late_.empty()) {  // replies keep their order: a reply after a late one is late too
+      fate_.late_by = std::max(fate_.late_by, late_.back().when - clock_.virtual_now());
+    }
+  }
+  hand_on(on ? What::On : What::Off, 0, {});
+  if (!on && ends_) {
+    ends_();
+  }
+}
+
+void ModuleWire::put(std::uint8_t byte, SerialMode mode) { hand_on(What::Byte, byte, reply_mode(mode)); }
+
+void ModuleWire::hand_on(What what, std::uint8_t byte, SerialMode mode) {
+  if (fate_.lost) {
+    return;
+  }
+  if (fate_.late_by == VirtualTime(0) && late_.empty()) {
+    carry_out(what, byte, mode, reply_);
+  } else {
+    late_.push_back({clock_.virtual_now() + fate_.late_by, what, byte, mode, reply_});
+  }
+}
+
+void ModuleWire::tell(std::uint64_t reply, bool on) const {
+  if (on_the_wires_) {
+    on_the_wires_(reply, on);
+  }
+}
+
+void ModuleWire::carry_out(What what, std::uint8_t byte, SerialMode mode, std::uint64_t reply) {
+  switch (what) {
+    case What::On:
+      tell(reply, true);
+      wire_.drive(true);
+      break;
+    case What::Byte:
+      wire_.put(byte, mode);
+      break;
+    case What::Off:
+      wire_.drive(false);
+      tell(reply, false);
+      break;
+  }
+}
+
+void ModuleWire::run() {
+  while (!late_.empty() && late_.front().when <= clock_.virtual_now()) {
+    const Late due = late_.front();
+    late_.pop_front();
+    driving_late_ = due.what != What::Off;
+    carry_out(due.what, due.byte, due.mode, due.reply);
+  }
+}
+
+void ModuleWire::end_first_delay() {
+  if (late_.empty() || late_.front().what != What::On) {
+    return;
+  }
+  const VirtualTime earlier_by = late_.front().when - clock_.virtual_now();
+  for (Late& late : late_) {
+    late.when -= earlier_by;
+  }
+}
+
+void ModuleWire::abort() {
+  if (std::exchange(driving_late_, false)) {
+    wire_.drive(false);
+  }
+  for (const Late& never : std::exchange(late_, {})) {
+    if (never.what == What::Off) {
+      tell(never.reply, false);
+    }
+  }
+}
+
+}  // namespace ex9000::sim

@@ -1,0 +1,421 @@
+#include "sim/virtual_line/faults/faults.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+#include "sim/text/durations.hpp"
+
+namespace ex9000::sim {
+
+namespace {
+
+using When = Schedule::When;
+
+/// The foreign station drops a message if at least this many bytes are already waiting.
+constexpr std::size_t kMostForeign = 1024;
+
+bool is_of(const Fault& fault, std::size_t module) { return !fault.module || *fault.module == module; }
+
+/// Returns whether the fault is noise, which affects the wires, regardless of the sender.
+bool is_noise(Trouble trouble) {
+  return trouble == Trouble::BitErrors || trouble == Trouble::LostBytes ||
+         trouble == Trouble::InsertedBytes || trouble == Trouble::StrayZeros;
+}
+
+/// Returns whether the fault has no duration.
+bool is_a_moment(Trouble trouble) { return trouble == Trouble::ForeignTraffic || trouble == Trouble::Hang; }
+
+}  // namespace
+
+Faults::Faults(Bus& bus, Master& master, Modules& modules, std::uint64_t seed, Notice notice)
+    : bus_(bus),
+      end_(bus.attach(*this)),
+      master_(master),
+      modules_(modules),
+      notice_(std::move(notice)),
+      chance_(seed),
+      replies_(modules.size()) {
+  for (std::size_t i = 0; i < modules_.size(); ++i) {
+    modules_[i]->watch_replies([this, i] { return reply_begins(i); }, [this, i] { reply_ends(i); },
+                               [this, i](std::uint64_t reply, bool on) { reply_on_the_wires(i, reply, on); });
+    modules_[i]->memory().on_write([this, i] { written(i); });
+  }
+}
+
+std::size_t Faults::add(const Fault& fault) {
+  if (fault.module && *fault.module >= modules_.size()) {
+    throw std::invalid_argument(fault.text + ": no module " + std::to_string(*fault.module + 1) +
+                                "; this line has 1 to " + std::to_string(modules_.size()));
+  }
+  const VirtualTime now = bus_.clock().virtual_now();
+  const Schedule& schedule = fault.schedule;
+  Armed armed;
+  armed.number = numbers_ + 1;
+  armed.fault = fault;
+  if (schedule.when == When::Always) {
+    armed.begins = now;
+  } else if (schedule.when == When::At) {
+    if (schedule.time < now) {
+      throw std::invalid_argument(fault.text + ": the time has passed; expected a time from " +
+                                  time_text(now) + " on");
+    }
+    armed.begins = schedule.time;
+  } else if (schedule.when == When::EveryTime) {
+    armed.begins = now + schedule.time;
+  }
+  prepare(fault.trouble);
+  ++numbers_;
+  armed_.push_back(armed);
+  act();
+  return numbers_;
+}
+
+/// Attaches the station that the fault requires, if it is not attached yet.
+void Faults::prepare(Trouble trouble) {
+  if (is_noise(trouble) && !noise_) {
+    noise_ = std::make_unique<Noise>(bus_, NoiseRates(), chance_.number());
+  } else if (trouble == Trouble::Echo && !echo_) {
+    echo_ = std::make_unique<Echo>(bus_, master_.mode());
+    master_.on_mode([this](SerialMode mode) { echo_->set_mode(mode); });
+  } else if (trouble == Trouble::ForeignTraffic && !stranger_) {
+    stranger_ =
+        std::make_unique<Master>(bus_, master_.mode(), [](std::uint8_t /*byte*/, ByteStatus /*status*/) {});
+  }
+}
+
+bool Faults::remove(std::size_t number) {
+  const auto found =
+      std::find_if(armed_.begin(), armed_.end(), [=](const Armed& armed) { return armed.number == number; });
+  if (found == armed_.end()) {
+    return false;
+  }
+  const bool was_late = found->fault.trouble == Trouble::LateReply;
+  armed_.erase(found);
+  if (was_late) {
+    release_late_replies();
+  }
+  change();
+  act();
+  return true;
+}
+
+void Faults::remove_all() {
+  armed_.clear();
+  release_late_replies();
+  change();
+  act();
+}
+
+void Faults::release_late_replies() {
+  for (const auto& module : modules_) {
+    module->release_late_replies();
+  }
+}
+
+std::vector<Faults::Info> Faults::list() const {
+  std::vector<Info> all;
+  for (const Armed& armed : armed_) {
+    all.push_back(
+        {armed.number, armed.fault.text, armed.fault.module, armed.in_progress(), armed.occurrences_so_far});
+  }
+  return all;
+}
+
+bool Faults::pending() const {
+  return changed_ || (echo_ && echo_->sending()) || (stranger_ && stranger_->sending());
+}
+
+VirtualTime Faults::next() const {
+  if (changed_) {
+    return bus_.clock().virtual_now();
+  }
+  VirtualTime next = kNever;
+  for (const Armed& armed : armed_) {
+    next = std::min(next, armed.begins);
+    for (const Occurrence& occurrence : armed.occurrences) {
+      next = std::min(next, occurrence.ends);
+    }
+  }
+  return next;
+}
+
+void Faults::run() { act(); }
+
+/// Processes everything that is due: ends occurrences first, then begins new ones.
+void Faults::act() {
+  const VirtualTime now = bus_.clock().virtual_now();
+  for (Armed& armed : armed_) {
+    end_occurrences(armed, [now](const Occurrence& occurrence) { return occurrence.ends <= now; });
+  }
+  for (Armed& armed : armed_) {
+    if (armed.begins <= now) {
+      armed.begins =
+          armed.fault.schedule.when == When::EveryTime ? armed.begins + armed.fault.schedule.time : kNever;
+      begin(armed, std::nullopt);
+    }
+  }
+  if (changed_) {
+    changed_ = false;
+    take_effect();
+  }
+  end_.run_at(next());
+}
+
+/// Schedules an update of the effects at the present time, after the present actions of the modules.
+void Faults::change() {
+  changed_ = true;
+  end_.run_at(bus_.clock().virtual_now());
+}
+
+/// Begins an occurrence. A module may cause this call in the middle of an action. This function therefore
+/// does not change any module; the next call of `act` changes the modules.
+void Faults::begin(Armed& armed, std::optional<std::size_t> reply_of) {
+  const Fault& fault = armed.fault;
+  ++armed.occurrences_so_far;
+  change();
+  say(armed, "occurs");
+  if (fault.trouble == Trouble::ForeignTraffic) {
+    to_say_.push_back(fault.bytes);
+  }
+  if (fault.trouble == Trouble::Hang) {
+    for (std::size_t i = 0; i < modules_.size(); ++i) {
+      // If a reply triggered the occurrence, it affects only the sender of the reply. Any other occurrence
+      // affects all modules of the fault.
+      if (is_of(fault, i) && reply_of.value_or(i) == i) {
+        hanging_.push_back(i);
+      }
+    }
+  }
+  if (is_a_moment(fault.trouble)) {
+    return;
+  }
+  auto lasts = fault.schedule.lasts;
+  if (!lasts && fault.trouble == Trouble::PowerCut) {
+    lasts = kPowerCutLasts;
+  }
+  if (reply_of && is_noise(fault.trouble)) {
+    armed.occurrences.push_back({reply_of, kNever, replies_[*reply_of], true});
+    return;
+  }
+  const VirtualTime ends = lasts ? bus_.clock().virtual_now() + *lasts : kNever;
+  for (Occurrence& known : armed.occurrences) {
+    if (known.reply_of == reply_of) {
+      known.ends = ends;
+      return;
+    }
+  }
+  armed.occurrences.push_back({reply_of, ends});
+}
+
+/// Ends the occurrences for which `over` returns true.
+template <class Over>
+void Faults::end_occurrences(Armed& armed, Over over) {
+  auto& occurrences = armed.occurrences;
+  const auto rest = std::remove_if(occurrences.begin(), occurrences.end(), over);
+  if (rest != occurrences.end()) {
+    occurrences.erase(rest, occurrences.end());
+    change();
+    say(armed, "is over");
+  }
+}
+
+std::size_t Faults::Armed::in_progress() const {
+  return static_cast<std::size_t>(
+      std::count_if(occurrences.begin(), occurrences.end(),
+                    [](const Occurrence& occurrence) { return !occurrence.waits; }));
+}
+
+bool Faults::Armed::occurs_at(std::size_t module) const {
+  return is_of(fault, module) &&
+         std::any_of(occurrences.begin(), occurrences.end(), [module](const Occurrence& occurrence) {
+           return occurrence.reply_of.value_or(module) == module;
+         });
+}
+
+void Faults::say(const Armed& armed, const std::string& what) const {
+  if (notice_ && !armed.fault.schedule.of_replies() && armed.fault.schedule.when != When::Always) {
+    notice_("fault " + std::to_string(armed.number) + " " + what + ": " + armed.fault.text);
+  }
+}
+
+/// Removes the earlier occurrences that replies of the same module triggered, because the latest occurrence
+/// ends last.
+void Faults::forget_others_of(Armed& armed, const Occurrence& latest) {
+  const Occurrence kept = latest;
+  auto& occurrences = armed.occurrences;
+  occurrences.erase(std::remove_if(occurrences.begin(), occurrences.end(),
+                                   [&kept](const Occurrence& occurrence) {
+                                     return occurrence.reply_of == kept.reply_of && !occurrence.waits &&
+                                            occurrence.reply != kept.reply;
+                                   }),
+                    occurrences.end());
+}
+
+ReplyFate Faults::reply_begins(std::size_t module) {
+  ++replies_[module];
+  for (Armed& armed : armed_) {
+    const Schedule& schedule = armed.fault.schedule;
+    if (!schedule.of_replies() || !is_of(armed.fault, module)) {
+      continue;
+    }
+    const bool occurs = schedule.when == When::Probably ? chance_.happens(schedule.probability)
+                                                        : ++armed.counted % schedule.count == 0;
+    if (occurs) {
+      begin(armed, module);
+    }
+  }
+  if (changed_) {
+    set_late_drivers();
+  }
+  ReplyFate fate;
+  fate.lost = affected_by(Trouble::LostReply, module);
+  if (fate.lost) {
+    reply_on_the_wires(module, replies_[module], false);
+  }
+  if (const Fault* late = active(Trouble::LateReply, module)) {
+    fate.late_by = late->time;
+  }
+  return fate;
+}
+
+void Faults::reply_ends(std::size_t module) {
+  for (Armed& armed : armed_) {
+    if (!is_noise(armed.fault.trouble)) {
+      end_occurrences(armed, [module](const Occurrence& occurrence) {
+        return occurrence.reply_of == module && occurrence.ends == kNever;
+      });
+    }
+  }
+}
+
+/// Begins the noise that this reply has triggered when the reply begins on the wires (`on` is true), even if
+/// the reply is late. Ends noise without a duration when the reply has ended, or is dropped (`on` is false).
+void Faults::reply_on_the_wires(std::size_t module, std::uint64_t reply, bool on) {
+  for (Armed& armed : armed_) {
+    if (!is_noise(armed.fault.trouble)) {
+      continue;
+    }
+    const auto of_it = [=](const Occurrence& occurrence) {
+      return occurrence.reply_of == module && occurrence.reply == reply && occurrence.ends == kNever;
+    };
+    if (!on) {
+      end_occurrences(armed, of_it);
+      continue;
+    }
+    const auto occurrence = std::find_if(armed.occurrences.begin(), armed.occurrences.end(), of_it);
+    if (occurrence != armed.occurrences.end()) {
+      occurrence->waits = false;
+      if (const auto lasts = armed.fault.schedule.lasts) {
+        occurrence->ends = bus_.clock().virtual_now() + *lasts;
+        forget_others_of(armed, *occurrence);
+      }
+    }
+  }
+  if (on) {
+    set_noise();
+  }
+}
+
+void Faults::written(std::size_t module) {
+  for (Armed& armed : armed_) {
+    const Schedule& schedule = armed.fault.schedule;
+    if (schedule.when == When::AfterWrites && is_of(armed.fault, module) &&
+        ++armed.counted == schedule.count) {
+      begin(armed, std::nullopt);
+    }
+  }
+}
+
+/// Returns a fault of this kind that affects the module at present, or null. If a reply triggered an
+/// occurrence, the occurrence affects only the module that sent the reply.
+const Fault* Faults::active(Trouble trouble, std::size_t module) const {
+  for (const Armed& armed : armed_) {
+    if (armed.fault.trouble == trouble && armed.occurs_at(module)) {
+      return &armed.fault;
+    }
+  }
+  return nullptr;
+}
+
+const Fault* Faults::active_on_the_line(Trouble trouble) const {
+  for (const Armed& armed : armed_) {
+    if (armed.in_progress() != 0 && armed.fault.trouble == trouble) {
+      return &armed.fault;
+    }
+  }
+  return nullptr;
+}
+
+void Faults::take_effect() {
+  set_powers();
+  for (std::size_t i = 0; i < modules_.size(); ++i) {
+    const Fault* const wrong = active(Trouble::WrongRate, i);
+    modules_[i]->force_rate(wrong == nullptr ? 0 : wrong->baud);
+  }
+  set_late_drivers();
+  for (const std::size_t module : std::exchange(hanging_, {})) {
+    modules_[module]->hang();
+  }
+  set_noise();
+  set_echo();
+  for (const auto& bytes : std::exchange(to_say_, {})) {
+    say_foreign(bytes);
+  }
+}
+
+void Faults::set_powers() {
+  for (std::size_t i = 0; i < modules_.size(); ++i) {
+    modules_[i]->interrupt_supply(affected_by(Trouble::Gone, i) || affected_by(Trouble::PowerCut, i));
+  }
+}
+
+void Faults::set_late_drivers() {
+  for (std::size_t i = 0; i < modules_.size(); ++i) {
+    const Fault* const late = active(Trouble::LateDriver, i);
+    modules_[i]->release_driver_late(late == nullptr ? VirtualTime(0) : late->time);
+  }
+}
+
+/// Returns the highest probability of the faults of this kind that are in progress; 0 if there is none.
+double Faults::rate_of(Trouble trouble) const {
+  double rate = 0;
+  for (const Armed& armed : armed_) {
+    if (armed.in_progress() != 0 && armed.fault.trouble == trouble) {
+      rate = std::max(rate, armed.fault.probability);
+    }
+  }
+  return rate;
+}
+
+void Faults::set_noise() {
+  NoiseRates rates;
+  rates.flipped_bit = rate_of(Trouble::BitErrors);
+  rates.lost_character = rate_of(Trouble::LostBytes);
+  rates.stray_character = rate_of(Trouble::InsertedBytes);
+  rates.stray_zero = rate_of(Trouble::StrayZeros);
+  if (noise_) {
+    noise_->set_rates(rates);
+  }
+}
+
+void Faults::set_echo() {
+  const Fault* const fault = active_on_the_line(Trouble::Echo);
+  if (!echo_) {
+    return;
+  }
+  if (fault == nullptr) {
+    echo_->switch_off();
+  } else {
+    echo_->switch_on(fault->time);
+  }
+}
+
+void Faults::say_foreign(const std::vector<std::uint8_t>& bytes) {
+  stranger_->set_mode(master_.mode());
+  if (stranger_->waiting() < kMostForeign) {
+    stranger_->send(bytes.data(), bytes.size());
+  }
+}
+
+}  // namespace ex9000::sim

@@ -1,0 +1,184 @@
+#include "sim/virtual_line/line/input_program.hpp"
+
+#include <sstream>
+#include <utility>
+#include <vector>
+
+#include "sim/text/durations.hpp"
+#include "sim/text/fail.hpp"
+#include "sim/text/values.hpp"
+
+namespace ex9000::sim {
+
+namespace {
+
+constexpr VirtualTime kShortest = std::chrono::microseconds(10);
+/// The number of times that a contact bounces during the bounce time.
+constexpr unsigned kChatters = 4;
+
+/// Parses durations. Each duration follows its keyword, and no keyword may appear twice.
+class Times {
+ public:
+  explicit Times(std::istringstream& words) {
+    for (std::string word; words >> word;) {
+      std::string time;
+      if (!(words >> time)) {
+        fail("expected a duration after '" + word + "'");
+      }
+      for (const auto& [known, value] : times_) {
+        if (known == word) {
+          fail("'" + word + "' is given twice; leave out one of them");
+        }
+      }
+      times_.emplace_back(word, parse_time(time));
+    }
+  }
+
+  /// Removes and returns the duration of a keyword; nullopt if it is not given.
+  std::optional<VirtualTime> take(const std::string& word) {
+    for (auto time = times_.begin(); time != times_.end(); ++time) {
+      if (time->first == word) {
+        const VirtualTime value = time->second;
+        times_.erase(time);
+        return value;
+      }
+    }
+    return std::nullopt;
+  }
+
+  void reject_unknown(const std::string& there_are) const {
+    if (!times_.empty()) {
+      fail("'" + times_.front().first + "': expected " + there_are);
+    }
+  }
+
+ private:
+  std::vector<std::pair<std::string, VirtualTime>> times_;
+};
+
+void read_square(std::istringstream& words, InputProgram& program) {
+  std::string period;
+  if (!(words >> period)) {
+    fail("expected a period after 'square'");
+  }
+  program.kind = InputProgram::Kind::Square;
+  program.time = parse_time(period);
+  Times times(words);
+  program.high = times.take("for").value_or(program.time / 2);
+  program.bounce = times.take("bounce").value_or(VirtualTime(0));
+  times.reject_unknown("'for TIME' for how long the input is on, or 'bounce TIME'");
+}
+
+void read_key(std::istringstream& words, InputProgram& program) {
+  Times times(words);
+  const auto at = times.take("at");
+  const auto every = times.take("every");
+  const auto high = times.take("for");
+  program.bounce = times.take("bounce").value_or(VirtualTime(0));
+  times.reject_unknown("'at TIME', 'every TIME', 'for TIME' or 'bounce TIME'");
+  if (at && every) {
+    fail("'at' and 'every' cannot be combined; leave out one of them");
+  }
+  if ((!at && !every) || !high) {
+    fail(
+        "a key is incomplete; expected 'at TIME' or 'every TIME', and 'for TIME' for how long it is pressed");
+  }
+  program.kind = at ? InputProgram::Kind::KeyOnce : InputProgram::Kind::KeyAgain;
+  program.time = at ? *at : *every;
+  program.high = *high;
+}
+
+void check(const InputProgram& program) {
+  if (program.bounce != VirtualTime(0) && program.bounce < kShortest) {
+    fail("expected a bounce of at least " + time_text(kShortest));
+  }
+  if (program.high < kShortest || program.high < program.bounce) {
+    fail("expected to be on for at least " + time_text(kShortest) + ", and not shorter than its bounce");
+  }
+  const bool periodic = program.kind != InputProgram::Kind::KeyOnce;
+  if (periodic && program.time < program.high + program.bounce + kShortest) {
+    fail("the period is too short; the input must be off again before the next period");
+  }
+}
+
+}  // namespace
+
+unsigned parse_input(const std::string& text, const Model& model) {
+  const auto channel = model.inputs == 0 ? std::nullopt : whole_number(text, model.inputs - 1U);
+  if (!channel) {
+    fail("the " + std::string(model.designation) + " has no input '" + text + "'; it has " +
+         (model.inputs == 0 ? "none" : "0 to " + std::to_string(model.inputs - 1)));
+  }
+  return static_cast<unsigned>(*channel);
+}
+
+InputProgram parse_input_program(const std::string& text, const Model& model) {
+  std::istringstream words(text);
+  std::string channel;
+  if (!(words >> channel)) {
+    fail("the channel is missing; expected 'CHANNEL square PERIOD' or 'CHANNEL key at TIME for TIME'");
+  }
+  return with_place(text + ": ", [&] {
+    std::string kind;
+    words >> kind;
+    InputProgram program;
+    program.channel = parse_input(channel, model);
+    if (kind == "square") {
+      read_square(words, program);
+    } else if (kind == "key") {
+      read_key(words, program);
+    } else {
+      fail("'" + kind + "': expected 'square PERIOD' or 'key at TIME for TIME'");
+    }
+    check(program);
+    return program;
+  });
+}
+
+MovedInput::MovedInput(Bus& bus, SimulatedModule& module, const InputProgram& program, std::uint64_t seed)
+    : clock_(bus.clock()), end_(bus.attach(*this)), module_(module), program_(program), chance_(seed) {
+  const VirtualTime now = clock_.virtual_now();
+  plan(program.kind == InputProgram::Kind::Square     ? now
+       : program.kind == InputProgram::Kind::KeyAgain ? now + program.time
+                                                      : std::max(now, program.time));
+  end_.run_at(moves_.front().when);
+}
+
+void MovedInput::plan(VirtualTime begins) {
+  chatter(begins, true);
+  chatter(begins + program_.high, false);
+  if (program_.kind != InputProgram::Kind::KeyOnce) {
+    again_ = begins + program_.time;
+  }
+}
+
+/// Plans one change of the level. Real contacts open and close several times before they settle.
+void MovedInput::chatter(VirtualTime begins, bool level) {
+  moves_.push_back({begins, level});
+  if (program_.bounce == VirtualTime(0)) {
+    return;
+  }
+  const VirtualTime slot = program_.bounce / kChatters;
+  for (unsigned i = 0; i < kChatters; ++i) {
+    const VirtualTime slot_begins = begins + slot * i;
+    const auto parts = VirtualTime(
+        1 + static_cast<std::int64_t>(chance_.number() % static_cast<std::uint64_t>(slot.count() / 2)));
+    const auto touches = VirtualTime(
+        1 + static_cast<std::int64_t>(chance_.number() % static_cast<std::uint64_t>(slot.count() / 2)));
+    moves_.push_back({slot_begins + parts, !level});
+    moves_.push_back({slot_begins + parts + touches - VirtualTime(1), level});
+  }
+}
+
+void MovedInput::run() {
+  while (!moves_.empty() && moves_.front().when <= clock_.virtual_now()) {
+    module_.set_input(program_.channel, moves_.front().level);
+    moves_.pop_front();
+    if (moves_.empty() && again_ != kNever) {
+      plan(std::exchange(again_, kNever));
+    }
+  }
+  end_.run_at(moves_.empty() ? kNever : moves_.front().when);
+}
+
+}  // namespace ex9000::sim

@@ -1,0 +1,88 @@
+#include "sim/virtual_line/line/line.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace ex9000::sim {
+
+namespace {
+
+constexpr std::chrono::milliseconds kComingUp{100};
+
+}  // namespace
+
+/// Bytes of one frame arrive without a gap, so a very short silence ends a frame.
+LineTiming instantly(std::uint32_t /*baud*/, LineFormat /*format*/) {
+  constexpr Duration kSilence(6);
+  constexpr Duration kQuiet = milliseconds(2);
+  LineTiming timing;
+  timing.dcon_turn_around = Duration();
+  timing.rtu_silence = kSilence;
+  timing.rtu_grace = kQuiet;
+  timing.rtu_slack = LineTiming::kAnyGap;
+  return timing;
+}
+
+Line::Line(const std::vector<ModuleSpec>& modules, LineKind kind, Master::Receive receive)
+    : kind_(kind),
+      bus_(clock_, kind.times_faster),
+      master_(bus_, SerialMode{baud_rate(kFactoryBaudCode)}, std::move(receive)),
+      spacing_(*this) {
+  for (const ModuleSpec& spec : modules) {
+    modules_.push_back(std::make_unique<SimulatedModule>(bus_, *spec.model, kind.timing_at));
+    SimulatedModule& module = *modules_.back();
+    module.store(spec.settings);
+    module.set_init(spec.init_asserted);
+  }
+}
+
+void Line::come_up() {
+  for (const auto& module : modules_) {
+    module->power(true);
+  }
+  bus_.run_for(kComingUp);
+}
+
+void Line::configure_faults(std::uint64_t seed, Faults::Notice notice) {
+  chance_ = Chance(seed);
+  notice_ = std::move(notice);
+}
+
+Faults& Line::faults() {
+  if (!faults_) {
+    faults_ = std::make_unique<Faults>(bus_, master_, modules_, chance_.number(), notice_);
+  }
+  return *faults_;
+}
+
+RequestQueue& Line::requests() {
+  if (!requests_) {
+    requests_ = std::make_unique<RequestQueue>(*this);
+    master_.also_receive([this](std::uint8_t byte, ByteStatus status) { requests_->hear(byte, status); });
+  }
+  return *requests_;
+}
+
+void Line::move_input(std::size_t index, const InputProgram& program) {
+  moved_inputs_.push_back(std::make_unique<MovedInput>(bus_, *modules_[index], program, chance_.number()));
+}
+
+bool Line::unsettled() const {
+  return bus_.busy() || master_.sending() || (faults_ && faults_->pending()) ||
+         std::any_of(modules_.begin(), modules_.end(), [](const auto& module) { return module->pending(); });
+}
+
+bool Line::pending() const { return unsettled() || (requests_ && requests_->busy()); }
+
+LineTiming Line::timing() const { return kind_.timing_at(master_.mode().baud, master_.mode().format); }
+
+VirtualTime Line::rtu_silence() const {
+  return std::chrono::microseconds(timing().rtu_silence.microseconds());
+}
+
+VirtualTime Line::rtu_separate() const {
+  const LineTiming times = timing();
+  return std::chrono::microseconds((times.rtu_silence + times.rtu_grace).microseconds());
+}
+
+}  // namespace ex9000::sim

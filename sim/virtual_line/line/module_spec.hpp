@@ -1,0 +1,43 @@
+// The description of a module on the command line or in a bus file: MODEL[@ADDR][,KEY=VALUE]...
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "firmware/model/model.hpp"
+#include "firmware/settings/settings.hpp"
+#include "sim/virtual_line/line/input_program.hpp"
+
+namespace ex9000::sim {
+
+/// A module of a line, as the command line or a bus file describes it.
+struct ModuleSpec {
+  const Model* model = nullptr;
+  Settings settings;            ///< stored before power-on; an existing EEPROM file replaces them
+  bool settings_given = false;  ///< at least one setting was given explicitly
+  bool init_asserted = false;
+  std::string eeprom;  ///< path of the EEPROM file; empty: settings are lost when the program ends
+  std::string eeprom_place = "eeprom=";  ///< prefix of messages about that file
+  std::vector<InputProgram> inputs;      ///< programs that change inputs
+};
+
+/// Parses MODEL[@ADDR][,KEY=VALUE]... Throws std::invalid_argument with a one-line message that says what is
+/// wrong and what would be right.
+ModuleSpec parse_module_spec(const std::string& text);
+
+// The steps of parse_module_spec. They throw the same exceptions.
+
+/// Returns a module of this model with factory settings.
+ModuleSpec factory_fresh(const Model& model);
+/// Sets the address. `text` is one or two hex digits.
+void set_address(ModuleSpec& spec, const std::string& text);
+/// Applies one setting: KEY=VALUE of a module on the command line, or a key of a module in a bus file.
+void apply_setting(ModuleSpec& spec, const std::string& key, const std::string& value);
+/// Checks that the settings are valid in combination.
+void check(const ModuleSpec& spec);
+
+/// Returns the model with this designation, in upper or lower case, with or without EX. Throws like
+/// parse_module_spec.
+const Model& model_called(const std::string& name);
+
+}  // namespace ex9000::sim

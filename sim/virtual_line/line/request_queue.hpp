@@ -1,0 +1,91 @@
+// Requests of several clients on one half-duplex line, one at a time.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "sim/virtual_line/bus/bus.hpp"
+
+namespace ex9000::sim {
+
+class Line;
+
+/// Sends each request as the master of the line, then waits for its reply, as a serial device server does.
+/// Keeps the order of the requests, and leaves the silence that modules require between frames. No function
+/// blocks. All times are in line time.
+///
+/// If another master has used the line, or a reply is late, a request first waits until everything on the
+/// line has settled, for at most kReplyTimeout. The other master does not wait for this queue. If the other
+/// master sends during a request, the request gets no reply.
+class RequestQueue final : private Station {
+ public:
+  /// The maximum time from the last byte of a request to the first byte of its reply. This is more than twice
+  /// the time in which a module must store settings and reply (wire.md section 7).
+  static constexpr VirtualTime kReplyTimeout = std::chrono::milliseconds(500);
+  /// The turn-around time: after a broadcast, the queue waits for this time, so that modules can process the
+  /// request (Modbus over Serial Line V1.02, 2.4.1: 100 ms to 200 ms).
+  static constexpr VirtualTime kTurnaround = std::chrono::milliseconds(100);
+
+  struct Reply {
+    std::vector<std::uint8_t> bytes;  ///< at most 256; empty: not sent, no reply in time, or none expected
+    bool sent = true;                 ///< false: the request was not sent, because others used the line
+    bool damaged = false;             ///< a byte had a line error, or more than 256 bytes arrived
+    VirtualTime delay{0};             ///< from the end of the request to the end of the first byte
+  };
+
+  struct Request {
+    std::vector<std::uint8_t> bytes;  ///< the frame on the line, at least one byte
+    bool expects_reply = true;
+    /// Returns whether the frame is the reply. Other frames are ignored, as if they had not arrived. If this
+    /// function is empty, every frame is the reply, even a damaged one.
+    std::function<bool(Bytes frame)> is_reply;
+    /// The queue calls this function exactly once, unless the owner is destroyed before the queue sends the
+    /// request.
+    std::function<void(const Reply& reply)> done;
+    std::weak_ptr<void> owner;  ///< the client
+  };
+
+  /// Attaches a timer to the bus of `line`, which must outlive this object.
+  explicit RequestQueue(Line& line);
+  RequestQueue(const RequestQueue&) = delete;
+  RequestQueue& operator=(const RequestQueue&) = delete;
+
+  /// Sends the request when all earlier requests are done.
+  void ask(Request request);
+  /// Call this for each byte that the master's end of the line receives.
+  void hear(std::uint8_t byte, ByteStatus status);
+  /// Returns whether a request waits or is in progress.
+  [[nodiscard]] bool busy() const { return state_ != State::Idle; }
+
+ private:
+  enum class State {
+    Idle,           ///< nothing to send
+    WaitsForLine,   ///< others use the line; the request waits for at most kReplyTimeout
+    WaitsForReply,  ///< the request is being sent, or no byte of its reply has arrived yet
+    Receives,       ///< bytes of the reply arrive; a silence ends it
+    TurnsAround,    ///< the request is being sent and has no reply, or the turn-around time passes
+  };
+
+  void run() override;
+  void send_next();
+  void send();
+  [[nodiscard]] bool others_use_the_line() const;
+  [[nodiscard]] bool is_reply() const;
+  void finish(const Reply& reply);
+  void enter(State state, VirtualTime until);
+
+  Line& line_;
+  BusEnd& timer_;
+  State state_ = State::Idle;
+  std::deque<Request> waiting_;  ///< the first one is in progress, unless the state is Idle or WaitsForLine
+  VirtualTime own_byte_{0};      ///< end of the last reply; a later byte may be from others
+  std::uint64_t taken_ = 0;      ///< the value of Master::taken when the request was sent
+  VirtualTime sent_{0};          ///< end of the last byte of the request
+  VirtualTime deadline_{0};      ///< when the wait for the line, for the reply or after a broadcast ends
+  Reply reply_;
+};
+
+}  // namespace ex9000::sim

@@ -1,0 +1,158 @@
+// Tests the command line of ex9000-sim: the subcommands, and the options that only print text.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "sim/app/bus_file/bus_file.hpp"
+#include "sim/app/command_line/arguments.hpp"
+#include "sim/app/exports/formats.hpp"
+#include "sim/front_ends/control/control.hpp"
+#include "tests/sim/app/command_line/parsed_arguments.hpp"
+
+namespace ex9000::sim {
+namespace {
+
+/// Expects that `words` only print text, and returns the text.
+std::string printed(const std::vector<const char*>& words) {
+  const Parsed parsed = parse(words);
+  EXPECT_FALSE(parsed.setup);
+  EXPECT_EQ(parsed.exit_status, 0);
+  EXPECT_EQ(parsed.error, "");
+  EXPECT_EQ(parsed.output.empty() ? ' ' : parsed.output.back(), '\n');
+  return parsed.output;
+}
+
+/// Expects that `words` only request a play, and returns its task.
+play::Task task_of(const std::vector<const char*>& words) {
+  const Parsed parsed = parse(words);
+  EXPECT_FALSE(parsed.setup);
+  EXPECT_TRUE(parsed.task) << parsed.error;
+  return parsed.task.value_or(play::Task());
+}
+
+TEST(Arguments, PlayOptionsFollowTheSubcommand) {
+  const play::Task task =
+      task_of({"play", "s.txt", "EX9042D", "--capture", "c", "--log", "json", "--seed", "7"});
+  EXPECT_EQ(task.path, "s.txt");
+  EXPECT_EQ(task.writing.capture, "c");
+  EXPECT_EQ(task.writing.log, LogFormat::Json);
+  ASSERT_TRUE(task.bus);
+  EXPECT_EQ(task.bus->seed, 7U);
+  EXPECT_EQ(task_of({"play", "play"}).path, "play");
+  EXPECT_EQ(task_of({"play", "describe"}).path, "describe");
+  expect_error({"--capture", "x", "play", "s.txt"}, "play: --capture comes before the subcommand",
+               "move it after 'play'");
+  expect_error({"--log", "play", "s.txt"}, "play: --log comes before the subcommand", "move it after 'play'");
+  expect_error({"--seed", "1", "play", "s.txt"}, "play: --seed comes before the subcommand",
+               "move it after 'play'");
+  expect_error({"EX9042D@02", "play", "s.txt"}, "play: EX9042D@02 comes before the subcommand",
+               "move it after 'play'");
+  for (const char* option : {"--pty", "--tcp", "--fault", "--control", "--speed", "--for"}) {
+    expect_error({option, "1", "play", "s.txt"},
+                 std::string("play: ") + option + " comes before the subcommand", "leave it out");
+  }
+  expect_error({"--echo", "play", "s.txt"}, "play: --echo comes before the subcommand", "leave it out");
+}
+
+TEST(Arguments, DescribeOptionsFollowTheSubcommand) {
+  expect_error({"--tcp", "5020", "describe", "EX9042D-M"}, "describe: --tcp comes before the subcommand",
+               "move it after 'describe'");
+  expect_error({"--log", "describe"}, "describe: --log comes before the subcommand", "leave it out");
+  expect_error({"EX9042D", "describe"}, "describe: EX9042D comes before the subcommand", "leave it out");
+}
+
+TEST(Arguments, PlayAlwaysChecksSeedAndCapture) {
+  expect_error({"play", "s.txt", "--seed", "abc"}, "--seed: 'abc'", "a whole number of at least 0");
+  expect_error({"play", "s.txt", "EX9042D", "--seed", "abc"}, "--seed: 'abc'",
+               "a whole number of at least 0");
+  expect_error({"play", "s.txt", "--capture", ""}, "--capture", "path");
+}
+
+TEST(Arguments, ExamplePrintsAValidBusFile) {
+  EXPECT_EQ(printed({"--example"}), example_bus_file());
+  EXPECT_EQ(parse_bus_file("example", printed({"--example"})).lines.size(), 2U);
+}
+
+TEST(Arguments, HelpContainsFaultsAndControlCommands) {
+  const std::string text = printed({"--help"});
+  EXPECT_NE(text.find(fault_help()), std::string::npos);
+  EXPECT_NE(text.find(control_commands()), std::string::npos);
+}
+
+TEST(Arguments, ModelsListsEveryModelWithItsProtocols) {
+  const std::string text = printed({"--models"});
+  for (const Model& model : kModels) {
+    EXPECT_NE(("\n" + text).find("\n" + std::string(model.designation) + " "), std::string::npos)
+        << model.designation;
+  }
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), static_cast<std::ptrdiff_t>(kModels.size()));
+  EXPECT_NE(text.find("Modbus RTU"), std::string::npos);
+}
+
+TEST(Arguments, DescribePrintsAllModelsByDefault) {
+  EXPECT_EQ(printed({"describe"}), markdown_of_all());
+  EXPECT_EQ(printed({"describe", "--format", "markdown"}), markdown_of_all());
+}
+
+TEST(Arguments, DescribeAcceptsAModelNameInAnyCaseWithOrWithoutEx) {
+  const std::string text = markdown_of(*find_model("EX9052D-M"));
+  for (const char* name : {"EX9052D-M", "ex9052d-m", "9052D-M", "9052d-m"}) {
+    EXPECT_EQ(printed({"describe", name}), text) << name;
+  }
+}
+
+TEST(Arguments, DescribeOptionsMayComeBeforeOrAfterTheModel) {
+  EXPECT_EQ(printed({"describe", "--format=json", "EX9042D"}),
+            printed({"describe", "EX9042D", "--format", "json"}));
+  EXPECT_EQ(printed({"describe", "EX9042D-M", "--tcp", "4001", "--address=2", "--format", "home-assistant"}),
+            printed({"describe", "--format", "home-assistant", "--address", "02", "--tcp", "127.0.0.1:4001",
+                     "EX9042D-M"}));
+}
+
+TEST(Arguments, WrongDescribeArgumentsAreRefused) {
+  expect_error({"describe", "EX9999"}, "describe: 'EX9999'", "--models");
+  expect_error({"describe", "EX9042D@01"}, "EX9042D@01", "--models");
+  expect_error({"describe", "EX9042D", "EX9060D"}, "EX9060D", "--help");
+  expect_error({"describe", "EX9042D", "--pty", "x"}, "--pty", "--help");
+  expect_error({"describe", "EX9042D", "--format"}, "--format", "--help");
+  EXPECT_EQ(parse({"describe", "EX9999"}).exit_status, kWrongArguments);
+}
+
+TEST(Arguments, HelpListsEveryOptionAndKey) {
+  const std::string text = printed({"--help"});
+  for (const char* word :
+       {"MODULE",         "[text|json|off]", "--capture", "--pty",     "--baud",         "--log",
+        "--strict-gaps",  "--input",         "--fault",   "--seed",    "--threads",      "--example",
+        "--models",       "describe",        "--format",  "--address", "home-assistant", "node-red",
+        "wb-mqtt-serial", "--panel",         "--watch",   "--version", "protocol=",      "baud=",
+        "checksum=",      "edge=",           "name=",     "init=",     "@ADDR"}) {
+    EXPECT_NE(text.find(word), std::string::npos) << word;
+  }
+}
+
+TEST(Arguments, DescribeHasItsOwnHelp) {
+  const std::string text = printed({"describe", "--help"});
+  for (const char* word : {"MODEL", "--format", "markdown|json|csv|home-assistant|node-red|wb-mqtt-serial",
+                           "--address", "--tcp", "127.0.0.1:5020"}) {
+    EXPECT_NE(text.find(word), std::string::npos) << word;
+  }
+  EXPECT_EQ(text.find("--pty"), std::string::npos);
+}
+
+TEST(Arguments, VersionIsThatOfTheFirmware) { EXPECT_EQ(printed({"--version"}), "ex9000-sim D01.00\n"); }
+
+TEST(Arguments, ModelsAndExampleRejectOtherArgumentsAndVersionIgnoresThem) {
+  EXPECT_EQ(printed({"EX9042D", "--version"}), printed({"--version"}));
+  expect_error({"--models", "EX9042D"}, "--models: only prints text", "leave out EX9042D");
+  expect_error({"--example", "--log"}, "--example: only prints text", "leave out --log");
+  expect_error({"--example", "--seed", "abc"}, "--example: only prints text", "leave out --seed");
+  expect_error({"--models", "--example"}, "--models: only prints text", "leave out --example");
+  expect_error({"--models", "play", "s.txt"}, "--models: only prints text", "leave out play");
+  expect_error({"--example", "describe"}, "--example: only prints text", "leave out describe");
+}
+
+}  // namespace
+}  // namespace ex9000::sim

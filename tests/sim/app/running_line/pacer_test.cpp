@@ -1,0 +1,128 @@
+// Tests how long a frame has to wait on a line that follows the wall clock. The line is so slow that the
+// delays of a busy host are small in comparison. All expected times are lower bounds, in line time.
+#include "sim/app/running_line/pacer.hpp"
+
+#include <gtest/gtest.h>
+
+#include <boost/asio/io_context.hpp>
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "sim/app/play/modbus_frame.hpp"
+#include "tests/sim/virtual_line/bus/bus_recorder.hpp"
+
+namespace ex9000::sim {
+namespace {
+
+using FrameBytes = std::vector<std::uint8_t>;
+
+const FrameBytes kInputs2 = with_crc({0x02, 0x02, 0x00, 0x00, 0x00, 0x08});
+const FrameBytes kAllFirstOn = with_crc({0x00, 0x05, 0x00, 0x00, 0xFF, 0x00});
+
+/// A port that delivers bytes immediately and discards the replies.
+class ImmediatePort final : public Port {
+ public:
+  explicit ImmediatePort(Received& received) : received_(received) {}
+  void start(Received received) override { received_ = std::move(received); }
+  void resume() override {}
+  std::size_t send(const std::vector<std::uint8_t>& /*bytes*/) override { return 0; }
+
+ private:
+  Received& received_;
+};
+
+/// Line time passes at 0.05 times the speed of the wall clock. At 115200 baud, T3.5 is 1.75 ms of line time,
+/// which takes 35 ms on the wall clock.
+constexpr Pace kSlow{VirtualTime(0), VirtualTime(0), true, 0.05};
+
+class PacedLine : public testing::Test {
+ protected:
+  PacedLine() {
+    ports_.push_back(std::make_unique<ImmediatePort>(received_));
+    pacer_.emplace(io_, line_, ports_, nullptr, kSlow, [](const std::string& /*text*/) {});
+    line_.bus().observe(recorder_);
+    line_.come_up();
+    line_.master().set_baud(115200);
+    recorder_.clear();
+    pacer_->start();
+  }
+
+  /// Runs until nothing on the line is in progress.
+  void rest() {
+    while (line_.pending()) {
+      ASSERT_GT(io_.run_one(), 0U);
+    }
+  }
+  void send(const FrameBytes& bytes) { ASSERT_TRUE(received_(bytes.data(), bytes.size(), {})); }
+  /// Sends a request and runs until a reply of `answer` characters has ended.
+  void ask(const FrameBytes& bytes, std::size_t answer) {
+    recorder_.clear();
+    send(bytes);
+    while (recorder_.bytes.size() < bytes.size() + answer) {
+      ASSERT_GT(io_.run_one(), 0U);
+    }
+  }
+  /// Returns the time without a byte before the last frame on the line. This frame is from the master and has
+  /// `characters` characters.
+  [[nodiscard]] VirtualTime silence_before_last(std::size_t characters) const {
+    const auto& bytes = recorder_.bytes;
+    const std::size_t first = bytes.size() - characters;
+    return bytes.at(first).start - bytes.at(first - 1).end;
+  }
+  bool first_are_on() {
+    return (line_.module(0).outputs() & 1U) != 0 && (line_.module(3).outputs() & 1U) != 0;
+  }
+
+  Port::Received received_;
+  boost::asio::io_context io_;
+  LinePorts::All ports_;
+  Line line_{{parse_module_spec("EX9042D-M@01,baud=115200"), parse_module_spec("EX9052D-M@02,baud=115200"),
+              parse_module_spec("EX9042D@03,baud=115200"), parse_module_spec("EX9043D-M@04,baud=115200")},
+             kPaced,
+             [this](std::uint8_t byte, ByteStatus /*status*/) { pacer_->hear(byte); }};
+  BusRecorder recorder_;
+  std::optional<Pacer> pacer_;
+};
+
+const FrameBytes kName3{'$', '0', '3', 'M', '\r'};
+
+TEST_F(PacedLine, DelaysABroadcastAfterAnAsciiReplyUntilItIsASeparateModbusFrame) {
+  ask(kName3, 9);
+  send(kAllFirstOn);
+  rest();
+  EXPECT_GE(silence_before_last(kAllFirstOn.size()).count(), line_.rtu_separate().count());
+  EXPECT_TRUE(first_are_on());
+}
+
+TEST_F(PacedLine, AModbusRequestImmediatelyAfterAnAsciiReplyGetsItsReply) {
+  ask(kName3, 9);
+  ask(kInputs2, 6);
+  EXPECT_EQ(recorder_.sent_by(2), with_crc({0x02, 0x02, 0x01, 0x00}));
+}
+
+TEST_F(PacedLine, DelaysABroadcastAfterAModbusReplyUntilT35HasPassed) {
+  ask(kInputs2, 6);
+  send(kAllFirstOn);
+  rest();
+  EXPECT_GE(silence_before_last(kAllFirstOn.size()).count(), line_.rtu_silence().count());
+  EXPECT_TRUE(first_are_on());
+}
+
+TEST_F(PacedLine, DelaysABroadcastAfterForeignTrafficUntilItIsASeparateModbusFrame) {
+  pacer_->now([this] { line_.faults().add(parse_fault("foreign-traffic 2430394D0D")); });
+  while (recorder_.bytes.size() < kName3.size()) {
+    ASSERT_GT(io_.run_one(), 0U);
+  }
+  ASSERT_GT(recorder_.bytes.back().station, line_.size());
+  send(kAllFirstOn);
+  rest();
+  EXPECT_GE(silence_before_last(kAllFirstOn.size()).count(), line_.rtu_separate().count());
+  EXPECT_TRUE(first_are_on());
+}
+
+}  // namespace
+}  // namespace ex9000::sim

@@ -1,0 +1,62 @@
+// Tests the limit of clients of a TCP port.
+#include "sim/files_and_ports/ports/tcp_port.hpp"
+
+#include <gtest/gtest.h>
+
+#include <boost/asio/buffer.hpp>
+#include <boost/asio/write.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace ex9000::sim {
+namespace {
+
+using boost::asio::ip::tcp;
+
+constexpr std::size_t kMostMasters = 64;
+
+/// Runs one handler. Returns false if the port does nothing for 60 s, because only a port that hangs takes so
+/// long.
+bool run_one(boost::asio::io_context& io) { return io.run_one_for(std::chrono::seconds(60)) == 1; }
+
+class TcpPortClients : public testing::Test {
+ protected:
+  TcpPortClients() {
+    port_.start([this](const std::uint8_t* bytes, std::size_t size, const Port::Positions& /*damaged*/) {
+      received_.insert(received_.end(), bytes, bytes + size);
+      return true;
+    });
+  }
+
+  tcp::socket connect() {
+    const std::string address = port_.address();
+    const auto number = static_cast<std::uint16_t>(std::stoul(address.substr(address.rfind(':') + 1)));
+    tcp::socket socket(io_);
+    socket.connect({boost::asio::ip::address_v4::loopback(), number});
+    return socket;
+  }
+
+  boost::asio::io_context io_;
+  TcpPort port_{io_, {"127.0.0.1", 0}, TcpPort::Linger()};
+  std::string received_;
+};
+
+TEST_F(TcpPortClients, AHalfClosedClientMakesRoomForTheNextIfTheLingerTimeHasNoLimit) {
+  std::vector<tcp::socket> clients;
+  for (std::size_t i = 0; i < kMostMasters; ++i) {
+    clients.push_back(connect());
+    ASSERT_TRUE(run_one(io_));  // accepts the client
+    clients.back().shutdown(tcp::socket::shutdown_send);
+    ASSERT_TRUE(run_one(io_));  // reads the end of its bytes
+  }
+  tcp::socket next = connect();
+  boost::asio::write(next, boost::asio::buffer(std::string_view("$01M\r")));
+  while (received_.size() < 5) {
+    ASSERT_TRUE(run_one(io_)) << "the next client was not accepted";
+  }
+  EXPECT_EQ(received_, "$01M\r");
+}
+
+}  // namespace
+}  // namespace ex9000::sim

@@ -1,0 +1,211 @@
+// Tests several clients of Modbus TCP that share a line, in line time.
+#include "sim/front_ends/modbus_tcp/mbap_session.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <deque>
+#include <memory>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "tests/support/environment.hpp"
+
+namespace ex9000::sim {
+namespace {
+
+using Buffer = std::vector<std::uint8_t>;
+using std::chrono::seconds;
+
+/// A client that keeps some requests in flight and checks each reply.
+class PollingClient {
+ public:
+  PollingClient(Gateway& gateway, unsigned number)
+      : random_(number),
+        session_(
+            gateway, [this](const Buffer& bytes) { return take(bytes); }, [] {}) {}
+
+  void ask() {
+    static constexpr std::uint8_t kUnits[] = {1, 2, 9, 250};
+    const std::uint8_t unit = kUnits[random_() % 100 < 96 ? random_() % 2 : 2 + random_() % 2];
+    const auto transaction = static_cast<std::uint16_t>(random_());
+    // The random quantity distinguishes the replies of a module.
+    const auto quantity = static_cast<std::uint8_t>(1 + random_() % 8);
+    expected_.push_back({transaction, unit, quantity});
+    Buffer bytes = mbap_bytes({transaction, unit, {0x01, 0x00, 0x00, 0x00, quantity}});
+    pieces_.insert(pieces_.end(), bytes.begin(), bytes.end());
+    const std::size_t now = random_() % (pieces_.size() + 1);  // the rest arrives with a later piece
+    session_.receive({pieces_.data(), now});
+    pieces_.erase(pieces_.begin(), pieces_.begin() + static_cast<std::ptrdiff_t>(now));
+  }
+  void arrive() {
+    session_.receive({pieces_.data(), pieces_.size()});
+    pieces_.clear();
+  }
+
+  [[nodiscard]] std::size_t in_flight() const { return expected_.size(); }
+  [[nodiscard]] unsigned answered() const { return answered_; }
+
+ private:
+  struct Asked {
+    std::uint16_t transaction;
+    std::uint8_t unit;
+    std::uint8_t quantity;
+  };
+
+  bool take(const Buffer& bytes) {
+    MbapReader reader;
+    reader.add({bytes.data(), bytes.size()});
+    const auto reply = reader.next();
+    EXPECT_TRUE(reply);
+    if (!reply) {
+      return true;
+    }
+    EXPECT_FALSE(expected_.empty()) << "a reply without a request";
+    if (expected_.empty()) {
+      return true;
+    }
+    const Asked asked = expected_.front();
+    expected_.pop_front();
+    EXPECT_EQ(reply->transaction, asked.transaction);
+    EXPECT_EQ(reply->unit, asked.unit);
+    const auto all = static_cast<std::uint8_t>((1U << asked.quantity) - 1U);
+    switch (asked.unit) {
+      case 1:  // all outputs on
+        EXPECT_EQ(reply->pdu, (Buffer{0x01, 0x01, all}));
+        break;
+      case 2:  // all outputs off
+        EXPECT_EQ(reply->pdu, (Buffer{0x01, 0x01, 0x00}));
+        break;
+      case 9:
+        EXPECT_EQ(reply->pdu, (Buffer{0x81, 0x0B}));
+        break;
+      default:
+        EXPECT_EQ(reply->pdu, (Buffer{0x81, 0x0A}));
+    }
+    ++answered_;
+    return true;
+  }
+
+  std::mt19937 random_;
+  std::deque<Asked> expected_;
+  Buffer pieces_;
+  unsigned answered_ = 0;
+  MbapSession session_;
+};
+
+TEST(MbapSession, FiveClientsOnOneLineGetTheirOwnReplies) {
+  const seconds duration(number_in_environment("EX9000_VIRTUAL_SECONDS", 60));
+  Line line({parse_module_spec("EX9043D-M@01,baud=115200"), parse_module_spec("EX9043D-M@02,baud=115200")},
+            kPaced, [](std::uint8_t /*byte*/, ByteStatus /*status*/) {});
+  line.come_up();
+  line.master().set_baud(115200);
+  Gateway gateway(line);
+  const auto owner = std::make_shared<int>();
+  gateway.ask({1, 1, {0x0F, 0x00, 0x00, 0x00, 0x10, 0x02, 0xFF, 0xFF}}, owner,
+              [](const std::optional<Buffer>& reply) {
+                EXPECT_EQ(reply, (Buffer{0x0F, 0x00, 0x00, 0x00, 0x10}));
+              });
+  line.bus().run_for(seconds(1));
+  std::vector<std::unique_ptr<PollingClient>> clients;
+  for (unsigned i = 0; i < 5; ++i) {
+    clients.push_back(std::make_unique<PollingClient>(gateway, i));
+  }
+  const VirtualTime end = line.clock().virtual_now() + duration;
+  std::mt19937 random(1);
+  while (line.clock().virtual_now() < end) {
+    PollingClient& client = *clients[random() % clients.size()];
+    if (client.in_flight() < 20) {
+      client.ask();
+    } else {
+      client.arrive();
+    }
+    line.bus().run_for(std::chrono::milliseconds(random() % 100));
+  }
+  for (const auto& client : clients) {
+    client->arrive();
+  }
+  line.bus().run_for(seconds(60));
+  for (const auto& client : clients) {
+    EXPECT_EQ(client->in_flight(), 0U);
+    EXPECT_GT(client->answered(), 2 * duration.count());
+  }
+}
+
+TEST(MbapSession, RequestsOfAClientThatReadsNoRepliesWait) {
+  Line line({parse_module_spec("EX9042D-M@01")}, kInstant,
+            [](std::uint8_t /*byte*/, ByteStatus /*status*/) {});
+  line.come_up();
+  Gateway gateway(line);
+  unsigned replies = 0;
+  MbapSession session(
+      gateway,
+      [&](const Buffer& /*bytes*/) {
+        ++replies;
+        return false;
+      },
+      [] {});
+  for (int i = 0; i < 100; ++i) {
+    const Buffer bytes = mbap_bytes({1, 1, {0x01, 0x00, 0x00, 0x00, 0x0D}});
+    session.receive({bytes.data(), bytes.size()});
+  }
+  line.bus().run_for(seconds(1));
+  EXPECT_EQ(replies, 1U);
+  EXPECT_FALSE(session.idle());
+  EXPECT_EQ(session.unread(), 99U * 12);
+  for (int i = 0; i < 100; ++i) {
+    session.resume();
+    line.bus().run_for(seconds(1));
+  }
+  EXPECT_EQ(replies, 100U);
+  EXPECT_EQ(session.unread(), 0U);
+}
+
+TEST(MbapSession, ClientsTakeTurnsAlthoughOneHasManyRequests) {
+  Line line({parse_module_spec("EX9042D-M@01")}, kPaced, [](std::uint8_t /*byte*/, ByteStatus /*status*/) {});
+  line.come_up();
+  Gateway gateway(line);
+  std::vector<std::string> order;
+  const auto client = [&](const std::string& name) {
+    return std::make_unique<MbapSession>(
+        gateway,
+        [&order, name](const Buffer& /*bytes*/) {
+          order.push_back(name);
+          return true;
+        },
+        [] {});
+  };
+  const auto many = client("many");
+  const auto one = client("one");
+  const Buffer to_nobody = mbap_bytes({1, 9, {0x01, 0x00, 0x00, 0x00, 0x0D}});
+  for (int i = 0; i < 20; ++i) {
+    many->receive({to_nobody.data(), to_nobody.size()});
+  }
+  one->receive({to_nobody.data(), to_nobody.size()});
+  line.bus().run_for(std::chrono::milliseconds(1200));  // two timeouts of 500 ms
+  EXPECT_EQ(order, (std::vector<std::string>{"many", "one"}));
+}
+
+TEST(MbapSession, RequestsOfAClientThatHasLeftAreNotSent) {
+  Line line({parse_module_spec("EX9042D-M@01")}, kPaced, [](std::uint8_t /*byte*/, ByteStatus /*status*/) {});
+  line.come_up();
+  Gateway gateway(line);
+  auto session = std::make_unique<MbapSession>(
+      gateway,
+      [](const Buffer& /*bytes*/) {
+        ADD_FAILURE() << "a reply after the client has left";
+        return true;
+      },
+      [] {});
+  for (std::uint8_t output = 0; output < 2; ++output) {
+    const Buffer bytes = mbap_bytes({1, 1, {0x05, 0x00, output, 0xFF, 0x00}});
+    session->receive({bytes.data(), bytes.size()});
+  }
+  session.reset();
+  line.bus().run_for(seconds(2));
+  EXPECT_EQ(line.module(0).outputs(), 0x0001);  // the first request was on the line already
+}
+
+}  // namespace
+}  // namespace ex9000::sim

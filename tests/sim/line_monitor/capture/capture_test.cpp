@@ -1,0 +1,482 @@
+// Tests captures as Wireshark shows them, and the JSON log.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "sim/app/play/modbus_frame.hpp"
+#include "tests/sim/line_monitor/capture/tshark.hpp"
+#include "tests/support/control_client.hpp"
+#include "tests/support/directory.hpp"
+#include "tests/support/simulator_process.hpp"
+#include "tests/support/socket_client.hpp"
+#include "tests/support/terminal.hpp"
+
+namespace ex9000::system {
+namespace {
+
+using Bytes = std::vector<std::uint8_t>;
+
+const std::string kSent = "0";  // frame.p2p_dir
+const std::string kReceived = "1";
+
+/// A simulator in stepped time. `decoded` kills the simulator, and then reads the capture.
+class Captured {
+ public:
+  explicit Captured(std::vector<std::string> arguments) : simulator_(with_capture(std::move(arguments))) {}
+
+  /// Sends a request, and waits for a reply of `answer` bytes.
+  void ask(const Bytes& request, std::size_t answer) {
+    tell(request);
+    EXPECT_EQ(client_.receive(answer).size(), answer);
+  }
+  void ask(const std::string& request, std::size_t answer) {
+    ask(Bytes(request.begin(), request.end()), answer);
+  }
+  /// Sends a request, and waits until the request and its replies are recorded.
+  void tell(const Bytes& request) {
+    client_.send(request);
+    control_.ok("advance 1s after " + std::to_string(request.size()) + " quiet");
+    pass("100ms");  // longer than any pause in a Modbus frame
+  }
+  /// Advances the time of the line.
+  void pass(const std::string& time) { control_.ok("advance " + time); }
+
+  void wait_for(const std::string& text) { EXPECT_TRUE(simulator_.wait_for(text)); }
+
+  std::vector<Packet> decoded(const std::vector<std::string>& fields) {
+    if (!killed_) {
+      simulator_.end(SIGKILL);
+      killed_ = true;
+    }
+    return system::decoded(simulator_.directory() + "/line.pcapng", fields);
+  }
+
+ private:
+  static std::vector<std::string> with_capture(std::vector<std::string> arguments) {
+    arguments.insert(arguments.end(),
+                     {"--tcp", "0", "--capture", "line.pcapng", "--speed", "step", "--control", "control"});
+    return arguments;
+  }
+
+  SimulatorProcess simulator_;
+  SocketClient client_{simulator_.tcp_port()};
+  ControlClient control_{simulator_.directory() + "/control"};
+  bool killed_ = false;
+};
+
+/// A request, the length of its reply, the unit and the function of both frames, and the other fields that
+/// Wireshark shows for each frame.
+struct Exchange {
+  Bytes request;
+  std::size_t answer;
+  std::string unit;
+  std::string function;
+  Packet asked;
+  Packet answered;
+};
+
+TEST(Capture, FunctionAddressDirectionRegistersAndValuesAreDecoded) {
+  Captured line({"EX9042D-M@01", "EX9052D-M@02"});
+  const std::string reference = "modbus.reference_num";
+  const std::string bit_count = "modbus.bit_cnt";
+  const std::string word_count = "modbus.word_cnt";
+  const std::string data = "modbus.data";
+  const std::string bits = "modbus.bitval";
+  const std::string register_number = "modbus.regnum16";
+  const std::string word = "modbus.regval_uint16";
+  const std::string exception = "modbus.exception_code";
+  const std::vector<Exchange> exchanges{
+      {{1, 0x05, 0, 2, 0xFF, 0},
+       8,
+       "1",
+       "5",
+       {{reference, "2"}, {data, "ff00"}},
+       {{reference, "2"}, {data, "ff00"}}},
+      {{1, 0x01, 0, 0, 0, 13},
+       7,
+       "1",
+       "1",
+       {{reference, "0"}, {bit_count, "13"}},
+       {{bits, "0,0,1,0,0,0,0,0,0,0,0,0,0"}}},
+      {{1, 0x01, 0, 2, 0, 1}, 6, "1", "1", {{reference, "2"}, {bit_count, "1"}}, {{bits, "1"}}},
+      {{1, 0x0F, 0, 0, 0, 13, 2, 5, 0x10},
+       8,
+       "1",
+       "15",
+       {{reference, "0"}, {bit_count, "13"}, {data, "0510"}},
+       {{reference, "0"}, {bit_count, "13"}}},
+      {{2, 0x02, 0, 0, 0, 8}, 6, "2", "2", {{reference, "0"}, {bit_count, "8"}}, {{bits, "0,0,0,0,0,0,0,0"}}},
+      {{2, 0x04, 0, 1, 0, 2},
+       9,
+       "2",
+       "4",
+       {{reference, "1"}, {word_count, "2"}},
+       {{register_number, "1,2"}, {word, "0,0"}}},
+      {{1, 0x06, 1, 0xE8, 0, 10},
+       8,
+       "1",
+       "6",
+       {{reference, "488"}, {data, "000a"}},
+       {{reference, "488"}, {data, "000a"}}},
+      {{1, 0x03, 1, 0xE8, 0, 1},
+       7,
+       "1",
+       "3",
+       {{reference, "488"}, {word_count, "1"}},
+       {{register_number, "488"}, {word, "10"}}},
+      {{1, 0x10, 1, 0xE8, 0, 1, 2, 0, 20},
+       8,
+       "1",
+       "16",
+       {{reference, "488"}, {word_count, "1"}, {register_number, "488"}, {word, "20"}},
+       {{reference, "488"}, {word_count, "1"}}},
+      {{1, 0x01, 3, 0, 0, 1}, 5, "1", "1", {{reference, "768"}, {bit_count, "1"}}, {{exception, "2"}}},
+  };
+  for (const Exchange& each : exchanges) {
+    line.ask(with_crc(each.request), each.answer);
+  }
+  const std::vector<Packet> packets =
+      line.decoded({"frame.p2p_dir", "_ws.col.Protocol", "_ws.col.Info", "frame.comment", "mbrtu.unit_id",
+                    "mbrtu.crc16.status", "modbus.func_code", "modbus.request_frame", reference, bit_count,
+                    word_count, data, bits, register_number, word, exception});
+  ASSERT_EQ(packets.size(), 2 * exchanges.size());
+  for (std::size_t i = 0; i < packets.size(); ++i) {
+    const Exchange& exchange = exchanges[i / 2];
+    const bool asks = i % 2 == 0;
+    SCOPED_TRACE("function " + exchange.function + (asks ? ", request" : ", reply"));
+    const Packet& packet = packets[i];
+    EXPECT_EQ(packet.at("frame.p2p_dir"), asks ? kSent : kReceived);
+    EXPECT_EQ(packet.at("_ws.col.Info").find(asks ? "   Query: " : "Response: "), 0U)
+        << packet.at("_ws.col.Info");
+    const bool answers = !asks && exchange.answered.count(exception) == 0;
+    EXPECT_EQ(packet.at("modbus.request_frame"), answers ? std::to_string(i) : "");
+    expect_shown(packet, {{"_ws.col.Protocol", "Modbus RTU"},
+                          {"frame.comment", ""},
+                          {"mbrtu.unit_id", exchange.unit},
+                          {"mbrtu.crc16.status", "1"},
+                          {"modbus.func_code", exchange.function}});
+    expect_shown(packet, asks ? exchange.asked : exchange.answered);
+  }
+}
+
+TEST(Capture, DconIsShownAsText) {
+  Captured line({"EX9052D@02", "EX9042D@01"});
+  line.ask("$02M\r", 8);
+  line.ask("@010005\r", 2);
+  const std::vector<Packet> packets =
+      line.decoded({"frame.p2p_dir", "_ws.col.Protocol", "text", "frame.comment"});
+  const std::vector<std::pair<std::string, std::string>> wanted{
+      {kSent, "$02M\\r"}, {kReceived, "!029052\\r"}, {kSent, "@010005\\r"}, {kReceived, ">\\r"}};
+  ASSERT_EQ(packets.size(), wanted.size());
+  for (std::size_t i = 0; i < packets.size(); ++i) {
+    EXPECT_EQ(packets[i].at("frame.p2p_dir"), wanted[i].first);
+    EXPECT_EQ(packets[i].at("_ws.col.Protocol"), "DCON");
+    EXPECT_EQ(packets[i].at("text").find(wanted[i].second), 0U) << packets[i].at("text");
+    EXPECT_EQ(packets[i].at("frame.comment"), "");
+  }
+}
+
+TEST(Capture, WrongCrcsWrongChecksumsAndCollisionsGetAComment) {
+  Captured line({"EX9042D-M@01", "EX9042D-M@01", "EX9052D@02,checksum=on"});
+  Bytes wrong = with_crc({1, 5, 0, 2, 0xFF, 0});
+  wrong.back() ^= 1U;
+  line.tell(wrong);
+  line.tell({'$', '0', '2', '2', 'B', '9', '\r'});
+  line.tell(with_crc({1, 1, 0, 0, 0, 1}));  // two modules reply
+  const std::vector<Packet> packets = line.decoded(
+      {"frame.p2p_dir", "frame.comment", "mbrtu.unit_id", "modbus.func_code", "mbrtu.crc16.status"});
+  ASSERT_EQ(packets.size(), 5U);
+  expect_shown(packets[0], {{"frame.comment", "wrong CRC"},
+                            {"mbrtu.unit_id", "1"},
+                            {"modbus.func_code", "5"},
+                            {"mbrtu.crc16.status", "0"}});
+  EXPECT_EQ(packets[1].at("frame.comment"), "wrong checksum");
+  EXPECT_EQ(packets[2].at("frame.comment"), "");
+  for (const std::size_t reply : {3U, 4U}) {
+    EXPECT_EQ(packets[reply].at("frame.p2p_dir"), kReceived);
+    EXPECT_EQ(packets[reply].at("frame.comment"),
+              "collision: another station drove the line at the same time");
+  }
+}
+
+TEST(Capture, NoiseGetsAComment) {
+  Captured line({"EX9042D-M@01", "--fault", "bit-errors 0.02"});
+  for (int i = 0; i < 10; ++i) {
+    line.tell(with_crc({1, 1, 0, 0, 0, 1}));
+  }
+  std::size_t damaged = 0;
+  for (const Packet& packet : line.decoded({"frame.comment"})) {
+    damaged += packet.at("frame.comment").find("noise: byte ") == 0 ? 1U : 0U;
+  }
+  EXPECT_GE(damaged, 5U);  // ten requests were sent, each with 80 bits
+}
+
+TEST(Capture, TheLinesOfABusFileAreInterfaces) {
+  const Directory directory;
+  write_file(directory / "bus.json", R"({"capture": "bus.pcapng", "log": "json", "lines": [
+    {"name": "hall", "pty": "hall.tty", "modules": [{"model": "EX9042D", "address": "01"}]},
+    {"name": "yard", "pty": "yard.tty", "modules": [{"model": "EX9052D", "address": "02"}]}]})");
+  ChildProcess simulator({simulator_path(), "bus.json"}, directory.path(), ChildProcess::Errors::WithOutput);
+  ASSERT_TRUE(simulator.wait_for("press Ctrl-C to end"));
+  Terminal yard(directory / "yard.tty", 9600);
+  yard.type("$02M\r");
+  EXPECT_EQ(yard.read_line(), "!029052\r");
+  Terminal hall(directory / "hall.tty", 9600);
+  hall.type("$01M\r");
+  EXPECT_EQ(hall.read_line(), "!019042D\r");
+  EXPECT_EQ(simulator.end(SIGTERM), 0);
+  const std::vector<Packet> packets = decoded(directory / "bus.pcapng", {"frame.interface_name", "text"});
+  ASSERT_EQ(packets.size(), 4U);
+  EXPECT_EQ(packets[1].at("frame.interface_name"), "yard");
+  EXPECT_EQ(packets[3].at("frame.interface_name"), "hall");
+  EXPECT_NE(simulator.output().find("\n{\"time\":"), std::string::npos) << simulator.output();
+  EXPECT_NE(simulator.output().find(R"("line":"yard","from":"02 EX9052D")"), std::string::npos);
+}
+
+TEST(Capture, ForeignTrafficIsNotShownAsAReply) {
+  Captured line({"EX9042D-M@01", "--fault", "foreign-traffic 0501000000083C48 at 1s", "--log"});
+  line.pass("1s");
+  line.wait_for("05 01 00 00 00 08 3C 48");
+  line.tell(with_crc({1, 1, 0, 0, 0, 1}));
+  const std::vector<Packet> packets = line.decoded({"frame.p2p_dir", "_ws.col.Info"});
+  ASSERT_EQ(packets.size(), 3U);
+  EXPECT_EQ(packets[0].at("frame.p2p_dir"), kReceived);
+  EXPECT_EQ(packets[0].at("_ws.col.Info"), "   Query: Unit:   5, Func:   1: Read Coils");
+}
+
+TEST(Capture, ARunInVirtualTimeGivesAReproducibleCapture) {
+  const Directory directory;
+  for (const char* name : {"a", "b"}) {
+    const Finished finished =
+        run({simulator_path(), "EX9042D-M@01", "--fault", "foreign-traffic 0101000000083DCC every 1s",
+             "--speed", "max", "--for", "10s", "--capture", name},
+            directory.path());
+    EXPECT_EQ(finished.status, 0) << finished.error;
+  }
+  EXPECT_EQ(bytes_of_file(directory / "a"), bytes_of_file(directory / "b"));
+  const std::vector<Packet> packets = decoded(directory / "a", {"frame.time_epoch", "modbus.func_code"});
+  ASSERT_GE(packets.size(), 18U);
+  EXPECT_EQ(packets[0].at("frame.time_epoch").substr(0, 4), "1.10");
+}
+
+/// Returns the log without the notes about delays of the host. A delay of the host does not change the events
+/// on the line.
+std::string without_delays_of_the_host(const std::string& log) {
+  std::string kept;
+  std::istringstream lines(log);
+  for (std::string line; std::getline(lines, line);) {
+    kept += line.find("\"note\":\"the host was late by ") == std::string::npos ? line + "\n" : "";
+  }
+  return kept;
+}
+
+TEST(Capture, IsTheSameAtEverySpeed) {
+  const Directory directory;
+  // A foreign frame begins every second. The end of the run cuts off the last one.
+  write_file(directory / "bus.json", R"({"log": "json", "lines": [{"name": "hall",
+    "faults": ["foreign-traffic 0101000000083DCC every 1s", "gone at 5.2s for 1s"],
+    "modules": [{"model": "EX9042D-M"}]}]})");
+  std::vector<std::string> logs;
+  std::vector<std::vector<Packet>> captures;
+  for (const char* speed : {"max", "100", "10"}) {
+    const Finished finished = run({simulator_path(), "bus.json", "--speed", speed, "--for", "6.005s",
+                                   "--capture", std::string("of-") + speed},
+                                  directory.path());
+    EXPECT_EQ(finished.status, 0) << finished.error;
+    logs.push_back(without_delays_of_the_host(finished.output));
+    captures.push_back(
+        decoded(directory / (std::string("of-") + speed), {"exported_pdu.exported_pdu", "frame.len"}));
+  }
+  EXPECT_NE(logs[0].find("\n{\"time\":6.1"), std::string::npos) << logs[0];
+  EXPECT_GE(captures[0].size(), 6U);
+  for (std::size_t i = 1; i < logs.size(); ++i) {
+    EXPECT_EQ(logs[i], logs[0]);
+    EXPECT_EQ(captures[i], captures[0]);
+  }
+}
+
+TEST(Capture, APlayGivesOneInterfacePerRun) {
+  const Directory directory;
+  write_file(directory / "a.txt",
+             "source: manual\nmodel: EX9042D-M\nmodel: EX9043D-M\npreset: protocol=modbus\n\n"
+             "=> 01 05 0002 FF00\n<= 01 05 0002 FF00\n");
+  const Finished finished =
+      run({simulator_path(), "play", "a.txt", "--capture", "line.pcapng", "--log", "json"}, directory.path());
+  EXPECT_EQ(finished.status, 0) << finished.error;
+  EXPECT_NE(finished.error.find("2 runs, 4 steps, 0 failed"), std::string::npos) << finished.error;
+  std::istringstream lines(finished.output);
+  std::size_t frames = 0;
+  for (std::string line; std::getline(lines, line); ++frames) {
+    EXPECT_TRUE(nlohmann::json::accept(line)) << line;
+  }
+  EXPECT_EQ(frames, 4U);
+  const std::vector<Packet> packets =
+      decoded(directory / "line.pcapng",
+              {"frame.interface_name", "modbus.func_code", "modbus.reference_num", "frame.p2p_dir"});
+  ASSERT_EQ(packets.size(), 4U);
+  for (std::size_t i = 0; i < packets.size(); ++i) {
+    expect_shown(packets[i], {{"frame.interface_name", i < 2 ? "a.txt (EX9042D-M)" : "a.txt (EX9043D-M)"},
+                              {"modbus.func_code", "5"},
+                              {"modbus.reference_num", "2"},
+                              {"frame.p2p_dir", i % 2 == 0 ? kSent : kReceived}});
+  }
+}
+
+TEST(Capture, TheLimitsOfWiresharksDecodingMatchTheDocumentation) {
+  Captured line({"EX9042D-M@01"});
+  line.tell(with_crc({1, 0x46, 0}));
+  line.tell(with_crc({1, 0x11}));
+  line.tell(with_crc({1, 0x08, 0, 0, 0x12, 0x34}));
+  line.tell(with_crc({0, 0x05, 0, 1, 0xFF, 0}));
+  const std::vector<Packet> packets =
+      line.decoded({"_ws.col.Info", "_ws.col.Protocol", "exported_pdu.exported_pdu", "mbrtu.unit_id",
+                    "modbus.func_code", "modbus.data", "modbus.diagnostic_code", "data.data"});
+  ASSERT_EQ(packets.size(), 7U);
+  // Wireshark has no name for function 46.
+  EXPECT_NE(packets[0].at("_ws.col.Info").find("Query"), std::string::npos);
+  EXPECT_NE(packets[0].at("_ws.col.Info").find("Unknown function (70)"), std::string::npos);
+  EXPECT_EQ(packets[0].at("modbus.func_code"), "70");
+  EXPECT_EQ(packets[1].at("modbus.data").substr(0, 2), "00");
+  // Wireshark does not decode a frame of four bytes.
+  expect_shown(packets[2], {{"mbrtu.unit_id", ""}, {"modbus.func_code", ""}, {"data.data", "0111c02c"}});
+  EXPECT_EQ(packets[3].at("modbus.func_code"), "17");
+  EXPECT_EQ(packets[4].at("modbus.diagnostic_code"), "0");
+  // Wireshark does not decode a broadcast.
+  expect_shown(packets[6], {{"mbrtu.unit_id", ""}, {"exported_pdu.exported_pdu", "00050001ff00dc2b"}});
+  for (const Packet& packet : packets) {
+    EXPECT_EQ(packet.at("_ws.col.Protocol"), "Modbus RTU");
+  }
+}
+
+TEST(Capture, TimestampsAreTheStartTimePlusTheLineTime) {
+  const auto wall = [] {
+    return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+  };
+  const double before = wall();
+  SimulatorProcess simulator({"EX9042D-M@01", "--tcp", "0", "--capture", "line.pcapng"});
+  SocketClient client(simulator.tcp_port());
+  client.send(with_crc({1, 1, 0, 0, 0, 1}));
+  EXPECT_EQ(client.receive(6).size(), 6U);
+  const double after = wall();
+  simulator.end(SIGTERM);
+  const std::vector<Packet> packets =
+      decoded(simulator.directory() + "/line.pcapng", {"frame.time_epoch", "frame.interface_name"});
+  ASSERT_EQ(packets.size(), 2U);
+  const double asked = std::stod(packets[0].at("frame.time_epoch"));
+  const double answered = std::stod(packets[1].at("frame.time_epoch"));
+  EXPECT_GT(asked, before);
+  EXPECT_LT(answered, after);
+  // The reply begins after the eight characters of the request, a silence of 3.5 characters and the module's
+  // delay.
+  EXPECT_NEAR(answered - asked, (8 + 3.5) * 10 / 9600, 0.001);
+  EXPECT_EQ(packets[0].at("frame.interface_name").find("127.0.0.1:"), 0U);
+}
+
+TEST(Capture, AnUnfinishedFrameIsWrittenAtAnOrderlyExit) {
+  SimulatorProcess simulator(
+      {"EX9042D@01", "--capture", "line.pcapng", "--log", "--speed", "step", "--control", "control"});
+  ControlClient control(simulator.directory() + "/control");
+  Terminal terminal(simulator.tty(), 9600);
+  terminal.type("$01M\r");
+  control.ok("advance 1s after 5 quiet");
+  EXPECT_EQ(terminal.read_line(), "!019042D\r");
+  terminal.type("$01");
+  control.ok("advance 20ms after 3");
+  EXPECT_EQ(simulator.end(SIGTERM), 0);
+  const std::vector<Packet> packets = decoded(simulator.directory() + "/line.pcapng", {"text"});
+  ASSERT_EQ(packets.size(), 3U);
+  EXPECT_EQ(packets[2].at("text").find("$01"), 0U) << packets[2].at("text");
+}
+
+TEST(Capture, AWriteErrorEndsTheRunWithAOneLineErrorAndStatus1) {
+  const Directory directory;
+  const Finished finished = run({simulator_path(), "EX9042D", "--capture", "/dev/full"}, directory.path());
+  EXPECT_EQ(finished.status, 1);
+  EXPECT_EQ(finished.error, "ex9000-sim: --capture /dev/full: cannot be written: No space left on device\n");
+}
+
+TEST(Capture, AWriteErrorLeavesNoCreatedFilesBehind) {
+  const Directory directory;
+  const Finished finished =
+      run({simulator_path(), "EX9042D@01,eeprom=n.bin", "--capture", "/dev/full"}, directory.path());
+  EXPECT_EQ(finished.status, 1);
+  EXPECT_TRUE(std::filesystem::is_empty(directory.path()));
+  write_file(directory / "a.txt", "> $01M\n< !019042D\n");
+  for (const char* arguments : {" EX9042D@01", " EX9042D@01,eeprom=n.bin", " play a.txt EX9042D"}) {
+    const std::string command =
+        "ulimit -f 0; exec " + simulator_path() + arguments + " --capture line.pcapng";
+    const Finished limited = run({"sh", "-c", command}, directory.path());
+    EXPECT_EQ(limited.status, std::string(arguments).find("n.bin") == std::string::npos ? 1 : 2)
+        << limited.error;
+    EXPECT_EQ(std::count(limited.error.begin(), limited.error.end(), '\n'), 1) << limited.error;
+    EXPECT_FALSE(std::filesystem::exists(directory / "line.pcapng"));
+    EXPECT_FALSE(std::filesystem::exists(directory / "n.bin"));
+  }
+}
+
+TEST(Capture, NeverOverwritesAFileThatTheRunUses) {
+  const Directory directory;
+  const std::string bus = R"({"capture": "link", "control": "ctl", "lines": [
+    {"pty": "tty", "modules": [{"model": "EX9042D", "eeprom": "n.bin"}]}]})";
+  write_file(directory / "bus.json", bus);
+  const std::vector<std::pair<std::string, std::string>> cases{{"bus.json", "the bus file bus.json"},
+                                                               {"ctl", "the control socket ctl"},
+                                                               {"tty", "the pseudo-terminal tty"},
+                                                               {"n.bin", "a module's EEPROM file n.bin"}};
+  for (const auto& [path, what] : cases) {
+    std::filesystem::create_symlink(path, directory / "link");
+    for (const std::vector<std::string>& named : {std::vector<std::string>{}, {"--capture", path}}) {
+      std::vector<std::string> command{simulator_path(), "bus.json"};
+      command.insert(command.end(), named.begin(), named.end());
+      const Finished finished = run(command, directory.path());
+      EXPECT_EQ(finished.status, 2) << finished.error;
+      // While the target of the link does not exist, the program cannot detect that the link leads to the
+      // EEPROM file.
+      if (path != "n.bin" || !named.empty()) {
+        EXPECT_NE(finished.error.find(": is " + what + ", "), std::string::npos) << finished.error;
+      }
+      EXPECT_EQ(std::count(finished.error.begin(), finished.error.end(), '\n'), 1) << finished.error;
+    }
+    std::filesystem::remove(directory / "link");
+  }
+  EXPECT_EQ(bytes_of_file(directory / "bus.json"), bus);
+  EXPECT_FALSE(std::filesystem::exists(directory / "n.bin"));
+}
+
+// --- the JSON log ---
+
+TEST(JsonLog, IsTheOnlyTextOnStandardOutput) {
+  const Directory directory;
+  ChildProcess simulator(
+      {"sh", "-c", "exec " + simulator_path() + " EX9042D@01 EX9052D@02,baud=19200 --log json > log"},
+      directory.path(), ChildProcess::Errors::WithOutput);
+  ASSERT_TRUE(simulator.wait_for("press Ctrl-C to end"));
+  Terminal terminal(directory / "ex9000.tty", 9600);
+  terminal.type("$01M\r");
+  EXPECT_EQ(terminal.read_line(), "!019042D\r");
+  EXPECT_EQ(simulator.end(SIGTERM), 0);
+  std::vector<nlohmann::json> objects;
+  std::string line;
+  for (std::istringstream lines(without_delays_of_the_host(bytes_of_file(directory / "log")));
+       std::getline(lines, line);) {
+    objects.push_back(nlohmann::json::parse(line));
+    EXPECT_EQ(objects.back()["line"], "ex9000.tty");
+    EXPECT_TRUE(objects.back()["time"].is_number());
+  }
+  ASSERT_EQ(objects.size(), 3U);
+  EXPECT_EQ(objects[0]["note"], "the line is at 9600 baud 8N1, EX9052D at 02 listens at 19200 baud 8N1");
+  EXPECT_EQ(objects[1]["from"], "master");
+  EXPECT_EQ(objects[1]["text"], "$01M\r");
+  EXPECT_EQ(objects[2]["from"], "01 EX9042D");
+  EXPECT_EQ(objects[2]["bytes"], "21303139303432440D");
+}
+
+}  // namespace
+}  // namespace ex9000::system

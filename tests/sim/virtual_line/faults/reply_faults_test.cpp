@@ -1,0 +1,126 @@
+// Tests what a master receives during each fault that affects replies, in virtual time.
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "tests/sim/virtual_line/faults/fault_bench.hpp"
+
+namespace ex9000::sim {
+namespace {
+
+using namespace std::chrono_literals;
+
+TEST(LostReply, IsNotSentAlthoughTheCommandIsExecuted) {
+  FaultBench bench;
+  bench.add("lost-reply");
+  EXPECT_EQ(bench.ask("@010001"), "");
+  EXPECT_EQ(bench.at(1).outputs(), 1);
+  EXPECT_EQ(answers_of(bench, 1).size(), 0U);
+}
+
+TEST(LateReply, IsCompleteAndDelayedByTheGivenTime) {
+  FaultBench punctual;
+  EXPECT_EQ(punctual.ask("$01M"), kName);
+  FaultBench bench;
+  bench.add("late-reply 50ms");
+  EXPECT_EQ(bench.ask("$01M", 100ms), kName);
+  EXPECT_EQ(answers_of(bench, 1)[0], answers_of(punctual, 1)[0] + 50ms);
+}
+
+TEST(LateReply, MayComeAfterTheNextRequestAndBeforeItsReply) {
+  FaultBench bench;
+  bench.add("late-reply 50ms every 2nd reply");
+  EXPECT_EQ(bench.ask("$01M"), kName);
+  EXPECT_EQ(bench.ask("$01M", 20ms), "");  // the master's timeout is too short
+  EXPECT_EQ(bench.ask("$012", 1ms), "");   // the master sends another request
+  bench.run(100ms);
+  EXPECT_EQ(bench.heard(), kName + "\r!01400600\r");  // both replies, in the order of the requests
+  EXPECT_FALSE(bench.garbled());
+}
+
+TEST(LateReply, KeepsTheOrderOfTheReplies) {
+  FaultBench bench;
+  bench.add("late-reply 200ms");
+  bench.forget();
+  for (const char* command : {"$01M\r", "$012\r", "@01\r", "$01F\r"}) {
+    bench.send(command);
+    bench.run(25ms);
+  }
+  bench.run(500ms);
+  EXPECT_EQ(bench.heard(), kName + "\r!01400600\r>0000\r!01D01.00\r");
+}
+
+TEST(LateReply, IsSentImmediatelyIfItsFaultIsRemovedAndDoesNotDelayTheNextReply) {
+  for (const bool all : {false, true}) {
+    FaultBench bench;
+    const std::size_t fault = bench.add("late-reply 1h");
+    EXPECT_EQ(bench.ask("$01M"), "");
+    if (all) {
+      bench.faults().remove_all();
+    } else {
+      EXPECT_TRUE(bench.faults().remove(fault));
+    }
+    bench.run(50ms);
+    EXPECT_EQ(bench.heard(), kName + "\r");
+    EXPECT_EQ(bench.ask("$01M"), kName);
+  }
+}
+
+TEST(LateReply, IsNeverSentAfterTheSupplyHasFailed) {
+  FaultBench bench;
+  bench.add("late-reply 200ms");
+  EXPECT_EQ(bench.ask("$01M"), "");
+  bench.at(1).power(false);
+  bench.at(1).power(true);
+  bench.forget();
+  bench.run(1s);
+  EXPECT_EQ(bench.heard(), "");
+}
+
+TEST(LateReply, NoiseDamagesOnlyTheLateReply) {
+  FaultBench bench;
+  bench.add("late-reply 50ms every 2nd reply");
+  bench.add("bit-errors 1 every 2nd reply");
+  EXPECT_EQ(bench.ask("$01M"), kName);
+  EXPECT_EQ(bench.ask("$01M", 20ms), "");  // the master's timeout is too short
+  bench.send("@010001\r");                 // the noise does not affect the next request
+  bench.run(200ms);
+  EXPECT_EQ(bench.at(1).outputs(), 1);
+  EXPECT_EQ(bench.heard().find(kName), std::string::npos);
+  EXPECT_TRUE(bench.garbled());
+}
+
+TEST(LostReply, ItsNoiseDoesNotDamageTheNextReply) {
+  FaultBench bench;
+  bench.add("lost-reply every 2nd reply");
+  bench.add("bit-errors 1 every 2nd reply");
+  bench.ask("$01M");
+  EXPECT_EQ(bench.ask("$01M"), "");
+  EXPECT_EQ(bench.ask("$01M"), kName);
+}
+
+TEST(LateDriver, IsDisabledImmediatelyIfItsFaultIsRemoved) {
+  FaultBench bench;
+  bench.add("late-driver 1h");
+  EXPECT_EQ(bench.ask("$01M"), kName);
+  bench.faults().remove_all();
+  bench.run(1ms);
+  EXPECT_EQ(bench.ask("$01M"), kName);
+  EXPECT_FALSE(bench.garbled());
+}
+
+TEST(LateDriver, HoldsTheLineForTheGivenTimeAndBlocksARequestDuringIt) {
+  FaultBench bench;
+  bench.add("late-driver 20ms");
+  EXPECT_EQ(bench.ask("$01M", 15ms), kName);
+  EXPECT_NE(bench.ask("$01M", 15ms), kName);  // the request begins within the 20 ms
+  bench.run(100ms);
+  EXPECT_EQ(bench.ask("$01M", 100ms), kName);
+  const BusRecorder::Driver off = bench.recorder().drivers.back();
+  EXPECT_EQ(off.station, 1U);
+  EXPECT_GE(off.at - bench.recorder().bytes.back().end, 20ms);
+  EXPECT_LE(off.at - bench.recorder().bytes.back().end, 20ms + 3us);
+}
+
+}  // namespace
+}  // namespace ex9000::sim
