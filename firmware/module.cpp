@@ -8,7 +8,7 @@ namespace {
 
 constexpr Duration kInitTimeout = milliseconds(50);  // wire.md D13
 constexpr std::uint8_t kInitModeAddress = 0x00;
-constexpr Duration kClockResolution(1);  // a report may be this much later than its recorded time
+constexpr Duration kClockResolution(1);  // an event may be this much later than its recorded time
 
 constexpr Duration sooner(Duration a, Duration b) { return b < a ? b : a; }
 
@@ -17,6 +17,7 @@ constexpr Duration sooner(Duration a, Duration b) { return b < a ? b : a; }
 void Module::start(std::uint16_t input_levels, Time now, ResetReason reason) {
   const auto levels = static_cast<std::uint16_t>(input_levels & state_.model().input_mask());
   edges_.begin(levels);
+  edges_.time_edges(true);  // the settings, which are not known yet, may contain filters
   state_.inputs.begin(levels);
   init_timeout_.set(now + kInitTimeout);
   second_began_ = now;
@@ -66,6 +67,7 @@ void Module::start_up(Time now) {
   if (start_ == Start::AwaitingInit && (init_switch_.known() || init_timeout_.reached(now))) {
     listen();
     start_ = Start::Done;
+    collect_edges(now);  // a filter may already be waiting for the end of its time
   }
 }
 
@@ -115,9 +117,10 @@ void Module::use_filters() {
   state_.inputs.use_filters(state_.settings.input_filters);
 }
 
-/// Applies the inversion and the filters of the settings. The edges until now count under the previous
+/// Applies the inversion and the filters of the settings. The edges until now count with the previous
 /// inversion and filters.
 void Module::configure_inputs(Time now) {
+  edges_.time_edges(true);  // a new filter uses the times of all edges that are not collected now
   collect_edges(now);
   state_.inputs.invert(state_.settings.inverted_inputs);
   use_filters();
@@ -130,8 +133,8 @@ void Module::count_host_oks() {
   }
   const HostOks::Times times = receiver_.host_oks().take_in_main_loop();
   for (const Time received : {times.first, times.last}) {
-    // A host OK counts from the time of its reception. If the watchdog expired before that time, the host OK
-    // is too late.
+    // A host OK counts from its recorded time, not from now. If the watchdog expired at or before the
+    // recorded time, the host OK is too late.
     expire_host_watchdog(received);
     host_watchdog_.restart(received);
   }
@@ -163,7 +166,8 @@ void Module::expire_host_watchdog(Time now) {
 
 // --- requests ---
 
-/// Judges the waiting frame when its turn-around time is over.
+/// Judges the waiting frame if there is one and `until_request` is 0. Then begins to store the settings that
+/// the request changes, or carries out the request.
 void Module::dispatch(Time now) {
   if (!receiver_.queue().has_frame() || !(until_request(now) == Duration())) {
     return;
@@ -183,8 +187,9 @@ void Module::dispatch(Time now) {
   }
 }
 
-/// Returns the time until the waiting frame may be judged. This is 0 for a Modbus frame, which is complete
-/// only after its silence (exception: wire.md D9). A DCON frame is complete when its turn-around time begins.
+/// Returns the time until the waiting frame may be judged. Call this only if a frame is waiting. The time is
+/// 0 for a Modbus frame, which is complete only after its silence (exception: wire.md D9). A DCON frame is
+/// complete when its turn-around time begins.
 Duration Module::until_request(Time now) const {
   if (state_.speaks_modbus()) {
     return {};
@@ -281,7 +286,7 @@ void Module::commit_effects(Time now) {
     receiver_.answer_to(state_.settings.address);
   }
   if (outcome.asks_for(Effect::TakeCountingEdge)) {
-    collect_edges(now);  // the edges until now count under the previous setting
+    collect_edges(now);  // the edges until now count with the previous setting
     state_.inputs.count_rising_edges((state_.settings.format & kFormatRisingEdge) != 0);
   }
   if (outcome.asks_for(Effect::TakeSample)) {
@@ -324,8 +329,8 @@ void Module::finish_request() {
 
 // --- sleep ---
 
-/// Returns whether a finished memory access, a host OK or a change of the LED pattern has not been processed
-/// yet.
+/// Returns whether `step` or `poll_panel` must process one of the following: the end of loading, storing or
+/// invalidating settings, a host OK, or a change of the LED pattern.
 bool Module::step_is_due() const {
   const bool memory_is_done = !keeper_.busy() && (start_ == Start::Loading || keeper_.has_work() ||
                                                   cycle_.phase() == RequestCycle::Phase::Storing);

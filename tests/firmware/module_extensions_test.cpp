@@ -115,6 +115,25 @@ TEST(InputFilter, TheLevelAtResetIsTheBaselineWithoutFilterTime) {
   EXPECT_EQ(bench.ask("$01L1"), "!000000");
 }
 
+// The module reads its settings, with the filters, only some milliseconds after the reset.
+TEST(InputFilter, ALevelThatChangesWhileTheModuleStartsCountsAfterItsTime) {
+  constexpr milliseconds kFilter{30};
+  for (int offset = 1; offset < 40; ++offset) {
+    ModuleBench bench("EX9052D,baud=115200");
+    ASSERT_EQ(bench.ask("~01X0243001E"), "!01");
+    bench.module().power(false);
+    bench.module().power(true);
+    bench.run(milliseconds(offset));
+    bench.module().set_input(3, true);
+    bench.run(kFilter);
+    const State& state = bench.module().module().state();
+    EXPECT_EQ(state.inputs.levels(), 0) << offset;
+    bench.run(milliseconds(100));
+    EXPECT_EQ(state.inputs.levels(), 1U << 3U) << offset;
+    EXPECT_EQ(state.inputs.latched_high(), 1U << 3U) << offset;
+  }
+}
+
 // --- feeding the host watchdog by requests ---
 
 TEST(FedByRequests, ARequestRestartsTheHostWatchdogAtItsEnd) {

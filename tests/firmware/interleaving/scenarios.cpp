@@ -157,6 +157,12 @@ std::vector<Scenario> scenarios() {
           },
           frame(kRtuHostOk, "host OK"), {{kRtuStore, kRtuReadReply}}, modbus_restarted)),
   };
+  // One of these turns ends the store and applies the filter.
+  for (unsigned jobs = 0; jobs < 6; ++jobs) {
+    all.push_back(dcon("an edge while a filter is switched on",
+                       storing_until(jobs, "~01X02400001\r", "!01\r"), {edge(0, true)}, {{"!01\r"}},
+                       settled_inputs));
+  }
   Scenario counted = modbus("edges while Modbus reads a counter", asked(rtu({1, 0x03, 0, 0, 0, 1}), ""),
                             edges, {{rtu({1, 0x03, 2, 0, 0})}, {rtu({1, 0x03, 2, 0, 1})}}, inputs);
   counted.model = "EX9052D-M";

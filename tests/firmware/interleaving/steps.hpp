@@ -59,6 +59,17 @@ inline Step storing(const std::string& request, const std::string& reply) {
     bench.whole_turn();
   };
 }
+/// Prepares a turn that begins after `jobs` further jobs of the memory.
+inline Step storing_until(unsigned jobs, const std::string& request, const std::string& reply) {
+  return [=](Bench& bench) {
+    storing(request, reply)(bench);
+    for (unsigned job = 0; job < jobs; ++job) {
+      bench.memory_done();
+      bench.whole_turn();
+    }
+    bench.memory_done();
+  };
+}
 /// Prepares a turn that begins while a reply is being sent.
 inline Step replying(const std::string& request, const std::string& reply) { return storing(request, reply); }
 

@@ -32,8 +32,10 @@ class Chip final : public hal::bus::Peripherals {
   static constexpr std::uint32_t kCharacter = 87;  ///< at 115200 baud, microseconds
   static constexpr std::uint32_t kMemoryJob = 3000;
 
-  std::uint32_t now = 1000;
-  std::uint32_t tick_due = 2000;
+  /// The clock begins at 50 minutes, in the second half of its range. An unset time of 0 is then not in the
+  /// past.
+  std::uint32_t now = 3'000'000'000;
+  std::uint32_t tick_due = now + 1000;
   std::uint32_t silence_due = kNever;
   std::uint32_t line_end_due = kNever;
   std::uint32_t wake_due = kNever;
