@@ -294,7 +294,9 @@ def players():
     return Program("transcripts and random sessions", units, LIBRARIES["ex9000_runner"], enough)
 
 
-# The images of boards/pico_image_test.cpp, except those of the Pico W.
+# The sources of pico_image_test.
+PICO_SOURCES = tuple(f"tests/boards/pico_{part}_test.cpp" for part in ("eeprom", "image", "resets"))
+# The images of these tests, except those of the Pico W.
 PICO_IMAGES = (
     PicoImage("pico", "EX9043D-M"),
     PicoImage("pico", "EX9052D"),
@@ -312,7 +314,7 @@ PICO_TESTS = """
     PicoImage.TheModuleCountsEveryPulseOfEightInputsDuringContinuousRequests
     PicoImage.TheModuleReportsTheLevelsOfItsInputs
     PicoImage.TheInitSwitchSelectsTheInitMode
-    PicoImage.TheModuleReportsTheReasonOfEachReset
+    PicoResets.TheModuleReportsTheReasonOfEachReset
     HangingPicoImage.IsResetByTheWatchdogIfTheMainLoopHangs
     PicoWithEeprom.AReplyToAStoreBeginsWithoutWaitingForThePollOfTheMemory
     PicoWithEeprom.APowerFailureDuringAStoreLeavesTheOldOrTheNewName
@@ -324,12 +326,12 @@ PICO_TESTS = """
 def filter_of_pico_tests():
     """Returns the value of GTEST_FILTER that selects PICO_TESTS. A test with parameters runs only with the parameter
     `Nothing`. Ends the program if a test does not exist, because GoogleTest ignores the name of such a test."""
-    source = (ROOT / "tests/boards/pico_image_test.cpp").read_text(encoding="utf-8")
+    source = "".join((ROOT / file).read_text(encoding="utf-8") for file in PICO_SOURCES)
     patterns = []
     for test in PICO_TESTS:
         suite, name = test.split(".")
         if f"({suite}, {name})" not in source:
-            sys.exit(f"mutate: PICO_TESTS: {test}: no such test; use a name from tests/boards/pico_image_test.cpp")
+            sys.exit(f"mutate: PICO_TESTS: {test}: no such test; use a name from {', '.join(PICO_SOURCES)}")
         patterns += [test, f"*/{test}/Nothing"]
     return ":".join(patterns)
 
@@ -354,8 +356,7 @@ def pico_program():
                f'-DEX9000_RP2040_MODULES="{ROOT}/build/rp2040js/node_modules"')
     units = tuple(
         Unit(f"pico-{stem_of(file)}", (file,), options)
-        for file in ("tests/boards/pico_image_test.cpp", "tests/rp2040/emulator_process.cpp",
-                     "tests/rp2040/pico_bench.cpp")
+        for file in (*PICO_SOURCES, "tests/rp2040/emulator_process.cpp", "tests/rp2040/pico_bench.cpp")
     )
     chosen = (("GTEST_FILTER", filter_of_pico_tests()),)
     return Program("pico_image_test", units, LIBRARIES["ex9000_runner"], chosen, PICO_IMAGES, (), 60)
