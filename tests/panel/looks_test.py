@@ -1,6 +1,7 @@
 """Tests the appearance of the panel and its content for a screen reader: contrast, names, narrow windows, the content
 of a drawer, the terminals, and the message of an extra page."""
 
+import tempfile
 import unittest
 
 from panel_page import DI3, INPUTS, OUTPUTS, Panel, text
@@ -117,6 +118,24 @@ class Looks(Panel):
         self.picture("timed-output", whole=True)
         self.assertEqual(master.say("@0100"), ">")
         self.browser.until(f"{left}.every((each) => each.hidden)")
+
+    def test_the_drawer_states_where_the_settings_come_from(self):
+        with tempfile.NamedTemporaryFile() as image:
+            image.write(bytes(8192))
+            image.flush()
+            simulator = self.show("EX9042D-M@01", f"EX9052D,eeprom={image.name}")
+            blank, not_valid = OUTPUTS, "[aria-label='2 EX9052D']"
+            for plate, origin in (
+                (blank, "EEPROM: blank, factory settings"),
+                (not_valid, "EEPROM: no valid copy, factory settings"),
+            ):
+                self.browser.click(f"{plate} summary")
+                self.browser.until(text(plate, ".drawer h4", origin))
+            master = Master(simulator.lines[0])
+            self.addCleanup(master.close)
+            self.assertEqual(master.say("~01ONAME"), "!01")
+            self.browser.until(text(not_valid, ".drawer h4", "Settings in EEPROM"))
+        self.expect_accessible()
 
     def let_in(self, simulator):
         """Returns a new page, or None if the server accepts no more pages."""
