@@ -24,8 +24,8 @@ constexpr std::string_view kPort =
 constexpr std::string_view kNumber =
     R"({"anyOf": [{"type": "integer", "minimum": 0}, {"type": "string", "pattern": "^[0-9]+$"}]})";
 
-/// Records the place of each member of an object, and calls the `take` of the member's key. Rejects unknown
-/// keys.
+/// Records the place of each member of a JSON object, and calls the `take` of the member's key. Rejects
+/// unknown keys.
 template <class Object, std::size_t kSize>
 void read_members(const Node& node, const std::array<BusFileKey<Object>, kSize>& keys, Object& object) {
   node.members([&](const std::string& name, const Node& member) {
@@ -122,10 +122,10 @@ const std::array<BusFileKey<LineSetup>, 12> line_keys{{
      [](LineSetup& line, const Node& value) { line.serial = value.text(); }},
     {"echo", kFlag, "ignores the echo of an adapter that receives what it sends",
      [](LineSetup& line, const Node& value) { line.echo = value.flag(); }},
-    {"baud", kRate, "the line's baud rate until a master sets one (default: the first module's)",
+    {"baud", kRate, "the line's baud rate at the start; a master can change it (default: the first module's)",
      [](LineSetup& line, const Node& value) { line.baud = parse_baud_rate(value.number_or_text()); }},
     {"format", kFormat,
-     "the line's format; a pseudo-terminal and TCP do not carry one (default: the first module's)",
+     "the line's format; a pseudo-terminal and TCP do not carry it (default: the first module's)",
      [](LineSetup& line, const Node& value) { line.format = parse_line_format(value.text()); }},
     {"line", R"({"enum": ["paced", "instant"]})",
      "paced: bytes take as long as on a real line; instant: bytes take no time (default: paced)",

@@ -1,5 +1,5 @@
-// The keys of a bus file, one row for each key. The reader and its messages use these tables. The JSON Schema
-// and the table of keys in the documentation are generated from them.
+// Tables of the keys of a bus file, with one row for each key. The reader and its messages use these tables.
+// The JSON Schema and the tables of keys in sim/docs/bus-files.md are generated from them.
 #pragma once
 
 #include <array>
@@ -29,7 +29,7 @@ extern const std::array<BusFileKey<Setup>, 7> bus_keys;
 extern const std::array<BusFileKey<LineSetup>, 12> line_keys;
 extern const std::array<BusFileKey<ModuleObject>, 12> module_keys;
 
-/// Reads all keys of a bus file. Throws like Node.
+/// Reads all keys of the bus file whose root is `root`. Throws the exceptions of Node.
 Setup read_bus(const Node& root);
 
 }  // namespace ex9000::sim

@@ -10,7 +10,7 @@ namespace {
 
 using json = nlohmann::ordered_json;
 
-/// Iterates over the characters and counts lines.
+/// Iterates over the characters of a text and increments `*line` at the end of each line.
 class CountingIterator {
  public:
   using difference_type = std::ptrdiff_t;
@@ -85,7 +85,7 @@ class Locator final : public nlohmann::json_sax<json> {
 
   /// Turns a message of the parser into `LINE: what is wrong`. The message is either
   /// `[json.exception.parse_error.101] parse error at line 3, column 5: syntax error while ...` or, for other
-  /// errors, `[json.exception.out_of_range.406] number overflow ...`
+  /// errors, `[json.exception.out_of_range.406] number overflow ...`.
   static std::string located_message(const std::string& text, unsigned line) {
     const std::string lead = "] parse error at line ";
     const auto at = text.find(lead);
@@ -117,8 +117,8 @@ class Locator final : public nlohmann::json_sax<json> {
   }
 
   bool open(bool is_array) {
-    // No bus file requires more levels. Without this limit, a deeply nested file would take much memory,
-    // because this class stores the whole path of each value.
+    // No bus file requires more levels than kDeepest. Without this limit, a deeply nested file would take
+    // much memory, because this class stores the whole path of each value.
     constexpr std::size_t kDeepest = 16;
     if (open_.size() == kDeepest) {
       throw std::invalid_argument(std::to_string(line_) +

@@ -15,8 +15,8 @@ struct LocatedJson {
 };
 
 /// Parses `text`. Throws std::invalid_argument with the message `LINE: what is wrong` if `text` is not JSON,
-/// a number is too large, an object has the same key twice, a text contains NUL, or values are nested deeper
-/// than in any bus file.
+/// a number is too large, an object has the same key twice, a text contains NUL, or there are more than 16
+/// levels of arrays and objects.
 LocatedJson parse_located(const std::string& text);
 
 /// Returns the path of a member of the object at `path`.

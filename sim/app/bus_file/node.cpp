@@ -44,8 +44,8 @@ void Node::refuse_at(const std::string& path, const std::string& what) const {
   throw Located(place_of(path) + (path.empty() ? "" : path + ": ") + what);
 }
 
-/// Returns the place of the value at `path`. If the file does not contain this value, returns the place of
-/// the object or list that should contain it.
+/// Returns `FILE:LINE: ` for the value at `path`. If the file does not contain this value, LINE is the line
+/// of the innermost object or list of the file that should contain it.
 std::string Node::place_of(const std::string& path) const {
   std::string place = path;
   while (file_->lines.find(place) == file_->lines.end()) {

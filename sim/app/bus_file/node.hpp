@@ -10,8 +10,9 @@
 
 namespace ex9000::sim {
 
-/// All functions report errors as std::invalid_argument with a one-line message: `FILE:LINE: PATH: what is
-/// wrong; what would be right`.
+/// The functions report errors as std::invalid_argument with a one-line message, `FILE:LINE: PATH: TEXT`.
+/// TEXT says what is wrong or what is expected. PATH is the path of the value, for example `lines[0].baud`.
+/// The message has no PATH if the value is the whole file.
 class Node {
  public:
   using json = nlohmann::ordered_json;
@@ -27,13 +28,14 @@ class Node {
     refuse_at(member_of(path_, path), what);
   }
 
-  /// Returns the place in the form of messages: the file, the line number, and the path of the value.
+  /// Returns the place as messages show it, `FILE:LINE: PATH`.
   [[nodiscard]] std::string place() const { return place_of(path_) + path_; }
 
   /// Returns the key of this node, which must be a member of an object.
   [[nodiscard]] std::string key() const { return path_.substr(path_.rfind('.') + 1); }
 
-  /// Calls `take(key, member)` for each member of an object.
+  /// Calls `take(key, member)` for each member of this object. Adds the place of the member to an error of
+  /// `take` that has no place yet. Reports an error if this value is not an object.
   template <class Take>
   void members(Take take) const {
     if (!value_->is_object()) {
@@ -45,7 +47,8 @@ class Node {
     }
   }
 
-  /// Calls `take(element)` for each element of a list.
+  /// Calls `take(element)` for each element of this list. Adds the place of the element to an error of `take`
+  /// that has no place yet. Reports an error if this value is not a list.
   template <class Take>
   void elements(Take take) const {
     if (!value_->is_array()) {

@@ -48,7 +48,7 @@ struct WritingTexts {
   std::optional<std::string> capture;
 };
 
-/// The arguments as text.
+/// The arguments that define a Setup, as text.
 struct Texts {
   LineTexts line;
   std::optional<std::string> control;
@@ -68,8 +68,8 @@ void apply_writing(const WritingTexts& texts, Writing& writing) {
   }
 }
 
-/// Returns the prefix of the error message: the place in the bus file, or the option or the module's key on
-/// the command line.
+/// Returns the prefix of the error message: the place in the bus file if `setup` contains it, otherwise the
+/// option of the command line, or `eeprom=` for this key of a module.
 std::string where(const SetupError& error, const Setup& setup) {
   const Places& places = error.line ? setup.lines[*error.line].places : setup.places;
   const auto place = places.find(error.key);
@@ -91,8 +91,8 @@ std::optional<PanelSetup> parse_panel_option(const std::string& text) {
   return parse_panel(text == kUsualPort ? "" : text);
 }
 
-/// Applies the options that belong to the program, not to a line. These options override the keys of a bus
-/// file.
+/// Applies the options that belong to the program, not to a line. An option overrides the key with the same
+/// name if the bus file contains this key.
 void apply_options(const Texts& texts, Setup& setup) {
   take_option("--speed", texts.speed, parse_speed, setup.speed);
   take_option("--threads", texts.threads, parse_threads, setup.threads);
@@ -114,17 +114,19 @@ void apply_options(const Texts& texts, Setup& setup) {
   }
 }
 
-/// Returns the setup that the arguments describe, after all checks. Reads the bus file if there is one.
-/// Throws std::invalid_argument with a one-line message.
+/// Returns the setup that the arguments describe. Reads the bus file if the arguments name one, and calls
+/// `check`. Throws std::invalid_argument with a one-line message.
 Setup setup_of(const Texts& texts) {
   if (texts.line.modules.empty()) {
     fail("no module given; try 'ex9000-sim EX9042D-M' or --help");
   }
   Setup setup;
-  if (std::any_of(texts.line.modules.begin(), texts.line.modules.end(), is_bus_file)) {
-    reject_line_options(texts.line);
-    setup = read_bus_file(texts.line.modules[0]);
-    setup.file = texts.line.modules[0];
+  const std::vector<std::string>& arguments = texts.line.modules;
+  const auto bus_file = std::find_if(arguments.begin(), arguments.end(), is_bus_file);
+  if (bus_file != arguments.end()) {
+    reject_line_options(*bus_file, texts.line);
+    setup = read_bus_file(*bus_file);
+    setup.file = *bus_file;
   } else {
     setup.lines.push_back(line_of(texts.line));
   }
@@ -160,9 +162,9 @@ bool is_number(const std::string& text) {
   return !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
 }
 
-/// Returns the arguments with a value attached to each --log and --panel: the next word if it is a value of
-/// the option, otherwise the default value. CLI11 itself would take any next word as the value, even if that
-/// word is a module.
+/// Returns the arguments with `=` and a value appended to each word `--log` or `--panel`. The value is the
+/// next word if that word can be a value of the option, otherwise `text` for --log and kUsualPort for
+/// --panel. CLI11 itself would take any next word as the value, even if that word is a module.
 std::vector<std::string> with_optional_values(int argc, const char* const* argv) {
   std::vector<std::string> words;
   for (int i = 1; i < argc; ++i) {
@@ -226,20 +228,21 @@ CLI::App* add_describe(CLI::App& app, DescribeTexts& texts) {
   describe
       ->add_option(
           "--format", texts.format,
-          "markdown (default), json and csv describe one model or all models; the others are for the tool of "
-          "that name and require a model that speaks Modbus")
+          "set the format: markdown (default), json and csv describe one model or all models; the others are "
+          "for the tool of that name and require a model that speaks Modbus")
       ->type_name(describe_formats());
   describe
       ->add_option("--address", texts.address,
-                   "the module's address in hex, for home-assistant and node-red (default: 01)")
+                   "set the module's address in hex, for home-assistant and node-red (default: 01)")
       ->type_name("HH");
   describe
-      ->add_option("--tcp", texts.tcp,
-                   "the TCP port of the simulator, for home-assistant and node-red (default: 127.0.0.1:5020)")
+      ->add_option(
+          "--tcp", texts.tcp,
+          "name the TCP port of the simulator, for home-assistant and node-red (default: 127.0.0.1:5020)")
       ->type_name("HOST:PORT");
   describe
       ->add_option("--modbus-tcp", texts.modbus_tcp,
-                   "the Modbus TCP port of the simulator, in place of --tcp, for the same formats")
+                   "name the Modbus TCP port of the simulator, in place of --tcp, for the same formats")
       ->type_name("HOST:PORT");
   return describe;
 }
@@ -250,7 +253,8 @@ Parsed printed(const std::string& text) {
   return parsed;
 }
 
-/// Returns the options and positional arguments given for `app` itself, in the order of --help.
+/// Returns the options and positional arguments that the user gave for `app` itself, not for a subcommand, in
+/// the order in which they were added to `app`.
 std::vector<const CLI::Option*> given_of(const CLI::App& app) {
   std::vector<const CLI::Option*> given;
   for (const CLI::Option* option : app.get_options()) {
@@ -326,8 +330,9 @@ Parsed parse_arguments(int argc, const char* const* argv) {
   app.add_option("--serial", texts.line.serial, "connect the modules to a real line through this serial port")
       ->type_name("DEVICE");
   app.add_flag("--echo", texts.line.echo, "ignore the echo of a serial adapter that receives what it sends");
-  app.add_option("--baud", texts.line.baud,
-                 "set the line's baud rate until a master sets one (default: the first module's)")
+  app.add_option(
+         "--baud", texts.line.baud,
+         "set the line's baud rate at the start; a master can change it (default: the first module's)")
       ->type_name("RATE");
   app.add_option("--format", texts.line.format,
                  "set the line's format: 8N1, 8N2, 8E1 or 8O1 (default: the first module's)")

@@ -21,12 +21,12 @@ struct Parsed {
   int exit_status = 0;
 };
 
-/// Returns `text` as one line, because arguments may contain newlines: replaces each newline by a blank, and
-/// removes the blanks at the end.
+/// Returns `text` with a blank in place of each newline, and without blanks at the end. An error message must
+/// be one line, but the arguments that it quotes may contain newlines.
 std::string one_line(std::string text);
 
-/// Parses the command line and reads the bus file that it names. Wrong arguments do not cause an exception:
-/// the result then has the error text and the exit status.
+/// Parses the command line, and reads the bus file if the command line names one. Wrong arguments do not
+/// cause an exception: the result then has the error text and the exit status.
 Parsed parse_arguments(int argc, const char* const* argv);
 
 }  // namespace ex9000::sim

@@ -5,7 +5,8 @@
 
 namespace ex9000::sim::help {
 
-/// Returns the syntax of modules, control commands and faults, and examples.
+/// Returns the syntax of modules, control commands, faults and inputs that change by themselves, and
+/// examples.
 std::string of_the_program();
 /// Returns the syntax of the steps of transcripts and scenarios.
 std::string of_play();

@@ -11,9 +11,9 @@ namespace ex9000::sim {
 
 namespace {
 
-/// Removes the module's position at the start of `text`. Returns the position, counted from 0; nullopt if
-/// `text` does not start with a number. Throws std::invalid_argument if the number is not from 1 to
-/// `modules`.
+/// Removes the module's position, counted from 1, from the start of `text`, with the blank after it. Returns
+/// the position, counted from 0. Returns nullopt and changes nothing if the characters before the first blank
+/// are not a number. Throws std::invalid_argument if the number is not from 1 to `modules`.
 std::optional<std::size_t> take_position(std::string& text, std::size_t modules) {
   const auto end = text.find(' ');
   if (text.empty() || end == 0 || text.find_first_not_of("0123456789") < end) {
@@ -75,7 +75,7 @@ LineSetup line_of(const LineTexts& texts) {
   return line;
 }
 
-void reject_line_options(const LineTexts& texts) {
+void reject_line_options(const std::string& bus_file, const LineTexts& texts) {
   const std::pair<const char*, bool> given[] = {{"--input", !texts.inputs.empty()},
                                                 {"--fault", !texts.faults.empty()},
                                                 {"--pty", texts.pty.has_value()},
@@ -93,7 +93,7 @@ void reject_line_options(const LineTexts& texts) {
     }
   }
   if (texts.modules.size() != 1) {
-    fail(texts.modules[0] + ": a bus file has all modules; leave out the other arguments");
+    fail(bus_file + ": a bus file has all modules; leave out the other arguments");
   }
 }
 

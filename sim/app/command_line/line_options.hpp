@@ -1,4 +1,4 @@
-// Reads the modules and the options of a single line from the command line.
+// Reads the modules and the options of a single RS-485 line from the command line.
 #pragma once
 
 #include <optional>
@@ -28,8 +28,8 @@ struct LineTexts {
 /// Returns the line that the arguments define. Throws std::invalid_argument with a one-line message.
 LineSetup line_of(const LineTexts& texts);
 
-/// Rejects modules and options of a line if the arguments also name a bus file, because the bus file defines
-/// the lines. Throws std::invalid_argument with a one-line message.
-void reject_line_options(const LineTexts& texts);
+/// Rejects all arguments in `texts` except `bus_file`, because the bus file defines the lines.
+/// `texts.modules` must contain `bus_file`. Throws std::invalid_argument with a one-line message.
+void reject_line_options(const std::string& bus_file, const LineTexts& texts);
 
 }  // namespace ex9000::sim

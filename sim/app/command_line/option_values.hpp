@@ -8,8 +8,8 @@
 
 namespace ex9000::sim {
 
-/// Returns the result of `parse` for `text`, the value of an option. Adds the option to the message of an
-/// exception of `parse`.
+/// Returns the result of `parse` for `text`, the value of an option. If `parse` throws an exception, the
+/// message begins with the option.
 template <class Parse>
 auto of_option(const char* option, const std::string& text, Parse parse) {
   return with_place(std::string(option) + ": ", [&] { return parse(text); });

@@ -18,8 +18,9 @@ class PlayRecord final : public play::PlayObserver {
  public:
   using Print = LineRecord::Print;
 
-  /// Writes the log and the capture that `writing` requests. The first call of `run_begins` opens the capture
-  /// file. That call and all later calls throw the exceptions of Capture.
+  /// Writes the log and the capture that `writing` requests. `print` receives the lines of the log. The first
+  /// call of `run_begins` opens the capture file if `writing` names one. That call and later calls may throw
+  /// the exceptions of Capture.
   PlayRecord(Writing writing, Print print);
 
   // --- play::PlayObserver ---
@@ -31,9 +32,9 @@ class PlayRecord final : public play::PlayObserver {
  private:
   Writing writing_;
   Print print_;
-  std::optional<NewFile> capture_file_;  ///< kept as soon as it contains a line
+  std::optional<NewFile> capture_file_;  ///< removes a new capture file if no line has started
   std::unique_ptr<Capture> capture_;
-  std::string what_;  ///< the file or model that is played
+  std::string what_;  ///< the file that is played and, for a transcript, the model
   std::vector<std::unique_ptr<LineRecord>> lines_;
 };
 

@@ -33,15 +33,15 @@ void run(const Setup& setup) {
   const auto gives_up = [&stop_signals] { return stop_signals.arrived(); };
   StandardStream output(STDOUT_FILENO, kOutput, gives_up);
   StandardStream errors(STDERR_FILENO, "standard error", gives_up);
-  // The program ends when the reader of its log closes the pipe.
+  // If the reader of the log has closed the pipe, the program ends at the next write.
   const auto print_line = [&io, &output](const std::string& line) {
     if (!output.write(line + "\n")) {
       io.stop();
     }
   };
   boost::asio::signal_set signals(io);
-  // From here on, a stop signal ends `io` instead of the process, so the program removes the files that it
-  // creates.
+  // From here on, a stop signal stops `io` instead of the process, so the destructors run. They remove the
+  // control socket and the links to pseudo-terminals.
   add_stop_signals(signals);
   signals.async_wait([&io](const boost::system::error_code& /*error*/, int /*signal*/) { io.stop(); });
   const auto greet = [&errors](const std::string& text) { errors.write(text + "\n"); };
@@ -76,8 +76,9 @@ int report_error(const std::exception& error, int status) {
   return status;
 }
 
-/// Opens /dev/null in place of each standard stream that is closed. Otherwise the next file that the program
-/// opens would get the descriptor of that stream, and the log would be written into that file.
+/// Opens /dev/null in place of each standard stream that is closed. Otherwise a file that the program opens
+/// later could get the descriptor of standard output or standard error, and the program would write its log
+/// or its messages into that file.
 void occupy_standard_streams() {
   int fd = open("/dev/null", O_RDWR);
   while (fd >= 0 && fd <= STDERR_FILENO) {
@@ -93,7 +94,7 @@ void occupy_standard_streams() {
 int run_program(int argc, const char* const* argv) {
   occupy_standard_streams();
   // While these signals are ignored, a write to a closed pipe or beyond the file-size limit does not end the
-  // program. Instead, the write fails, and its caller handles the error.
+  // program. Instead, the write returns an error.
   static_cast<void>(std::signal(SIGPIPE, SIG_IGN));
   static_cast<void>(std::signal(SIGXFSZ, SIG_IGN));
   try {

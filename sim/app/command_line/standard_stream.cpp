@@ -38,7 +38,8 @@ bool StandardStream::write(const std::string& text) {
   return !ended_;
 }
 
-/// Waits until the stream accepts output. Returns false if `gives_up` has returned true.
+/// Waits until the stream accepts output or a write would fail immediately. Returns false if `gives_up` has
+/// returned true.
 bool StandardStream::wait_for_room() const {
   // A signal that another thread receives does not interrupt poll(). Therefore poll() has a time limit, in
   // milliseconds, after which this function calls `gives_up` again.

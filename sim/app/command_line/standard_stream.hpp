@@ -14,10 +14,10 @@ class StandardStream {
   StandardStream(
       int file, std::string name, std::function<bool()> gives_up = [] { return false; });
 
-  /// Writes `text`. If the pipe is full, blocks until the reader reads or `gives_up` returns true. Returns
-  /// false if `gives_up` has returned true or the reader has closed the pipe. Throws std::runtime_error with
-  /// a one-line message if the write fails for another reason. In all these cases, later calls discard their
-  /// text and return false.
+  /// Writes `text`. If the stream accepts no output, for example because a pipe is full, blocks until the
+  /// reader reads or closes the pipe, or until `gives_up` returns true. Returns false if `gives_up` has
+  /// returned true or the reader has closed the pipe. Throws std::runtime_error with a one-line message if
+  /// the write fails for another reason. In all these cases, later calls discard their text and return false.
   bool write(const std::string& text);
 
  private:

@@ -1,4 +1,4 @@
-// The words that descriptions use for the access to a command or a register.
+// The words that descriptions use for the access of DCON commands and of rows of the Modbus map.
 #pragma once
 
 #include "firmware/dcon/commands.hpp"

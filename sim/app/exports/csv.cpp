@@ -11,11 +11,11 @@ namespace {
 /// The cells of one row, in the order of the titles.
 struct Row {
   std::string model;
-  std::string table;    ///< `DCON command`, or the table of the coil or register
-  std::string address;  ///< the protocol address of a coil or register, in decimal
+  std::string table;    ///< `DCON command`, or Area::name of the coil, discrete input or register
+  std::string address;  ///< the protocol address of a coil, discrete input or register, in decimal
   std::string plc_number;
   std::string channel;
-  std::string functions;  ///< hex codes
+  std::string functions;  ///< Modbus function codes in hex
   std::string command;
   std::string reply;
   std::string access;
@@ -25,7 +25,8 @@ struct Row {
   std::string meaning;
 };
 
-/// Returns the text of a cell, in quotes if it contains a comma, a quote or a line break.
+/// Returns the text of a cell. Puts the text in quotes and doubles each quote in it if the text contains a
+/// comma, a quote or a line break.
 std::string quoted_cell(const std::string& text) {
   if (text.find_first_of(",\"\r\n") == std::string::npos) {
     return text;

@@ -19,7 +19,7 @@ namespace {
 struct Format {
   const char* name = "";
   std::string (*of_models)(const Models& models) = nullptr;
-  // The next two functions require a model with Modbus.
+  // The next two functions require a model that supports Modbus.
   std::string (*of_model)(const Model& model) = nullptr;
   std::string (*of_module)(const Model& model, const NetworkAddress& network_address) = nullptr;
 };
@@ -85,7 +85,7 @@ NetworkAddress parse_network_address(const DescribeTexts& texts) {
   return network_address;
 }
 
-/// Rejects options that are valid only with formats for one module.
+/// Rejects --address, --tcp and --modbus-tcp, which are valid only with a format that sets `of_module`.
 void refuse_place(const DescribeTexts& texts) {
   for (const auto& [option, given] :
        {std::pair("--address", texts.address.has_value()), std::pair("--tcp", texts.tcp.has_value()),

@@ -1,4 +1,4 @@
-// `ex9000-sim describe`: describes a model in a form for people, programs or another tool.
+// `ex9000-sim describe`: describes one model or all models, for people, for programs or for another tool.
 #pragma once
 
 #include <optional>
@@ -6,7 +6,7 @@
 
 namespace ex9000::sim {
 
-/// The arguments of the command line; the initial values are the defaults.
+/// The arguments of `describe`. An argument that the user does not give has its initial value here.
 struct DescribeTexts {
   std::string model;
   std::string format = "markdown";
@@ -15,7 +15,7 @@ struct DescribeTexts {
   std::optional<std::string> modbus_tcp = std::nullopt;
 };
 
-/// Returns `markdown|json|...`, for the help text.
+/// Returns the names of the formats: `markdown|json|...`.
 std::string describe_formats();
 
 /// Returns the text to print. Without a model, the text describes all models; some formats require a model.

@@ -18,9 +18,9 @@ std::string markdown_of_all();
 std::string markdown_of(const Model& model);
 
 /// Returns JSON, for programs: an object with the firmware's version and, under `models`, one object for each
-/// model with its properties, DCON commands, Modbus functions and registers. Numbers are JSON numbers, except
-/// PLC numbers, which are strings. Addresses are protocol addresses. Missing texts and numbers are null;
-/// missing lists are empty.
+/// model with its properties, DCON commands, Modbus functions and Modbus map. Counts, codes and addresses are
+/// JSON numbers; PLC numbers are strings. Addresses are protocol addresses. Missing texts and numbers are
+/// null; missing lists are empty.
 std::string json_of(const Models& models);
 
 /// Returns CSV, for spreadsheets and tag lists: a header row and one row for each DCON command, coil,
@@ -37,13 +37,14 @@ struct NetworkAddress {
   bool modbus_tcp = false;      ///< the port uses Modbus TCP; false: the port passes RTU frames
 };
 
-/// Returns YAML for Home Assistant's modbus integration: a hub with switches, binary sensors and sensors. The
-/// user saves the text as FILE and adds `modbus: !include FILE` to configuration.yaml.
+/// Returns YAML for Home Assistant's modbus integration: a hub with the model's switches (if it has outputs),
+/// binary sensors and sensors, and comments with actions. The user saves this text as FILE and adds the line
+/// `modbus: !include FILE` to configuration.yaml.
 std::string home_assistant_hub(const Model& model, const NetworkAddress& network_address);
 
 /// Returns a flow to import into Node-RED with node-red-contrib-modbus, as a JSON array: a tab that reads the
-/// values of `shown_by`, switches outputs, and clears latches, counters and the timeout status. The ids
-/// depend only on the model and the address.
+/// values of `shown_by`, switches outputs, and clears latches, counters and the timeout status. The ids of
+/// the nodes are the same in all flows for the same model and Modbus address.
 std::string node_red_flow(const Model& model, const NetworkAddress& network_address);
 
 /// Returns a device template of Wiren Board's wb-mqtt-serial, for /etc/wb-mqtt-serial.conf.d/templates.

@@ -99,8 +99,8 @@ class Hub {
   [[nodiscard]] Json toggle(const Shown& shown, unsigned index) const {
     Json entity = this->entity(shown, index, kOftenSeconds);
     entity["write_type"] = "coil";
-    // Without `verify`, the switch would show the last command, even after a timeout or a write by another
-    // master.
+    // Without `verify`, the switch would show the last command, even after a timeout of the host watchdog or
+    // a write by another master.
     entity["verify"] = {{"input_type", "coil"}, {"address", shown.first + index}};
     return entity;
   }

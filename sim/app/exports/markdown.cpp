@@ -25,7 +25,7 @@ constexpr const char* kNone = "-";
 
 std::string code(std::string_view text) { return "`" + std::string(text) + "`"; }
 
-/// Escapes the pipe, which would end the cell even inside backticks. Returns `-` for an empty text.
+/// Escapes each pipe, because a pipe would end the cell even inside backticks. Returns `-` for an empty text.
 std::string escaped_cell(std::string_view text) {
   std::string escaped;
   for (const char character : text) {
@@ -70,7 +70,8 @@ constexpr std::array<Kind, 4> kKinds{{
     {"-M", [](const Model& model) { return model.speaks_modbus(); }},
 }};
 
-/// Describes the models for which `has` is true: by their kind if one matches, otherwise by their names.
+/// Describes the models for which `has` is true: by the name of a kind that contains these models and no
+/// others of `models`, or by their own names if there is no such kind.
 template <class Has>
 std::string who(const Models& models, Has has) {
   for (const Kind& kind : kKinds) {
@@ -88,7 +89,8 @@ std::string who(const Models& models, Has has) {
   return joined(names, ", ");
 }
 
-/// Adds the cell of the column that names models. A description of a single model has no such column.
+/// Adds the title or a cell of the column that names models. A description of a single model has no such
+/// column.
 void add_who(const Models& models, Cells& cells, const std::string& text) {
   if (models.size() > 1) {
     cells.push_back(text);
@@ -122,7 +124,8 @@ std::string baud_codes() {
   return joined(codes, ", ");
 }
 
-/// Explains the letters in the syntax and the other possible replies.
+/// Returns the notes above the table of commands, for example on the letters in the syntax and on the replies
+/// to rejected commands.
 std::string dcon_notes(const Models& models) {
   const bool outputs = any_has(models, [](const Model& model) { return model.has_outputs(); });
   const bool inputs = any_has(models, [](const Model& model) { return model.has_inputs(); });
@@ -135,8 +138,9 @@ std::string dcon_notes(const Models& models) {
   text += inputs ? " `$AALS` has latches in place of inputs, and 00 in place of outputs." : "";
   text += outputs ? " `~AA4V` has 00 in place of inputs." : "";
   text +=
-      "\n- `TT` is 40; `CC` the baud rate: " + baud_codes() +
-      "; `FF` is 80 if the counters count rising edges, otherwise 00; the checksum adds 40.\n"
+      "\n- `TT` is 40; `CC` is the baud rate: " + baud_codes() +
+      "; plus 40, 80 or C0 for the line formats 8N2, 8E1 and 8O1; `FF` is 80 if the counters count rising "
+      "edges, otherwise 00; the checksum adds 40.\n"
       "- `SS` is 04 or 84 after a timeout of the host watchdog, 80 while it is enabled, otherwise 00; the "
       "table above lists the values of each model.\n"
       "- The reply to a rejected command is `?AA`.";
@@ -148,8 +152,8 @@ std::string dcon_notes(const Models& models) {
          "to GND.\n";
 }
 
-/// Formats alternatives, for example `!AA10 or !AA11`, as separate pieces of code. Returns `-` for an empty
-/// text.
+/// Formats a reply as code, and alternatives, for example `!AA10 or !AA11`, as separate pieces of code.
+/// Returns `-` for an empty text.
 std::string reply_code(std::string_view reply) {
   constexpr std::string_view kOr = " or ";
   const auto at = reply.find(kOr);
@@ -220,8 +224,8 @@ std::string map_table(const Model& model) {
 
 std::string map_notes() {
   return "Addresses count from 0, as on the line; PLC numbers count from 1 after the digit of their table. "
-         "Written values are stored in the EEPROM, except writes that set outputs or clear latches or "
-         "counters. "
+         "Writes store their values in the EEPROM, except writes that set outputs, and writes that clear "
+         "latches, counters or the count of timeouts. "
          "Writes that drive outputs get exception 04 while the timeout status is set. "
          "Baud codes are those of `CC` above.\n";
 }

@@ -13,7 +13,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr unsigned kPollSeconds = 1;
 
-// Positions on the tab, in pixels.
+// The layout of the tab, in pixels: the left column's x, and the distances between columns and between rows.
 constexpr unsigned kLeft = 140;
 constexpr unsigned kColumn = 240;
 constexpr unsigned kRow = 40;
@@ -102,7 +102,7 @@ class Flow {
     }
   }
 
-  /// Adds a node that reads all channels with one request, and a node that shows them.
+  /// Adds a node that reads all items of the row with one request, and a node that shows their values.
   void add_reading(const Shown& shown) {
     const std::string name = "read " + std::string(shown.id);
     Json read = node(name, "modbus-read", 1);

@@ -7,7 +7,7 @@ namespace {
 modbus::Functions functions_of(const modbus::BitRow& row) { return row.functions; }
 
 /// Returns the functions that can access the row. Only the row of host OK lists no functions, because the
-/// firmware does not look host OK up in its table. Masters read host OK with functions 03 and 04.
+/// firmware detects a host OK without kWordRegisters. Masters send a host OK with function 03 or 04.
 modbus::Functions functions_of(const modbus::WordRow& row) {
   return row.functions != 0 ? row.functions : modbus::kReadHoldingRegisters | modbus::kReadInputRegisters;
 }

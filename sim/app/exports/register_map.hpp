@@ -18,7 +18,7 @@ enum class Table : std::uint8_t { Coils, DiscreteInputs, InputRegisters, Holding
 struct Area {
   Table table = Table::Coils;
   const char* name = "";  ///< name of one item of the table
-  char digit = '0';       ///< first digit of its PLC numbers
+  char digit = '0';       ///< first digit of the table's PLC numbers
   modbus::Functions reads = 0;
   modbus::Functions writes = 0;
 };
@@ -31,7 +31,7 @@ constexpr std::array<Area, 4> kAreas{{
      modbus::kWriteRegisters},
 }};
 
-/// One row of the firmware's tables, limited to one area. All texts live as long as the program.
+/// One row of kBitRegisters or kWordRegisters, limited to one area. All texts live as long as the program.
 struct MapRow {
   std::string_view id;
   const Area* area = nullptr;
@@ -49,8 +49,8 @@ struct MapRow {
 /// Returns no rows if the model does not support Modbus.
 std::vector<MapRow> register_map(const Model& model);
 
-/// Returns the PLC number of the item. PLC numbers count from 1 and have at least four digits after the digit
-/// of the table.
+/// Returns the PLC number of the item with the protocol address `address`. PLC numbers count from 1 and have
+/// at least four digits after the digit of the table.
 std::string plc_number(const Area& area, unsigned address);
 
 }  // namespace ex9000::sim

@@ -9,12 +9,13 @@ namespace ex9000::sim {
 
 namespace {
 
-/// How the value of a row is presented; all other data is in the firmware's tables.
+/// How exports for Modbus clients present a row of kBitRegisters or kWordRegisters. These tables contain all
+/// other data of the row.
 struct Reading {
   std::string_view id;
-  std::optional<Role> role;  ///< nullopt: the row is excluded
+  std::optional<Role> role;  ///< nullopt: the value of the row is not shown
   std::string_view name;
-  // The id and the name of the action that starts when 1 is written to the coil; empty: there is no action.
+  // The id and the name of the row's button; empty: there is no button.
   std::string_view button_id{};
   std::string_view button_name{};
 };
@@ -64,8 +65,9 @@ constexpr const Reading* reading_of(std::string_view id) {
   return nullptr;
 }
 
-/// Returns whether kReadings covers all rows of the firmware's tables. Add each new row to kReadings, with a
-/// button if the row has the rule kOnlyOn.
+/// Returns whether kReadings covers all rows of kBitRegisters and kWordRegisters and contains no other rows,
+/// and whether a row of kBitRegisters has a button if and only if it has the rule kOnlyOn. Add each new row
+/// of these tables to kReadings.
 constexpr bool covers_every_row() {
   for (const modbus::BitRegister& row : modbus::kBitRegisters) {
     const Reading* const reading = reading_of(row.id);

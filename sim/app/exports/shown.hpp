@@ -1,4 +1,4 @@
-// The values that a model offers to Modbus clients: a selection from its map, with names.
+// The values and buttons that exports for Modbus clients show: a selection from a model's map, with names.
 #pragma once
 
 #include <cstdint>
@@ -11,6 +11,8 @@
 
 namespace ex9000::sim {
 
+/// How exports for Modbus clients present an item. Read-only: these exports do not write the value, even if
+/// masters can write it.
 enum class Role : std::uint8_t {
   Output,   ///< read and written
   Input,    ///< a level or a latch; read-only
@@ -24,7 +26,7 @@ enum class Role : std::uint8_t {
 
 /// One row of the map, or a button for a row.
 struct Shown {
-  std::string_view id;  ///< unique in the model, and stable
+  std::string_view id;  ///< unique in the model; must not change
   Role role = Role::State;
   std::string_view name;
   Table table = Table::Coils;
@@ -34,18 +36,18 @@ struct Shown {
 
   /// Returns the name with the channel, for example `Output 3`, or only the name if the row has no channels.
   [[nodiscard]] std::string name_of(unsigned index) const;
-  /// Returns the id with the channel, for example `outputs_3`, or only the id if the row has no channels;
-  /// unique in the model.
+  /// Returns the id with the channel, for example `outputs_3`, or only the id if the row has no channels; has
+  /// `_` in place of `-`. The result is unique in the model.
   [[nodiscard]] std::string key_of(unsigned index) const;
 };
 
-/// Returns the rows in the order of the map; empty if the model does not support Modbus. A row that is in two
-/// areas appears only in the first of them. The result excludes host OK, the module's code, the counting
-/// edge, the coils that repeat the inputs, the extensions, and the settings that would disconnect the client
-/// (address, rate and protocol).
+/// Returns the rows and buttons in the order of the map; empty if the model does not support Modbus. A row
+/// that is in two areas appears only in the first of them. The result excludes host OK, the module's code,
+/// the counting edge, the coils that repeat the inputs, the extension registers, and the settings whose
+/// change would disconnect the client after a reset (address, baud rate and protocol).
 std::vector<Shown> shown_by(const Model& model);
 
-/// Returns an id of the model that every tool accepts, for example `ex9042d_m`.
+/// Returns an id of the model that consists of lower-case letters, digits and `_`, for example `ex9042d_m`.
 std::string model_key(const Model& model);
 
 }  // namespace ex9000::sim

@@ -10,7 +10,8 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::string_view kLetters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ";
 
-/// Returns whether YAML 1.1 reads the word as true, false or null.
+/// Returns whether the text is a word that YAML 1.1 reads as true, false or null. Ignores the case of the
+/// letters.
 bool reads_as_other_type(const std::string& text) {
   std::string lower = text;
   for (char& character : lower) {
@@ -24,8 +25,8 @@ bool reads_as_other_type(const std::string& text) {
   return false;
 }
 
-/// Returns whether the string needs no quotes. Other strings are written in quotes as in JSON, which YAML
-/// accepts.
+/// Returns whether the string is simple enough to be written without quotes. Other strings are written in
+/// quotes as in JSON, which YAML accepts.
 bool is_plain(const std::string& text) {
   return !text.empty() && kLetters.find(text.front()) != std::string_view::npos && text.back() != ' ' &&
          text.find_first_not_of(std::string(kLetters) + "0123456789_ -") == std::string::npos &&
@@ -40,7 +41,7 @@ bool is_block(const Json& value) { return value.is_structured() && !value.empty(
 
 void write(const Json& value, const std::string& indent, std::string& text);
 
-/// Writes an item after `- `, without the indentation of its first line.
+/// Writes an item of an array after `- `. The first line of the item therefore has no indentation.
 void write_item(const Json& value, const std::string& indent, std::string& text) {
   std::string block;
   if (is_block(value)) {

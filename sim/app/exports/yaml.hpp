@@ -7,8 +7,8 @@
 namespace ex9000::sim {
 
 /// Returns `value` as YAML in block style. The members of objects keep their order. Keys must be plain words.
-/// Strings that YAML could read as another type are quoted. Empty objects and arrays become `{}` and `[]`.
-/// The result ends with a newline.
+/// Strings are quoted if they contain special characters or if YAML could read them as another type. Empty
+/// objects and arrays become `{}` and `[]`. The result ends with a newline.
 std::string yaml_of(const nlohmann::ordered_json& value);
 
 }  // namespace ex9000::sim

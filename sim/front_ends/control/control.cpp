@@ -143,12 +143,12 @@ constexpr std::array<Verb, 12> kVerbs{{
     {"pulse", "C [COUNT]", 1, 2, "applies COUNT full pulses to input C immediately (default 1)", pulse},
     {"inputs", "", 0, 0, "reads the input levels in hex; bit n is input n", inputs},
     {"outputs", "", 0, 0, "reads the outputs in hex; bit n is output n", outputs},
-    {"timers", "", 0, 0, "reads the remaining time of each timed output in units of 0.1 s; 0: not timed",
-     timers},
+    {"timers", "", 0, 0,
+     "reads the remaining time of each timed output in units of 0.1 s; 0: no timer is running", timers},
     {"filters", "", 0, 0, "reads the filter of each input in ms", filters},
     {"led", "", 0, 0, "reads the status LED: on, off or flashing", led},
     {"hang", "", 0, 0, "stops the main loop until the module watchdog resets the module", hang},
-    {"status", "", 0, 0, "reads address, protocol, rate, mode and watchdogs", status},
+    {"status", "", 0, 0, "reads the model, the settings in force, the mode and the watchdogs", status},
 }};
 
 /// A command for one line. `line NAME` may precede it.
@@ -169,7 +169,8 @@ constexpr std::array<LineVerb, 6> kLineVerbs{{
     {"sent", "", "reads how many bytes the line has written to its ports"},
     {"fault", "FAULT", "adds a fault, see below; replies with its number. With N: for that module"},
     {"fault off", "K|all", "removes the fault with this number, or all faults"},
-    {"faults", "", "lists the faults: number, * if in progress, how many times it has occurred, text"},
+    {"faults", "",
+     "lists the faults: number, * if in progress, how often each has occurred, its module, its text"},
 }};
 
 std::string shape(const Verb& verb) {

@@ -10,7 +10,7 @@
 
 namespace ex9000::sim {
 
-/// The largest number of pulses on an input in one command. The program needs some milliseconds for them.
+/// The largest number of pulses on an input in one command. The program needs tens of milliseconds for them.
 constexpr unsigned long kMostPulses = 1'000'000;
 
 /// The commands of `--control`, without the socket and without `advance`.
@@ -21,14 +21,14 @@ class Control {
     Line& line;
     /// Returns the number of bytes written to the line's ports so far; null: the line has no ports.
     std::function<std::uint64_t()> sent = nullptr;
-    bool has_serial_port = false;  ///< commands cannot change the rate and the format of a serial port
+    bool has_serial_port = false;  ///< if true, commands cannot change the line's rate or format
   };
 
   /// Modules are numbered from 1 across all `lines`.
   explicit Control(std::vector<ControlledLine> lines) : lines_(std::move(lines)) {}
 
   struct Reply {
-    std::string text;  ///< `ok`, `ok ...` or `error: ...`, without newline
+    std::string text;  ///< `ok`, `ok ...` or `error: ...`, without a newline
     bool quit = false;
   };
 
@@ -40,7 +40,7 @@ class Control {
   std::vector<ControlledLine> lines_;
 };
 
-/// Returns the commands and what they do, one per line, for --help and the manual.
+/// Returns the commands and what they do, for --help. The text has several lines.
 std::string control_commands();
 
 }  // namespace ex9000::sim

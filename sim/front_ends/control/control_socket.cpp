@@ -20,7 +20,7 @@ namespace {
 using Local = boost::asio::local::stream_protocol;
 
 constexpr std::size_t kLongestLine = 1000;  // characters, without the newline
-/// The largest number of clients at the same time. Usually, the number is reached only if clients do not
+/// The largest number of clients at the same time. Usually, clients reach this number only if they do not
 /// disconnect.
 constexpr std::size_t kMostClients = 64;
 
@@ -29,7 +29,7 @@ constexpr std::size_t kMostClients = 64;
 }
 
 /// Removes a socket at `path` if the process that created it has ended. Throws std::invalid_argument if
-/// another program uses the path or if anything else is there.
+/// another program may still use the path, or if a file that is not a socket is there.
 void remove_stale(boost::asio::io_context& io, const std::string& path, const Claim& claim) {
   const std::string in_use = "another program listens there; end it or name another path";
   if (!claim.held()) {

@@ -22,13 +22,13 @@ namespace ex9000::sim {
 class ControlSocket {
  public:
   using Answer = std::function<void(const Control::Reply&)>;
-  /// Carries out `command`. Calls `answer` exactly once, immediately or later. Until then the server reads
-  /// nothing more from that client.
+  /// Carries out `command`. Calls `answer` exactly once, during the call or later. Until then the server
+  /// reads nothing more from the client that sent the command.
   using CarryOut = std::function<void(const std::string& command, const Answer& answer)>;
 
   /// Starts to listen on `path`; replaces a socket of a process that has ended. Throws std::invalid_argument
-  /// with a one-line message if the path is empty, too long or in use, or cannot be created. The reply to the
-  /// `quit` command is sent before `quit` is called.
+  /// with a one-line message if the path is empty, too long or in use, or cannot be created. `quit` is
+  /// called after the reply to the `quit` command has been sent or could not be sent.
   ControlSocket(boost::asio::io_context& io, std::string path, CarryOut carry_out,
                 std::function<void()> quit);
   /// Removes the socket file if it still belongs to this object.
