@@ -132,8 +132,8 @@ void BusTarget::pulse_input(unsigned channel, std::uint32_t count) {
 }
 
 step::Led::Shows BusTarget::led(step::Led::Shows /*expected*/) {
-  // Lets no virtual time pass, because the surrounding steps measure time. A unit test checks that the pin
-  // flashes according to the pattern.
+  // Lets no virtual time pass, so that the check does not extend the time between other steps. The unit tests
+  // of StatusLed check how the LED flashes.
   if (module().powered() && module().module().led_pattern() == StatusLed::Pattern::HostTimeout) {
     return step::Led::Shows::Flashing;
   }
@@ -165,8 +165,8 @@ void BusTarget::choose_line(const std::string& name) {
       (names.empty() ? "the only line has no name; remove the step" : "there are " + names));
 }
 
-/// Chooses a line and a module. On a change of the line, discards the bytes that the master of the new line
-/// has received in the meantime.
+/// Chooses a line and a module. If the line changes, discards the bytes that the master of the new line has
+/// received so far.
 void BusTarget::turn_to(std::size_t line, std::size_t module) {
   if (line != line_) {
     heard_[line].clear();

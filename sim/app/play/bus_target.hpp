@@ -1,4 +1,4 @@
-// The target that plays against simulated lines in virtual time.
+// A target whose modules are on simulated lines. The lines run in virtual time.
 #pragma once
 
 #include <memory>
@@ -13,20 +13,21 @@
 
 namespace ex9000::play {
 
-/// The initial EEPROM contents, in the order of lines and modules; nullopt: the settings of the module apply.
+/// The initial EEPROM contents: one item for each module, in the order of the lines and of their modules.
+/// nullopt: the module starts up with the settings of its ModuleSpec.
 using Memories = std::vector<std::optional<std::vector<std::uint8_t>>>;
-/// Reads the EEPROM files that `setup` names and leaves them unchanged, even if another process uses them.
-/// Throws std::invalid_argument with a one-line message.
+/// Reads the EEPROM files that `setup` names, even if another process uses them. Does not change the files. A
+/// file that does not exist gives nullopt. Throws std::invalid_argument with a one-line message.
 Memories read_memories(const sim::Setup& setup);
 
-/// All lines have the same virtual time.
+/// All lines have the same virtual time. The observer may be null; otherwise it must outlive the target.
 class BusTarget : public Target {
  public:
-  /// Creates a target for a transcript; `start` provides its module. `observer` may be null and must outlive
-  /// this object.
+  /// Creates a target for a transcript; `start` provides its module.
   explicit BusTarget(PlayObserver* observer = nullptr) : observer_(observer) {}
   /// Creates a target for a scenario: the modules of `setup` start up with `memories`. Opens no files and no
-  /// ports. Throws std::invalid_argument with a one-line message if `setup` is not valid.
+  /// ports. Throws std::invalid_argument with a one-line message if a fault of `setup` names a module that
+  /// its line does not have.
   BusTarget(const sim::Setup& setup, const Memories& memories, PlayObserver* observer = nullptr);
 
   /// Throws std::runtime_error if the chosen module lacks the input.
@@ -35,7 +36,7 @@ class BusTarget : public Target {
   [[nodiscard]] std::size_t size() const { return lines_.size(); }
   sim::Line& line(std::size_t index) { return *lines_[index]; }
   [[nodiscard]] sim::VirtualTime now() { return chosen().clock().virtual_now(); }
-  /// Processes all events up to and including `until`.
+  /// Processes the events of all lines up to and including the time `until`.
   void run_until(sim::VirtualTime until);
 
   // --- Target ---
@@ -67,7 +68,7 @@ class BusTarget : public Target {
   PlayObserver* observer_;
   std::vector<std::string> names_;
   std::vector<std::unique_ptr<sim::Line>> lines_;
-  std::vector<Bytes> heard_;  ///< bytes received by each master that no call has returned yet
+  std::vector<Bytes> heard_;  ///< for each line: received bytes that have not been returned or discarded
   std::size_t line_ = 0;
   std::size_t module_ = 0;  ///< position on the chosen line
 };

@@ -6,8 +6,8 @@
 
 namespace ex9000 {
 
-/// Appends the CRC. It is computed bit by bit (Modbus over Serial Line V1.02, 6.2.2), so that the tests do
-/// not check the firmware with its own code.
+/// Returns `frame` with its CRC appended. The function computes the CRC bit by bit (Modbus over Serial Line
+/// V1.02, 6.2.2), so that the tests do not check the firmware with its own code.
 inline std::vector<std::uint8_t> with_crc(std::vector<std::uint8_t> frame) {
   unsigned crc = 0xFFFF;
   for (const std::uint8_t byte : frame) {

@@ -39,11 +39,11 @@ void check(const Transcript& transcript, const std::optional<sim::Setup>& bus) {
     fail(transcript.file + ": has no 'model:' line; add modules or a bus file to the command line");
   }
   if (transcript.model != nullptr && bus) {
-    fail(transcript.file + ": has 'model:' lines; leave out modules and bus file");
+    fail(transcript.file + ": has 'model:' lines; leave out the modules or the bus file");
   }
 }
 
-/// Throws if the capture would overwrite a file that `play` reads. Call this before the capture starts.
+/// Throws if the capture is a file that is played or that the bus names. Call this before the capture starts.
 void check_capture_path(const Task& task, const std::vector<Transcript>& all) {
   if (!task.writing.capture) {
     return;

@@ -1,4 +1,4 @@
-// Interface for code that observes a play, for example to log it.
+// Interface for code that observes how files are played, for example to log the frames.
 #pragma once
 
 #include <string>
@@ -17,7 +17,8 @@ class PlayObserver {
   /// Called before each run of a file. `what` names the file and, for a transcript, the model.
   virtual void run_begins(const std::string& what) = 0;
   /// Called when a line has started up. The line exists until `run_ends` is called. `name` may be empty if
-  /// there is only one line. Returns the receiver of messages about its faults, which may be empty.
+  /// there is only one line. Returns the function that receives the messages about the faults of the line;
+  /// the function may be empty.
   virtual sim::Faults::Notice line_started(sim::Line& line, const std::string& name) = 0;
   /// Called when all events on the lines up to `now` have been processed.
   virtual void time_reached(sim::VirtualTime now) = 0;

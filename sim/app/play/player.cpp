@@ -14,12 +14,12 @@ namespace {
 constexpr std::chrono::milliseconds kLongestReply{250};
 /// If a reply is too long, its first extra byte arrives within this time, at 9600 baud or more.
 constexpr std::chrono::milliseconds kAfterReply{2};
-/// An unexpected reply begins within this time: T3.5 at 1200 baud, the 20 ms before a reply must begin, and
-/// its first character.
+/// If the module stores no setting, an unexpected reply begins within this time. The time is the sum of T3.5
+/// at 1200 baud, the 20 ms within which a reply must begin, and the first character of the reply.
 constexpr std::chrono::milliseconds kReplyBegins{65};
 
-/// Returns the DCON checksum. Does not use the firmware's code, so that the tests do not check the firmware
-/// with its own code.
+/// Returns the DCON checksum of `text`. Does not use the firmware's code, so that the tests do not check the
+/// firmware with its own code.
 std::string checksum_of(const std::string& text) {
   unsigned sum = 0;
   for (const char character : text) {
@@ -31,7 +31,8 @@ std::string checksum_of(const std::string& text) {
 
 Bytes bytes_of(const std::string& text) { return {text.begin(), text.end()}; }
 
-/// Returns the bytes as text if all are printable, except a CR at the end; otherwise in hex.
+/// Returns the bytes as text if all are printable ASCII, except a CR at the end; otherwise in hex. Returns
+/// the word `nothing` if there are no bytes.
 std::string shown(const Bytes& bytes) {
   bool text = !bytes.empty();
   for (std::size_t i = 0; i < bytes.size(); ++i) {
@@ -54,7 +55,7 @@ const char* name_of(step::Led::Shows shows) {
   return shows == step::Led::Shows::On ? "on" : shows == step::Led::Shows::Off ? "off" : "flashing";
 }
 
-/// Carries out one step. Throws std::runtime_error if the result is not the expected one.
+/// Each call carries out one step. Throws std::runtime_error if the step fails.
 class Playing {
  public:
   Playing(Target& target, bool checksum) : target_(target), checksum_(checksum) {}

@@ -11,13 +11,13 @@ namespace ex9000::play {
 
 struct Result {
   std::size_t steps = 0;  ///< steps played, including the failed one
-  std::string failure;    ///< file, line, expected and actual result; empty: passed
+  std::string failure;    ///< where and how the run failed; empty: the run passed
 
   [[nodiscard]] bool passed() const { return failure.empty(); }
 };
 
-/// Plays all steps up to the first failure. If all steps pass, checks that no more bytes arrive. For a
-/// scenario, the modules of the target must have started up.
+/// Plays the steps up to the first failure. If all steps pass, checks that no more bytes arrive, and then
+/// calls `Target::end`. For a scenario, the modules of the target must have started up.
 Result play(const Transcript& transcript, Target& target);
 
 }  // namespace ex9000::play

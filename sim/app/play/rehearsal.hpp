@@ -1,5 +1,5 @@
-// Finds modules, lines, inputs and faults that a scenario uses and the bus lacks, before the scenario is
-// played.
+// Finds errors in a scenario before it is played: modules, lines and inputs that the bus lacks, and fault
+// commands that the bus rejects.
 #pragma once
 
 #include "sim/app/play/bus_target.hpp"
@@ -7,7 +7,7 @@
 
 namespace ex9000::play {
 
-/// Carries out the steps of `scenario` that choose modules and lines or add and remove faults, and checks
+/// Carries out the steps of `scenario` that choose a module or a line or contain a fault command, and checks
 /// that the inputs in other steps exist. No virtual time passes, so errors that depend on time are not found.
 /// `bus` must not be used for anything else afterwards. Throws std::invalid_argument that names the file, the
 /// line, the step and what is wrong.

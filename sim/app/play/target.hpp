@@ -23,15 +23,15 @@ class Target {
   virtual ~Target() = default;
 
   /// Provides a module of this model with `preset` stored (nothing is stored if `preset` is null), supply on,
-  /// INIT* released and inputs off. Called once for a transcript, before the other functions; not called for
-  /// a scenario.
+  /// INIT* released and inputs off. Called once for each transcript, before the other functions; not called
+  /// for a scenario.
   virtual void start(const Model& model, const Settings* preset) = 0;
 
   /// Sends `bytes` on the line without a gap, at the master's rate.
   virtual void send(const Bytes& bytes) = 0;
   /// Returns the received bytes when `count` bytes have arrived, or when none has arrived for `patience`.
   virtual Bytes receive(std::size_t count, std::chrono::milliseconds patience) = 0;
-  /// Returns the bytes received while `time` passes.
+  /// Lets `time` pass, then returns the received bytes that no earlier call has returned.
   virtual Bytes listen(std::chrono::nanoseconds time) = 0;
   /// Sets the master's rate.
   virtual void set_baud(std::uint32_t rate) = 0;
@@ -40,21 +40,22 @@ class Target {
 
   /// Switches the supply. After switching on, returns when the module has had the time to start up.
   virtual void power(bool on) = 0;
-  /// Resets the module with the supply on, and returns when it has had the time to start up.
+  /// Resets the module with the supply on, and returns when the module has had the time to start up.
   virtual void reset() = 0;
   virtual void set_init(bool asserted) = 0;
   virtual void set_input(unsigned channel, bool level) = 0;
   virtual void pulse_input(unsigned channel, std::uint32_t count) = 0;
   virtual std::uint16_t outputs() = 0;
-  /// Returns the state of the LED. `expected` is the value in the transcript: a target that can only watch
-  /// the LED watches it just long enough to distinguish this value from all others.
+  /// Returns the state of the LED. `expected` is the value in the step: a target that can only watch the LED
+  /// may use it to choose how long to watch.
   virtual step::Led::Shows led(step::Led::Shows expected) = 0;
 
-  // Functions for a bus with several modules and faults. They throw std::runtime_error if the module, the
-  // line or the fault does not exist; other targets always throw.
+  // Functions for a target with several modules and with faults. They throw std::runtime_error if the module,
+  // the line or the fault does not exist, or if the fault command is wrong. The implementations in this class
+  // always throw.
 
-  /// Chooses the module for the following calls by its position, from 0 across all lines. The master then
-  /// sends on the line of this module.
+  /// Chooses the module for the following calls by its position, which counts from 0 across all lines. The
+  /// master then sends on the line of this module.
   virtual void choose_module(std::size_t /*position*/) {
     throw std::runtime_error("there is only one module");
   }
@@ -62,13 +63,14 @@ class Target {
   virtual void choose_line(const std::string& /*name*/) {
     throw std::runtime_error("there is only one line");
   }
-  /// Carries out `fault FAULT`, `fault off K|all` or `faults` for the chosen line, or `fault N FAULT` for a
-  /// module, from 1 across all lines.
+  /// Carries out `fault FAULT`, `fault off K|all` or `faults` for the chosen line, or `fault N FAULT` for
+  /// module N, which counts from 1 across all lines.
   virtual void run_fault_command(const std::string& /*command*/) {
     throw std::runtime_error("this target has no faults");
   }
 
-  /// Ends the transcript. Throws std::runtime_error if an earlier result turns out to be wrong.
+  /// Called at the end of a run if all steps have passed. Throws std::runtime_error if the target has found
+  /// an error that no step has reported.
   virtual void end() {}
 };
 

@@ -47,7 +47,7 @@ std::string trimmed(const std::string& text) {
   return first == std::string::npos ? "" : text.substr(first, last - first + 1);
 }
 
-/// Parses a channel. Does not check whether the model has it.
+/// Parses a channel number. Does not check whether the model has this channel.
 unsigned channel(const std::string& text) {
   constexpr unsigned long kMostChannels = 16;
   return static_cast<unsigned>(parse_whole_number(text, 0, kMostChannels - 1));
@@ -225,7 +225,7 @@ bool requires_bus(const Action& action) {
          std::holds_alternative<step::FaultCommand>(action);
 }
 
-/// Rejects channels that the model lacks, because the step would have no effect.
+/// Rejects a step that uses an input that the model lacks.
 void check_channel(const Model& model, const Action& action) {
   const auto* input = std::get_if<step::Input>(&action);
   const auto* pulse = std::get_if<step::Pulse>(&action);
@@ -246,7 +246,7 @@ struct Source {
   bool names_its_source = false;
   bool slow = false;
   std::vector<ModelRun> models;
-  std::size_t preset_ends = 0;  ///< index of the first model without a `preset:` line
+  std::size_t preset_ends = 0;  ///< the models before this index have a `preset:` line
   std::vector<Line> steps;
 };
 

@@ -24,8 +24,8 @@ struct ExpectDcon {
   std::string text;
 };
 struct SendModbus {
-  Bytes frame;
-};  ///< without CRC
+  Bytes frame;  ///< without CRC
+};
 struct ExpectModbus {
   std::vector<Bytes> frames;  ///< the permitted replies, at least one, all of the same length; without CRC
 };
@@ -69,14 +69,14 @@ struct Led {
 };
 // The following steps are valid only in scenarios, because transcripts have no bus.
 struct OnModule {
-  std::size_t position;
-};  ///< from 0, across all lines
+  std::size_t position;  ///< from 0, across all lines
+};
 struct OnLine {
   std::string name;
 };
 struct FaultCommand {
-  std::string command;
-};  ///< see Target::run_fault_command
+  std::string command;  ///< see Target::run_fault_command
+};
 
 }  // namespace step
 
@@ -88,32 +88,34 @@ using Action =
 
 struct Step {
   unsigned line;     ///< line number in the file, from 1
-  std::string text;  ///< as written, with variables replaced
+  std::string text;  ///< the step without its comment; variables are replaced
   Action action;
 };
 
-/// One run of a file on one model. A scenario has no model; it runs on a bus.
+/// One run of a file: a transcript on one model, or a scenario, which runs on a bus.
 struct Transcript {
   std::string file;
   const Model* model = nullptr;  ///< null: a scenario
-  Settings preset;               ///< factory settings with the changes from the header
+  Settings preset;               ///< of a transcript: factory settings with the changes from the header
   bool preset_given = false;
   bool slow = false;
   std::vector<Step> steps;
 };
 
-/// The duration of a `silence` step, in which no byte may arrive. Without faults, any reply begins earlier.
+/// The duration of a `silence` step, in which no byte may arrive. Without faults, the reply to a request that
+/// the module receives while it is idle begins earlier.
 constexpr std::chrono::milliseconds kSilence{250};
 
-/// Returns what is wrong if `model` lacks an input with this number; empty if the input exists.
+/// Returns what is wrong if `model` lacks an input with this number. Returns an empty text if the input
+/// exists.
 std::string missing_input(const Model& model, unsigned channel);
 
 /// Returns the paths of all files below `directory` that end with .txt, sorted. Throws
-/// std::filesystem::filesystem_error if the directory cannot be read.
+/// std::filesystem::filesystem_error if a directory cannot be read.
 std::vector<std::string> transcript_files(const std::string& directory);
 
 /// Returns all runs of a transcript, one for each `model:` line, or the single run of a scenario. Throws
-/// std::invalid_argument that names the file, the line and what is wrong.
+/// std::invalid_argument that names the file, the line (if the file can be read) and what is wrong.
 std::vector<Transcript> load(const std::string& path);
 
 }  // namespace ex9000::play

@@ -33,7 +33,7 @@ void begin_programs(Line& line, const LineSetup& setup) {
   }
   const VirtualTime now = line.clock().virtual_now();
   for (Fault fault : setup.faults) {
-    // A fault whose time has passed during the start of the modules takes effect now.
+    // A fault whose time has passed while the modules started up takes effect now.
     if (fault.schedule.when == Schedule::When::At) {
       fault.schedule.time = std::max(fault.schedule.time, now);
     }

@@ -13,7 +13,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Compares files by their inodes. If one of the files does not exist yet, compares the paths.
+/// Returns whether both paths name the same file. Compares the inodes, or the paths if at least one of the
+/// files does not exist.
 bool are_one(const std::string& a, const std::string& b) {
   struct stat of_a {};
   struct stat of_b {};

@@ -14,7 +14,8 @@ struct InUse {
   std::string path;
 };
 
-/// Returns all files that a run or a play of `setup` uses in addition to its capture.
+/// Returns all paths in `setup` except the capture: the bus file, the control socket, the links to
+/// pseudo-terminals, the serial ports and the EEPROM files.
 std::vector<InUse> in_use_by(const Setup& setup);
 
 /// Throws std::invalid_argument with a one-line message if `capture` is one of `others`, even under another

@@ -49,10 +49,10 @@ void check(const LineSetup& line, std::size_t position) {
   }
 }
 
-/// Rejects paths and names that are given twice.
+/// Rejects a path, address or name that is given twice.
 class Once {
  public:
-  /// `identity` returns the same text for all names of the same thing.
+  /// `identity` returns the same text for all spellings of a name.
   using Identity = std::string (*)(const std::string& name);
 
   explicit Once(
@@ -72,13 +72,15 @@ class Once {
   std::set<std::string> seen_;
 };
 
-/// Rejects speeds that cannot be combined with the ports, the control socket, the panel or the duration. Real
-/// masters follow the wall clock.
+/// Rejects a speed that cannot be combined with the ports, the control socket or the panel, or that requires
+/// a value that is missing.
 void check_speed(const Setup& setup) {
   const auto wrong = [](const std::string& what) { throw SetupError(std::nullopt, "speed", what); };
   for (const LineSetup& line : setup.lines) {
     if (line.serial && !(setup.speed.paced() && setup.speed.factor == 1)) {
-      wrong("cannot be combined with {serial}, whose line has its own time; leave out one of them");
+      wrong(
+          "cannot be combined with {serial}, because a serial line follows the wall clock; leave out one of "
+          "them");
     }
     if (setup.speed.max() && !line.first_port().empty()) {
       wrong("max cannot be combined with {" + line.first_port() +
@@ -217,8 +219,8 @@ Speed parse_speed(const std::string& text) {
   if (text == "step") {
     return {Speed::Kind::Stepped};
   }
-  // Above kFastest, line time would advance in large steps, because the timers of the wall clock are not
-  // precise enough. Users can choose `max` instead.
+  // Above kFastest, the lines' time would advance in large steps, because the timers of the wall clock are
+  // not precise enough. Users can choose `max` instead.
   constexpr double kSlowest = 0.001;
   constexpr double kFastest = 1000;
   const auto speed = decimal_number(text, kSlowest, kFastest);

@@ -1,4 +1,4 @@
-// The configuration of a run, from a command line or from a bus file.
+// The configuration of a run, from a command line, from a bus file, or from both.
 #pragma once
 
 #include <cstddef>
@@ -27,35 +27,36 @@ std::string place_of(const Places& places, const std::string& key);
 
 struct LineSetup {
   Places places;
-  std::string name;                      ///< name in the logs; empty if the command line describes the line
+  std::string name;                      ///< empty if the command line describes the line
   std::vector<ModuleSpec> modules;       ///< at least one
   std::optional<std::string> pty;        ///< path of the link to a pseudo-terminal
   std::optional<TcpAddress> tcp;         ///< address on which the TCP port listens
   std::optional<TcpAddress> modbus_tcp;  ///< address on which the Modbus TCP gateway listens
-  std::optional<std::string> serial;     ///< the serial port; excludes all other ports
+  std::optional<std::string> serial;     ///< path of the serial port; excludes all other ports
   /// Returns the key of the first of pty, tcp and modbus-tcp that is set; empty if none is.
   [[nodiscard]] std::string first_port() const {
     return pty ? "pty" : tcp ? "tcp" : modbus_tcp ? "modbus-tcp" : "";
   }
 
-  std::optional<std::uint32_t> baud;  ///< rate of the line until a master sets one
-  std::optional<LineFormat> format;   ///< format of the line
+  std::optional<std::uint32_t> baud;  ///< rate of the line at first; nullopt: that of its first module
+  std::optional<LineFormat> format;   ///< format of the line at first; nullopt: that of its first module
   bool echo = false;                  ///< the serial port receives what it sends
-  bool instant = false;               ///< bytes take no time
+  bool instant = false;               ///< bytes take almost no time
   bool strict_gaps = false;
   std::vector<Fault> faults;
 };
 
 struct PanelSetup {
-  std::optional<std::uint16_t> port;  ///< 0: any free port; nullopt: the default port, or any if it is in use
+  /// 0: any free port; nullopt: the default port, or any free port if the default port is in use.
+  std::optional<std::uint16_t> port;
 };
 
 enum class LogFormat { Text, Json };
 
 /// The records that a run writes.
 struct Writing {
-  std::optional<LogFormat> log;        ///< format of the bus log; nullopt: no log
-  std::optional<std::string> capture;  ///< path of the capture file
+  std::optional<LogFormat> log;        ///< format of the bus log; nullopt: frames are not logged
+  std::optional<std::string> capture;  ///< path of the capture file; nullopt: no capture
 };
 
 /// How the time of the lines advances.
@@ -74,14 +75,16 @@ struct Speed {
 };
 
 struct Setup : Writing {
-  std::string file;                    ///< the bus file; empty: a command line
+  std::string file;                    ///< path of the bus file; empty: there is no bus file
   std::vector<LineSetup> lines;        ///< at least one
   std::optional<std::string> control;  ///< path of the control socket
-  std::optional<PanelSetup> panel;     ///< the page for a browser; nullopt: none
+  std::optional<PanelSetup> panel;     ///< the page for a browser; nullopt: no such page
   bool watch = false;                  ///< show the modules on standard output
   Speed speed;
-  std::optional<std::size_t> threads;  ///< number of threads for the lines; nullopt: one for each processor
-  /// How long the modules are up, in the lines' time, before the run ends; nullopt: until a signal or `quit`.
+  /// Highest number of threads for the lines; nullopt: one for each processor, but at most kMostThreads.
+  std::optional<std::size_t> threads;
+  /// How long the modules are up, in the lines' time, before the run ends; nullopt: until a signal or the
+  /// command `quit`.
   std::optional<VirtualTime> lasts;
   std::uint64_t seed = 1;  ///< seed of all random events: noise, faults with a probability, bouncing contacts
   Places places;
@@ -90,8 +93,8 @@ struct Setup : Writing {
 /// An error in a Setup. A key identifies the place: an option of the command line or a member of a bus file.
 /// The message can therefore use the syntax of either one.
 struct SetupError : std::invalid_argument {
-  /// `what`: the message without its place. Other keys in it are in braces, with or without a value: `cannot
-  /// be combined with {serial}` or `cannot be combined with {log json}`.
+  /// `what`: the message without its place. Other keys in the message are in braces, with or without a value,
+  /// for example `cannot be combined with {serial}` or `cannot be combined with {log json}`.
   SetupError(std::optional<std::size_t> its_line, std::string its_key, const std::string& what,
              std::string its_value = "", std::optional<std::size_t> its_module = std::nullopt)
       : std::invalid_argument(what),
@@ -102,7 +105,8 @@ struct SetupError : std::invalid_argument {
 
   /// Returns how a message refers to `key`. `value` is empty, or a value of the key with a space before it.
   using NameOfKey = std::function<std::string(const std::string& key, const std::string& value)>;
-  /// Returns the message with the result of `name_of` in place of each pair of braces.
+  /// Returns `value` (unless it is empty) and the message, with the result of `name_of` in place of each pair
+  /// of braces and its content.
   [[nodiscard]] std::string named(const NameOfKey& name_of) const;
 
   std::optional<std::size_t> line;    ///< position of the line; nullopt: not about one line
@@ -111,13 +115,14 @@ struct SetupError : std::invalid_argument {
   std::string value;  ///< the wrong value; empty if the message does not need it
 };
 
-/// Throws SetupError if values cannot be combined, or if a path or a name is not valid.
+/// Throws SetupError if values cannot be combined, if a value that another value requires is missing, or if a
+/// path or a name is not valid.
 void check(const Setup& setup);
 
 // Values with the same syntax on the command line and in a bus file. The parsers throw std::invalid_argument
 // with a one-line message.
 
-/// Parses `instant` or `paced`. Returns true for `instant`: bytes take no time.
+/// Parses `instant` or `paced`. Returns true for `instant`: bytes take almost no time.
 bool parse_line_kind(const std::string& text);
 /// Parses a whole number of up to 64 bits.
 std::uint64_t parse_seed(const std::string& text);

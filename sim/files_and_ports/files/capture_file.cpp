@@ -15,7 +15,7 @@ namespace ex9000::sim {
 
 CaptureFile::CaptureFile(std::string path, const std::string& place)
     : path_(std::move(path)), where_(place + path_) {
-  // Without O_NONBLOCK, open would wait for the reader of a pipe and ignore Ctrl-C.
+  // Without O_NONBLOCK, open would wait until a pipe has a reader.
   constexpr int kFlags = O_WRONLY | O_CLOEXEC | O_NONBLOCK;
   constexpr mode_t kAsUmaskPermits = 0666;
   fd_ = open(path_.c_str(), kFlags | O_CREAT | O_EXCL, kAsUmaskPermits);

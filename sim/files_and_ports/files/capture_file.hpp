@@ -7,12 +7,13 @@
 
 namespace ex9000::sim {
 
-/// A regular file, or a pipe with a reader.
+/// A regular file, a pipe with a reader, or a device.
 class CaptureFile {
  public:
   /// Creates the file if it is missing. An existing file keeps its content until `begin`. Throws
-  /// std::invalid_argument with a one-line message if the file is not writable, if another simulator uses the
-  /// file, or if a pipe has no reader. All messages begin with `place` and the path.
+  /// std::invalid_argument with a one-line message if the file is not writable, if it is a regular file that
+  /// another simulator uses, or if it is a pipe without a reader. All messages begin with `place` and the
+  /// path.
   CaptureFile(std::string path, const std::string& place);
   /// Removes the file if the constructor has created it and `begin` has not been called.
   ~CaptureFile();
@@ -22,9 +23,10 @@ class CaptureFile {
   /// Deletes the content of a regular file. Throws std::runtime_error with a one-line message if this fails.
   void begin();
   /// Writes the block to the kernel, without a buffer in the program: blocks that were written stay in the
-  /// file even if the program is killed. If a write to a regular file fails, removes the incomplete block.
-  /// Waits while the reader of a pipe does not read. Throws std::runtime_error with a one-line message if the
-  /// write fails, for example because the disk is full or the reader has closed the pipe.
+  /// file even if the program is killed. If a write to a regular file fails, removes the incomplete block. If
+  /// that fails too, the message says so. Waits while a pipe is full. Throws std::runtime_error with a
+  /// one-line message if the write fails, for example because the disk is full or the reader has closed the
+  /// pipe.
   void append(const std::vector<std::uint8_t>& block);
 
  private:

@@ -24,7 +24,7 @@ class Draft {
  public:
   /// Opens a file without a name in the folder of `path`, so that nothing remains if the process is killed.
   /// If the file system does not support such files, or if /proc is missing, opens a file with a temporary
-  /// name instead. Without /proc, a file without a name cannot get a name.
+  /// name instead. `link_to` requires /proc to give a name to a file that has none.
   explicit Draft(const std::string& path) {
     const std::filesystem::path folder = std::filesystem::path(path).parent_path();
     constexpr mode_t kAsUmaskPermits = 0666;
@@ -49,7 +49,8 @@ class Draft {
 
   /// Transfers the file to the caller. The file is not open if opening has failed.
   [[nodiscard]] FileDescriptor take_file() { return std::move(file_); }
-  /// Names the file `path`. Returns false if the system call fails, for example because `path` exists.
+  /// Gives the file the name `path`. Returns false if the system call fails, for example because `path`
+  /// exists.
   [[nodiscard]] bool link_to(const std::string& path) const {
     return linkat(AT_FDCWD, name_.c_str(), AT_FDCWD, path.c_str(), AT_SYMLINK_FOLLOW) == 0;
   }
@@ -131,7 +132,7 @@ void EepromFile::create(const std::vector<std::uint8_t>& image) {
 }
 
 bool EepromFile::write(std::uint16_t address, Bytes bytes) const {
-  // After an incomplete write, the next write fails and sets errno to the reason.
+  // If an error makes a write incomplete, the next write fails and sets errno to the reason.
   ssize_t written = 0;
   for (std::size_t done = 0; done < bytes.size && written >= 0; done += static_cast<std::size_t>(written)) {
     written = pwrite(file_.get(), bytes.data + done, bytes.size - done, static_cast<off_t>(address + done));

@@ -17,12 +17,11 @@ namespace ex9000::sim {
 /// message if the file is not an image or is not readable.
 std::optional<std::vector<std::uint8_t>> read_eeprom_file(const std::string& path);
 
-/// An image of the whole memory, byte for byte like the chip: 8192 bytes; erased bytes are FFh. While this
-/// object has the file open, the file is locked: no other EepromFile can open it, in this process or in
-/// another one.
+/// An image of the whole EEPROM, byte for byte: 8192 bytes; erased bytes are FFh. While this object has the
+/// file open, the file is locked: no other EepromFile can open it, in this process or in another one.
 ///
-/// When `write` returns true, the kernel has the data: it survives any end of this process, but not a crash
-/// of the machine.
+/// When `write` returns true, the kernel has the data: it survives any end of this process, but may be lost
+/// if the machine crashes.
 class EepromFile {
  public:
   /// Opens and locks an existing file. Throws std::invalid_argument with a one-line message if the file is

@@ -25,9 +25,9 @@ class FileDescriptor {
   }
 
   [[nodiscard]] bool is_open() const { return fd_ >= 0; }
-  /// Returns the number, which is valid as long as this object owns it.
+  /// Returns the file descriptor, which is valid while this object owns it; negative if nothing is open.
   [[nodiscard]] int get() const { return fd_; }
-  /// Returns the number. The caller must close the file descriptor.
+  /// Returns the file descriptor and no longer owns it. The caller must close it.
   int release() { return std::exchange(fd_, -1); }
 
  private:

@@ -1,4 +1,4 @@
-// A new file that is removed again unless the work succeeds.
+// Removes a new file unless the program decides to keep it.
 #pragma once
 
 #include <sys/stat.h>
@@ -14,7 +14,7 @@ inline bool is_there(const std::string& path) {
   return lstat(path.c_str(), &status) == 0;
 }
 
-/// The destructor removes the file if it did not exist before, unless `keep` was called.
+/// The destructor removes the file, unless `was_there` is true or `keep` was called.
 class NewFile {
  public:
   NewFile(std::string path, bool was_there) : path_(std::move(path)), kept_(was_there) {}

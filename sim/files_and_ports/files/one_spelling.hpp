@@ -1,4 +1,4 @@
-// Compares paths of files that may not exist yet.
+// Makes paths comparable. The files may not exist yet.
 #pragma once
 
 #include <filesystem>
@@ -7,7 +7,8 @@
 
 namespace ex9000::sim {
 
-/// Returns the same text for all spellings of `path`. Does not follow a symbolic link at `path` itself.
+/// Returns `path` with an absolute folder that contains no symbolic links, `.` or `..`: different spellings
+/// of the path of a file become equal. Does not follow a symbolic link at `path` itself.
 inline std::string one_spelling(const std::string& path) {
   std::error_code error;
   const std::filesystem::path absolute = std::filesystem::absolute(path, error);

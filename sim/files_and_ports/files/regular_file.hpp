@@ -9,7 +9,8 @@
 namespace ex9000::sim {
 
 /// Opens a regular file for reading. Returns a stream that is not open if `path` is not a regular file or is
-/// not readable. Opens no pipe, because that may block, and no device, because it may have no end.
+/// not readable. Opens no pipe, because opening a pipe may block, and no device, because a device may have no
+/// end.
 inline std::ifstream open_regular_file(const std::string& path) {
   std::ifstream file;
   std::error_code unknown;

@@ -11,14 +11,16 @@ namespace ex9000::sim {
 
 namespace {
 
-/// Returns the same name for all spellings of a path, short enough for the name of a socket.
+/// Returns a name that is equal for different spellings of `path` (see one_spelling), and short enough for a
+/// socket.
 std::string name_of(const std::string& path) {
   return "ex9000-sim/" + std::to_string(std::hash<std::string>()(one_spelling(path)));
 }
 
 }  // namespace
 
-/// Uses an abstract socket: the kernel gives the name to only one process and releases it automatically.
+/// Uses an abstract socket: the kernel gives the name to only one socket at a time, and releases it when the
+/// socket is closed.
 Claim::Claim(const std::string& path) : socket_(socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
   sockaddr_un address{};
   address.sun_family = AF_UNIX;

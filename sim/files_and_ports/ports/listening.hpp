@@ -9,7 +9,7 @@
 
 namespace ex9000::sim {
 
-/// Opens `acceptor` on `endpoint`. If that fails, closes it again and returns the error.
+/// Opens `acceptor` and listens on `endpoint`. If that fails, closes `acceptor` and returns the error.
 inline boost::system::error_code listen_at(boost::asio::ip::tcp::acceptor& acceptor,
                                            const boost::asio::ip::tcp::endpoint& endpoint) {
   using boost::asio::ip::tcp;
@@ -33,9 +33,9 @@ inline boost::system::error_code listen_at(boost::asio::ip::tcp::acceptor& accep
   return error;
 }
 
-/// Calls `admit` with the socket of each new connection until `acceptor` and `next_try` are destroyed. After
-/// an error, accepts again after 100 ms: if the process has no free file descriptor, immediate retries would
-/// use all of the processor's time.
+/// Calls `admit` with the socket of each new connection until both `acceptor` and `next_try` are cancelled or
+/// destroyed. After an error, accepts again after 100 ms: if the process has no free file descriptor,
+/// immediate retries would use all of the processor's time.
 template <class Acceptor, class Admit>
 void keep_accepting(Acceptor& acceptor, boost::asio::steady_timer& next_try, Admit admit) {
   using Socket = typename Acceptor::protocol_type::socket;
@@ -54,7 +54,7 @@ void keep_accepting(Acceptor& acceptor, boost::asio::steady_timer& next_try, Adm
   });
 }
 
-/// Describes the error for a message. Appends `mend`, the advice for the user, unless another program uses
+/// Returns a text for the error, with advice for the user. The advice is `mend`, unless another program uses
 /// the port.
 inline std::string why_not_listening(const boost::system::error_code& error, const std::string& mend) {
   return error == boost::asio::error::address_in_use

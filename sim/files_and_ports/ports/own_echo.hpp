@@ -12,8 +12,8 @@
 namespace ex9000::sim {
 
 /// Some adapters receive what they send. A real module ignores its own bytes (wire.md section 9). Without
-/// this filter, a simulated module would receive its own reply as a request. It would then carry out the
-/// reply to Modbus function 05, because that reply equals the request.
+/// this filter, a simulated module would receive its own reply as a request. For example, the module would
+/// carry out its reply to Modbus function 05, because that reply equals the request.
 class OwnEcho {
  public:
   using Clock = std::chrono::steady_clock;
@@ -45,10 +45,10 @@ class OwnEcho {
   }
 
  private:
-  /// Maximum time from the end of a byte on the line until the program reads it. An adapter may collect bytes
-  /// for 16 ms; a busy host can take seconds. If the limit were too short, a module would carry out its
-  /// own reply. If the adapter has no echo, a master's request that equals the reply is lost during this
-  /// time.
+  /// Maximum time from the end of the last byte on the line until the program reads its echo. An adapter may
+  /// collect bytes for 16 ms; a busy host can take seconds. If the limit were too short, a module could carry
+  /// out its own reply. If the adapter has no echo, the next request loses the leading bytes that match the
+  /// reply, if it arrives within this time.
   static constexpr std::chrono::seconds kLatency{10};
 
   hal::SerialMode mode_;

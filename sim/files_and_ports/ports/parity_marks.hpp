@@ -1,4 +1,4 @@
-// The marks with which a serial port reports bytes with wrong parity.
+// The marks with which a serial port reports bytes with line errors: wrong parity or a framing error.
 #pragma once
 
 #include <cstddef>

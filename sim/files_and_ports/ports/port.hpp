@@ -1,4 +1,4 @@
-// Carries the bytes of a real master to the line and back.
+// Carries bytes between real masters and the line.
 #pragma once
 
 #include <cstddef>
@@ -15,8 +15,8 @@ class Port {
  public:
   /// Positions of bytes, in ascending order.
   using Positions = std::vector<std::size_t>;
-  /// Receives the bytes that have arrived, and the positions of those with wrong parity. Returns false if the
-  /// port must deliver no more until `resume`.
+  /// Receives bytes that have arrived, and the positions of those with wrong parity or a framing error.
+  /// Returns false if the port must deliver no more bytes of the same master until `resume`.
   using Received = std::function<bool(const std::uint8_t* bytes, std::size_t size, const Positions& damaged)>;
 
   Port() = default;
@@ -24,27 +24,28 @@ class Port {
   Port& operator=(const Port&) = delete;
   virtual ~Port() = default;
 
-  /// Call this once. `received` is called while the io_context runs.
+  /// Starts to deliver bytes: calls `received` while the io_context runs. Call this once.
   virtual void start(Received received) = 0;
   /// Continues to deliver bytes after `received` has returned false.
   virtual void resume() = 0;
-  /// Calls `received` during this call for all bytes that have arrived, until `received` returns false; the
-  /// io_context need not run. Call this only if `received` can accept more bytes. Only stepped time uses this
-  /// function, so a serial port does not have it.
+  /// Calls `received` during this call for all bytes that have arrived, except those of masters that must
+  /// wait for `resume`; the io_context need not run. Call this only after `start`. Only stepped time uses
+  /// this function. For a serial port it does nothing, because stepped time cannot use serial ports.
   virtual void read_waiting() {}
 
   /// Sends bytes from the line. The bytes are lost if no master has the port open, as on real wires. Returns
-  /// how many bytes were dropped because a master has the port open and does not read.
+  /// how many bytes were dropped because a master has the port open and does not read; if several masters do
+  /// not read, the largest of their numbers.
   virtual std::size_t send(const std::vector<std::uint8_t>& bytes) = 0;
-  /// Called when a station other than the master has turned its driver off, so that no more bytes of its
+  /// Call this when a station other than the master has turned its driver off, so that no more bytes of its
   /// reply follow.
   virtual void sent() {}
 
-  /// Returns the rate that a master has set at this port, in bits per second; nullopt if the port has no rate
-  /// or it is not a known rate.
+  /// Returns the rate of this port, in bits per second; nullopt if masters cannot set a rate at this port, or
+  /// if the rate is not a known one.
   [[nodiscard]] virtual std::optional<std::uint32_t> baud() const { return std::nullopt; }
-  /// Returns whether the port is a real line. If it is, the transmission time of the bytes has already passed
-  /// when they arrive.
+  /// Returns whether the port is connected to a real line. If it is, the transmission time of the bytes has
+  /// already passed when they arrive.
   [[nodiscard]] virtual bool is_a_line() const { return false; }
 };
 

@@ -45,8 +45,8 @@ void remove_stale(const std::string& link, const Claim& claim) {
 }
 
 /// Opens the slave briefly, for operations that work only there. The system reports this as if a master had
-/// opened the slave. Therefore create a Slave only before visits are watched or while a master has the slave
-/// open.
+/// opened the slave. Therefore create a Slave only before the device is watched (see Visits) or while a
+/// master has the slave open.
 class Slave {
  public:
   explicit Slave(const std::string& device)

@@ -10,30 +10,30 @@
 
 namespace ex9000::sim {
 
-/// Owns the simulator's end. Masters open and close the other end (the slave), which keeps its settings. The
-/// terminal is in raw mode.
+/// Owns the simulator's end. Masters open and close the other end (the slave), which keeps its settings while
+/// no master has it open. The constructor sets the terminal to raw mode.
 class Pty {
  public:
-  /// Creates a pseudo-terminal set to `baud` and a symbolic link to its slave at `link`. Replaces a link
-  /// to a pseudo-terminal that no running simulator uses. Throws std::invalid_argument with a one-line
-  /// message if anything else exists there, another simulator uses the path, or the path cannot be created,
-  /// and std::runtime_error if the system cannot create a pseudo-terminal. After an exception, neither the
-  /// link nor the pseudo-terminal remains.
+  /// Creates a pseudo-terminal set to `baud` and a symbolic link to its slave at `link`. Replaces a link to a
+  /// pseudo-terminal that no running simulator uses. Throws std::invalid_argument with a one-line message if
+  /// anything else exists at `link`, another simulator uses the path, or the path cannot be created, and
+  /// std::runtime_error if the system cannot create or set up a pseudo-terminal. After an exception, neither
+  /// the link nor the pseudo-terminal remains.
   Pty(std::string link, std::uint32_t baud);
-  /// Removes the link, if it still belongs to this object.
+  /// Removes the link if it still leads to this object's slave.
   ~Pty();
   Pty(const Pty&) = delete;
   Pty& operator=(const Pty&) = delete;
 
-  /// Returns the simulator's end for reading and writing; non-blocking. Reading fails while no master has the
-  /// slave open.
+  /// Returns the simulator's end for reading and writing; non-blocking. Reading fails if no master has the
+  /// slave open and all bytes have been read.
   [[nodiscard]] int master_fd() const { return master_.get(); }
   [[nodiscard]] const std::string& link() const { return link_; }
   /// Returns the path of the slave, for example /dev/pts/5.
   [[nodiscard]] const std::string& device() const { return device_; }
   /// Call this when a master has opened or closed the slave. If a master has opened it after a time without
-  /// any master, discards unread bytes, as a serial port does: a new master must not receive a reply to the
-  /// previous one.
+  /// any master, discards the bytes that no master has read, as a serial port does: a new master must not
+  /// receive a reply to the previous one.
   void take_visit();
   /// Returns whether a master has the slave open. If none has, do not write: the bytes would wait for the
   /// next master.

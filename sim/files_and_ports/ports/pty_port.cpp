@@ -58,7 +58,8 @@ void PtyPort::read_waiting() {
   }
 }
 
-/// Returns the number of bytes read; 0 if there are none, negative if no master has the pseudo-terminal open.
+/// Reads bytes and passes them to `received_`. Returns the number of bytes; 0 if there are none, negative if
+/// there are none and no master has the pseudo-terminal open.
 ssize_t PtyPort::take() {
   visits_.take();  // a new master must be detected before the program replies to its bytes
   const ssize_t size = ::read(pty_.master_fd(), bytes_.data(), bytes_.size());
@@ -69,7 +70,8 @@ ssize_t PtyPort::take() {
   return size < 0 && errno == EAGAIN ? 0 : -1;
 }
 
-/// Writes the bytes. The pseudo-terminal stores about 4 KiB that no master has read; further bytes are lost.
+/// Writes the bytes. The pseudo-terminal stores a limited number of bytes that no master has read, for
+/// example about 20 KiB on Linux 6.18; further bytes are lost.
 std::size_t PtyPort::send(const std::vector<std::uint8_t>& bytes) {
   if (!pty_.visited()) {
     return 0;

@@ -17,7 +17,7 @@ namespace ex9000::sim {
 
 class PtyPort final : public Port {
  public:
-  /// See Pty::Pty. Throws std::runtime_error too if the system cannot watch the pseudo-terminal.
+  /// See Pty::Pty. Also throws std::runtime_error if the system cannot watch the pseudo-terminal.
   PtyPort(boost::asio::io_context& io, const std::string& link, std::uint32_t baud);
   ~PtyPort() override;
 
@@ -30,7 +30,7 @@ class PtyPort final : public Port {
   [[nodiscard]] const Pty& pty() const { return pty_; }
 
  private:
-  /// Reads again whenever bytes arrive, until no master has the slave open or `received` returns false.
+  /// Reads bytes whenever they arrive, until no master has the slave open or `received` returns false.
   void read();
   [[nodiscard]] ssize_t take();
   int watch();

@@ -27,8 +27,8 @@ namespace {
 /// of the host do not cause gaps in the reply.
 constexpr std::chrono::milliseconds kCushion{10};
 
-/// Asks the driver for low latency, because adapters may wait up to 16 ms for more bytes, which splits
-/// frames. Not all drivers support this setting.
+/// Asks the driver for low latency, because an adapter may otherwise hold bytes back for up to 16 ms, so that
+/// a frame arrives in several pieces. Not all drivers support this setting.
 void ask_for_low_latency(int fd) {
   serial_struct settings{};
   if (ioctl(fd, TIOCGSERIAL, &settings) == 0) {
@@ -49,8 +49,8 @@ void set_up(int fd, const std::string& device, hal::SerialMode mode) {
   }
   termios settings = before;
   cfmakeraw(&settings);
-  // Disables XON/XOFF, because the port would send XOFF on the line. Bytes with wrong parity are marked, see
-  // ParityMarks.
+  // Disables XON/XOFF, because the port could send XOFF on the line. If the format has parity, bytes with
+  // line errors are marked, see ParityMarks.
   settings.c_iflag = has_parity(mode.format) ? INPCK | PARMRK : 0;
   settings.c_cflag &= ~static_cast<tcflag_t>(kTermiosFormat | CRTSCTS);
   settings.c_cflag |= CLOCAL | CREAD | termios_format(mode.format);
@@ -67,7 +67,7 @@ void set_up(int fd, const std::string& device, hal::SerialMode mode) {
   tcflush(fd, TCIOFLUSH);
 }
 
-/// Opens the port. The caller has to close it.
+/// Opens and configures the port. The caller must close it.
 int open_port(const std::string& device, hal::SerialMode mode) {
   FileDescriptor port(open(device.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
   if (!port.is_open()) {

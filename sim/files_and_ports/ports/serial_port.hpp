@@ -1,4 +1,4 @@
-// A real serial port, for example a USB RS-485 adapter. Masters on the line at this port can reach the
+// A real serial port, for example a USB RS-485 adapter. A master on the real line at this port can reach the
 // simulated modules.
 #pragma once
 
@@ -17,9 +17,9 @@ namespace ex9000::sim {
 
 class SerialPort final : public Port {
  public:
-  /// Opens `device` in `mode` and prevents others from opening it. `echo`: the adapter receives what it
+  /// Opens `device` in `mode` for exclusive use (TIOCEXCL, flock). `echo`: the adapter receives what it
   /// sends. Throws std::invalid_argument with a one-line message if the device or the settings are not
-  /// available. `place` is the prefix of the device in all messages.
+  /// available. All messages begin with `place` and `device`.
   SerialPort(boost::asio::io_context& io, const std::string& place, const std::string& device,
              hal::SerialMode mode, bool echo);
 
@@ -35,7 +35,7 @@ class SerialPort final : public Port {
   void take(std::size_t size);
   void write_out();
 
-  std::string where_;  ///< for messages
+  std::string where_;  ///< place and device, for messages
   boost::asio::posix::stream_descriptor descriptor_;
   Received received_;
   std::array<std::uint8_t, 4096> buffer_{};
@@ -44,7 +44,7 @@ class SerialPort final : public Port {
   OwnEcho::Clock::time_point began_;  ///< when the first byte in held_back_ was stored
   bool under_way_ = false;            ///< the beginning of a reply has been written
   std::optional<OwnEcho> echo_;
-  std::optional<ParityMarks> marks_;  ///< of formats with parity
+  std::optional<ParityMarks> marks_;  ///< nullopt: the format has no parity
 };
 
 }  // namespace ex9000::sim

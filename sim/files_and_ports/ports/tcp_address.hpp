@@ -13,10 +13,12 @@ struct TcpAddress {
 };
 
 /// Parses HOST:PORT, :PORT, PORT or [IPV6]:PORT. Without HOST, the result has the loopback address 127.0.0.1.
-/// Throws std::invalid_argument with a one-line message.
+/// Throws std::invalid_argument with a one-line message if the syntax is wrong.
 TcpAddress parse_tcp_address(const std::string& text);
-/// Parses an address to listen on, in the same syntax. HOST is a numeric address, or `localhost` for
-/// 127.0.0.1. Other names would require the name services of the system, which a static program cannot use.
+/// Parses an address to listen on, in the same syntax. HOST must be a numeric address, or `localhost` for
+/// 127.0.0.1. Other names would require the name services of the system, which a statically linked program
+/// may not be able to use. Throws std::invalid_argument with a one-line message if the syntax or HOST is
+/// wrong.
 TcpAddress parse_listening_address(const std::string& text);
 
 }  // namespace ex9000::sim

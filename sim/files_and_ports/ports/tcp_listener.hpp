@@ -14,8 +14,8 @@ namespace ex9000::sim {
 /// No function blocks.
 class TcpListener {
  public:
-  /// Receives the socket of each client. The socket does not block, sends without delay, and detects clients
-  /// that have disappeared.
+  /// Receives the socket of each client. The socket does not block, sends without delay (TCP_NODELAY), and
+  /// detects clients that have disappeared (SO_KEEPALIVE).
   using Admit = std::function<void(boost::asio::ip::tcp::socket socket)>;
 
   /// Starts to listen. Throws std::invalid_argument with a one-line message if the address is not available.
@@ -23,7 +23,8 @@ class TcpListener {
 
   /// Calls `admit` for each client while the io_context runs. Call this once.
   void start(Admit admit);
-  /// Calls `admit` during this call for all clients that have connected; the io_context need not run.
+  /// Calls `admit` during this call for all clients that have connected; the io_context need not run. Call
+  /// this only after `start`.
   void accept_waiting();
   /// Returns the HOST:PORT on which this object listens.
   [[nodiscard]] std::string address() const;

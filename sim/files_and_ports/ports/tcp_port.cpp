@@ -11,8 +11,8 @@ namespace {
 
 using boost::asio::ip::tcp;
 
-/// The maximum number of masters on one line. In practice only clients that never disconnect reach this
-/// limit.
+/// The maximum number of clients at the same time. Usually, this number is reached only if clients do not
+/// disconnect.
 constexpr std::size_t kMostMasters = 64;
 
 }  // namespace
@@ -22,7 +22,7 @@ struct TcpPort::Client {
 
   tcp::socket socket;
   boost::asio::steady_timer linger;
-  /// Cancels pending operations. Their handlers then do nothing.
+  /// Closes the socket and cancels pending operations. The handlers of cancelled operations do nothing.
   void close() {
     boost::system::error_code ignored;
     linger.cancel(ignored);
@@ -67,7 +67,8 @@ void TcpPort::read_waiting() {
   }
 }
 
-/// Reads the available bytes, up to the size of a buffer. Returns the error if there are none.
+/// Reads the available bytes, up to the size of `client.bytes`, and passes them to `received_`. Returns the
+/// error if no bytes are available.
 boost::system::error_code TcpPort::take(Client& client) {
   boost::system::error_code error;
   const std::size_t size = client.socket.read_some(boost::asio::buffer(client.bytes), error);
@@ -117,8 +118,8 @@ void TcpPort::resume() {
   }
 }
 
-/// Removes a client that has closed the connection. If the client still `listens`, because it has only closed
-/// its sending side, the client stays for the linger time.
+/// Removes a client whose connection has ended. If the client may still receive (`listens`), because it has
+/// closed its sending side without an error, the client stays for the linger time.
 void TcpPort::part_with(const ClientPointer& client, bool listens) {
   if (!listens) {
     forget(client);
@@ -129,8 +130,8 @@ void TcpPort::part_with(const ClientPointer& client, bool listens) {
     return;
   }
   client->linger.expires_after(*linger_);
-  client->linger.async_wait([this, client](const boost::system::error_code& error) {
-    if (error != boost::asio::error::operation_aborted) {
+  client->linger.async_wait([this, client](const boost::system::error_code& /*error*/) {
+    if (client->socket.is_open()) {  // otherwise the client was removed, or the port was destroyed
       forget(client);
     }
   });

@@ -16,11 +16,11 @@
 namespace ex9000::sim {
 
 /// Transfers only the bytes: no MBAP header, no telnet negotiation. The port sends the bytes from the line to
-/// all clients, and puts everything that a client sends on the line.
+/// all clients, and passes the bytes of each client to the line.
 class TcpPort final : public Port {
  public:
-  /// How long a client that has closed its sending side may wait for the rest of the replies; nullopt:
-  /// without limit.
+  /// The maximum time for which a client that has closed its sending side waits for the rest of the replies;
+  /// nullopt: no maximum.
   using Linger = std::optional<std::chrono::milliseconds>;
   static constexpr std::chrono::milliseconds kUsualLinger{1000};
 
@@ -39,8 +39,8 @@ class TcpPort final : public Port {
   struct Client;
 
   void admit(boost::asio::ip::tcp::socket socket);
-  /// Shared with pending asynchronous reads: a client may be removed during a read, because the port cannot
-  /// send a reply to it.
+  /// The port and pending asynchronous operations share a client, because the port may remove the client
+  /// while an operation is pending.
   using ClientPointer = std::shared_ptr<Client>;
 
   void read(const ClientPointer& client);

@@ -7,7 +7,8 @@ namespace ex9000::sim {
 
 namespace {
 
-/// All rates that termios supports. Modules support some of them and understand nothing at the others.
+/// All rates for which Linux has a termios constant. A master may set any of them on a pseudo-terminal, but
+/// modules support only some of them.
 constexpr std::array<std::pair<speed_t, std::uint32_t>, 30> kSpeeds{
     {{B50, 50},           {B75, 75},           {B110, 110},         {B134, 134},
      {B150, 150},         {B200, 200},         {B300, 300},         {B600, 600},

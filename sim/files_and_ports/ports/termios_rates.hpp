@@ -1,4 +1,4 @@
-// Conversion between baud rates, line formats and termios constants.
+// Converts between baud rates and termios constants, and converts line formats to termios flags.
 #pragma once
 
 #include <termios.h>
@@ -12,10 +12,10 @@ namespace ex9000::sim {
 
 /// Returns the termios constant for a rate in bits per second, or nullopt if there is none.
 std::optional<speed_t> termios_speed(std::uint32_t baud);
-/// Returns the rate in `settings`, in bits per second, or nullopt if it is not a known rate.
+/// Returns the output rate in `settings`, in bits per second, or nullopt if it is not a known rate.
 std::optional<std::uint32_t> termios_rate(const termios& settings);
 
-/// The flags of `c_cflag` that define a line format besides CS8.
+/// The flags of `c_cflag` that define a line format together with CS8.
 constexpr tcflag_t kTermiosFormat = CSTOPB | PARENB | PARODD;
 /// Returns the flags of kTermiosFormat that are set in this line format.
 tcflag_t termios_format(LineFormat format);

@@ -57,9 +57,9 @@ void Visits::wait() {
                       });
 }
 
-/// Reads all events and calls the function of each device that has at least one. It calls the function only
-/// once, because the number of events has no meaning: the kernel merges identical consecutive events. If the
-/// kernel's queue was full, the events of any device may be lost, so this function calls those of all
+/// Reads all events, then calls the function of each device that has at least one event. Calls each function
+/// only once, because the number of events has no meaning: the kernel merges identical consecutive events. If
+/// the kernel's queue was full, events of any device may be lost. In this case, calls the functions of all
 /// devices.
 void Visits::take() {
   std::set<int> visited;

@@ -10,8 +10,9 @@
 
 namespace ex9000::sim {
 
-/// A service of an io_context, so that all its pseudo-terminals share one inotify instance: on Debian, a user
-/// may have only 128 inotify instances. Call boost::asio::use_service to get the service. No function blocks.
+/// A service of an io_context, so that all pseudo-terminals of the io_context share one inotify instance: by
+/// default, a user may have only 128 inotify instances on Debian. Call boost::asio::use_service to get the
+/// service. No function blocks.
 class Visits final : public boost::asio::io_context::service {
  public:
   static boost::asio::io_context::id id;
@@ -28,8 +29,8 @@ class Visits final : public boost::asio::io_context::service {
   int watch(const std::string& device, std::function<void()> visited);
   /// Ends a watch. Its function is not called any more.
   void ignore(int watch);
-  /// Reports all visits up to now. If there were more than the system keeps (fs.inotify.max_queued_events),
-  /// reports a visit of each device.
+  /// Reports all visits up to now. If the system has lost events because its queue was full
+  /// (fs.inotify.max_queued_events), reports a visit of each watched device.
   void take();
 
  private:

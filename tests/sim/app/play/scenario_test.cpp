@@ -302,9 +302,9 @@ TEST(Play, RequiresABusForAScenarioAndRejectsABusForATranscript) {
             std::string::npos);
   EXPECT_NE(played(directory / "scenario.txt", false).find("add modules or a bus file to the command line"),
             std::string::npos);
-  EXPECT_NE(
-      played(directory / "transcript.txt", true).find("has 'model:' lines; leave out modules and bus file"),
-      std::string::npos);
+  EXPECT_NE(played(directory / "transcript.txt", true)
+                .find("has 'model:' lines; leave out the modules or the bus file"),
+            std::string::npos);
 }
 
 TEST(Play, RefusesAFileWithoutValidSteps) {

@@ -1,10 +1,13 @@
-// Tests the limit of clients of a TCP port.
+// Tests the clients of a TCP port: their limit, and their end.
 #include "sim/files_and_ports/ports/tcp_port.hpp"
 
 #include <gtest/gtest.h>
 
 #include <boost/asio/buffer.hpp>
+#include <boost/asio/post.hpp>
 #include <boost/asio/write.hpp>
+#include <chrono>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,6 +23,14 @@ constexpr std::size_t kMostMasters = 64;
 /// long.
 bool run_one(boost::asio::io_context& io) { return io.run_one_for(std::chrono::seconds(60)) == 1; }
 
+tcp::socket connected(boost::asio::io_context& io, const TcpPort& port) {
+  const std::string address = port.address();
+  const auto number = static_cast<std::uint16_t>(std::stoul(address.substr(address.rfind(':') + 1)));
+  tcp::socket socket(io);
+  socket.connect({boost::asio::ip::address_v4::loopback(), number});
+  return socket;
+}
+
 class TcpPortClients : public testing::Test {
  protected:
   TcpPortClients() {
@@ -29,13 +40,7 @@ class TcpPortClients : public testing::Test {
     });
   }
 
-  tcp::socket connect() {
-    const std::string address = port_.address();
-    const auto number = static_cast<std::uint16_t>(std::stoul(address.substr(address.rfind(':') + 1)));
-    tcp::socket socket(io_);
-    socket.connect({boost::asio::ip::address_v4::loopback(), number});
-    return socket;
-  }
+  tcp::socket connect() { return connected(io_, port_); }
 
   boost::asio::io_context io_;
   TcpPort port_{io_, {"127.0.0.1", 0}, TcpPort::Linger()};
@@ -56,6 +61,19 @@ TEST_F(TcpPortClients, AHalfClosedClientMakesRoomForTheNextIfTheLingerTimeHasNoL
     ASSERT_TRUE(run_one(io_)) << "the next client was not accepted";
   }
   EXPECT_EQ(received_, "$01M\r");
+}
+
+/// The linger time expires before the handler that destroys the port has run, so it cannot be cancelled then.
+TEST(TcpPort, CanBeDestroyedAfterALingerTimeHasExpired) {
+  boost::asio::io_context io;
+  auto port = std::make_unique<TcpPort>(io, TcpAddress{"127.0.0.1", 0}, std::chrono::milliseconds(0));
+  port->start([](const std::uint8_t*, std::size_t, const Port::Positions&) { return true; });
+  tcp::socket client = connected(io, *port);
+  ASSERT_TRUE(run_one(io));  // accepts the client
+  client.shutdown(tcp::socket::shutdown_send);
+  ASSERT_TRUE(run_one(io));  // reads the end of its bytes, and starts the linger time
+  boost::asio::post(io, [&] { port.reset(); });
+  EXPECT_GE(io.poll(), 2U);
 }
 
 }  // namespace
