@@ -42,9 +42,8 @@ std::uint32_t Bus::bit_rate(std::uint32_t baud) const {
   return static_cast<std::uint32_t>(std::min(std::uint64_t{baud} * times_faster_, kFastest));
 }
 
-/// Returns the bit rate in virtual time and the format as receivers read it. If the result is the same for a
-/// sender and a receiver, the receiver gets the bytes unchanged, except those that collide, are disturbed or
-/// began before the receiver listened.
+/// Returns the bit rate in virtual time and the format as receivers read it. A receiver gets a byte without
+/// sampling only if the result is the same for the mode of the sender and for the mode of the receiver.
 SerialMode Bus::on_the_wires(SerialMode mode) const {
   return {bit_rate(mode.baud), as_received(mode.format)};
 }
@@ -149,7 +148,8 @@ bool Bus::has_other_listeners(SerialMode mode) const {
          (listeners_.size() == 1 && listeners_.begin()->first != std::pair(mode.baud, mode.format));
 }
 
-/// Returns whether the receiver has the mode of the byte and has listened since the start of the byte.
+/// Returns whether the receiver has the mode of the byte, has listened since the start of the byte, and has
+/// sampled no part of it.
 bool Bus::has_heard_from_the_start(const Receiver& receiver, const Wave& wave) {
   return wave.mode == receiver.mode && receiver.sampler.position() <= wave.start;
 }
@@ -172,8 +172,9 @@ void Bus::begin_sampling() {
     if (!receiver.samples && has_to_sample(receiver)) {
       receiver.samples = true;
       ++sampling_;
-      // The sampler begins at the first byte that has not ended: until then, the line was idle or the
-      // receiver got each byte unchanged.
+      // The sampler begins at the start of the first byte that has not ended, or at its own position if that
+      // is later. It does not have to sample older bytes: the receiver got them unchanged, has sampled them
+      // already, or did not listen.
       receiver.sampler.skip_to(std::max(receiver.sampler.position(), first->start));
       next_sample_ = std::min(next_sample_, receiver.sampler.next(receiver.mode, clock_.virtual_now()));
     }
@@ -255,7 +256,7 @@ void Bus::deliver(const Wave& over) {
   }
 }
 
-/// Removes the bytes that have ended and that no sampler reads any more.
+/// Removes the bytes that have ended and that no sampler has to read.
 void Bus::forget_waves() {
   if (sampling_ == 0 && !carries()) {
     waves_.clear();

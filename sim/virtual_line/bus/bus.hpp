@@ -20,7 +20,7 @@ using hal::SerialMode;
 using hal::doubles::VirtualClock;
 using hal::doubles::Wire;
 
-/// A user of the bus. Most stations are devices on the two wires, for example a module or a master. Other
+/// A user of the bus. Some stations are devices on the two wires, for example a module or a master. Other
 /// stations do not send or receive; the bus only calls their `run`.
 class Station {
  public:
@@ -57,8 +57,8 @@ class BusObserver {
   /// Called after the driver of `station` is enabled or disabled. `station` counts from 0 in the order of
   /// attachment.
   virtual void driver(std::size_t /*station*/, bool /*on*/, VirtualTime /*now*/) {}
-  /// Called when the byte that `station` begins to send now has wrong parity, or when the disturbance has
-  /// changed it. Receivers get the levels `arrives` instead of those of the byte.
+  /// Called when `station` begins to send a byte and receivers get the levels `arrives` instead of the
+  /// correct levels of the byte: the byte has wrong parity, or the disturbance has changed it.
   virtual void changed(std::size_t /*station*/, Levels /*arrives*/) {}
   /// Called at the end of the first stop bit of a byte that began at `start` and whose last stop bit ends at
   /// `end`. A byte is not reported if its driver was disabled before its first stop bit was over. `byte` is
@@ -89,9 +89,9 @@ class Disturbance {
 
 /// A half-duplex line. A byte lasts ten or eleven bit times at the rate of its sender. A receiver with the
 /// same rate and parity gets the byte after its first stop bit. A receiver with another rate or parity
-/// samples the wave in its own mode and gets framing errors, parity errors and wrong bytes. If several
-/// drivers are enabled at the same time, the level of the line is 0 while at least one of them sends a 0, and
-/// receivers sample the resulting wave.
+/// samples the levels on the wires in its own mode, and may get framing errors, parity errors, breaks or
+/// wrong bytes. If several drivers are enabled at the same time, the level of the line is 0 while at least
+/// one of them sends a 0, and receivers sample the resulting levels.
 ///
 /// The clock jumps from event to event; this class does not depend on real time.
 ///
@@ -104,8 +104,8 @@ class Bus {
   Bus& operator=(const Bus&) = delete;
   ~Bus();
 
-  /// Adds a station, which does not listen yet. `station` must live as long as the bus is used; the returned
-  /// end of the wires is valid for the same time.
+  /// Adds a station, which does not listen yet. `station` must live as long as the bus is used. The returned
+  /// end of the wires is valid until the bus is destroyed.
   BusEnd& attach(Station& station);
   /// Adds an observer. `observer` must live as long as the bus is used.
   void observe(BusObserver& observer) { observers_.push_back(&observer); }
@@ -117,9 +117,11 @@ class Bus {
   [[nodiscard]] VirtualTime next() const {
     return std::min(std::min(next_byte_end_, next_sample_), due_times_.next());
   }
-  /// Processes all events at the time `next`, which must not be kNever. Sets the clock to that time.
+  /// Processes all events at the time `next`, which must not be kNever. Sets the clock to that time if the
+  /// clock is not later already.
   void run_next();
-  /// Processes all events up to and including `until`. Sets the clock to `until`.
+  /// Processes all events up to and including `until`. Sets the clock to `until` if the clock is not later
+  /// already.
   void run_until(VirtualTime until);
   void run_for(VirtualTime duration) { run_until(clock_.virtual_now() + duration); }
 

@@ -14,7 +14,7 @@ using hal::doubles::VirtualTime;
 
 /// Stores one due time for each station, and the earliest due time of each block of stations. After a change
 /// of due times, `next` searches only the blocks that have changed. Often all stations set their times
-/// between two calls of `next`, for example receivers after a byte, so a change of a due time must take
+/// between two calls of `next`, for example after they receive a byte, so a change of a due time must take
 /// little time.
 class DueTimes {
  public:
@@ -65,9 +65,9 @@ class DueTimes {
   std::vector<VirtualTime> times_;  ///< whole blocks; kNever after the last station
   VirtualTime running_ = kNoTime;   ///< the argument of `run_due` while it runs
   std::size_t next_to_run_ = 0;     ///< no station before this one is due at `running_`
-  // Results of the last search.
+  // Results of the last search, and the changes since that search.
   mutable std::vector<VirtualTime> earliest_of_;  ///< the earliest due time of each block
-  mutable std::vector<unsigned char> changed_;    ///< for each block: 1 if a due time has changed since
+  mutable std::vector<unsigned char> changed_;    ///< for each block: 1 if a due time has changed
   mutable VirtualTime earliest_ = kNever;
   mutable bool any_changed_ = false;
 };

@@ -65,8 +65,8 @@ void Master::run() {
   } else {
     wire_.put(next.byte, mode_);
   }
-  // The end of each byte is calculated from the start of the first byte, so that rounding errors do not
-  // accumulate.
+  // The end of each byte is calculated from `burst_began_`, not from the end of the previous byte, so that
+  // rounding errors do not accumulate.
   wake_at(burst_began_ + wire_.takes(++burst_bytes_, mode_));
 }
 

@@ -20,7 +20,7 @@ class Master final : public Station {
   Master(const Master&) = delete;
   Master& operator=(const Master&) = delete;
 
-  /// Returns how long `bytes` bytes take on this line.
+  /// Returns how long `bytes` bytes without gaps take at the present rate and in the present format.
   [[nodiscard]] VirtualTime takes(std::size_t bytes) const { return wire_.takes(bytes, mode_); }
   /// Sends the bytes after those that already wait or are on the wires. If no byte waits or is on the wires,
   /// sends them immediately, but not before `not_before`. The driver is enabled from the first byte to the
@@ -72,7 +72,9 @@ class Master final : public Station {
   bool driving_ = false;
   VirtualTime burst_began_{0};
   std::size_t burst_bytes_ = 0;
-  VirtualTime next_ = kNever;  ///< when the present byte ends, or when the first one begins
+  /// When the byte on the wires ends, or when the first byte begins. kNever: no byte waits or is on the
+  /// wires.
+  VirtualTime next_ = kNever;
 
   void wake_at(VirtualTime when);
 };

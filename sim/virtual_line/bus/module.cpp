@@ -8,8 +8,8 @@ namespace ex9000::sim {
 
 namespace {
 
-/// The wake timer handles all deadlines of the main loop of a simulated module. The tick only feeds the
-/// hardware watchdog, so a slow tick is sufficient.
+/// In a simulated module, the wake timer wakes the main loop for all deadlines. The tick is necessary only
+/// for feeding the hardware watchdog, so a slow tick is sufficient.
 constexpr Duration kTick = milliseconds(400);
 
 }  // namespace
@@ -111,7 +111,7 @@ void SimulatedModule::pulse_input(unsigned channel, std::uint32_t count) {
   take_edges();
 }
 
-/// Makes the device process the edges. On a real board, the main loop does this continuously.
+/// Makes the device process the edges. On a real board, the main loop does this at least once a tick.
 void SimulatedModule::take_edges() {
   if (powered()) {
     turn();
@@ -189,7 +189,7 @@ void SimulatedModule::settle() {
 void SimulatedModule::run() {
   runs_at_ = kNever;
   if (next_without_silence_ > clock_.virtual_now()) {
-    end_silence();  // usually this is the only event
+    end_silence();  // only the silence timer can be due
     return;
   }
   if (mcu_->watchdog.has_expired()) {
@@ -250,10 +250,10 @@ void SimulatedModule::receive(std::uint8_t byte, ByteStatus status) {
     return;
   }
   mcu_->device.on_receive(byte, status);
-  work_or_wait();  // most bytes only restart the silence timer
+  work_or_wait();  // most bytes cause no work
 }
 
-/// Runs the interrupt of the silence timer first, see hal/one_shot_timer.hpp.
+/// Runs the interrupt of the silence timer before the receive interrupt, see hal/one_shot_timer.hpp.
 void SimulatedModule::receive_after_silence(std::uint8_t byte, ByteStatus status) {
   mcu_->silence_timer.fire();
   mcu_->device.on_silence();
@@ -265,13 +265,13 @@ void SimulatedModule::work() {
   settle();
 }
 
-/// Runs the main loop until it has no work, unless the main loop is stopped by `hang`. Takes no virtual time.
+/// Runs the main loop until it has no work, unless `hang` has stopped the main loop. Takes no virtual time.
 void SimulatedModule::turn() {
   if (hung_) {
     return;
   }
   do {
-    mcu_->device.on_wake_timer();  // makes `turn` poll INIT* and collect edges now, not at the next tick
+    mcu_->device.on_wake_timer();  // makes `Device::turn` poll INIT* and collect edges now
   } while (mcu_->device.turn() || mcu_->device.has_work());
 }
 

@@ -1,5 +1,5 @@
-// A simulated module: the device, built on the test doubles of the peripherals. This is the simulator's
-// composition file.
+// A simulated module: a Device (hal/device.hpp) whose peripherals are the test doubles in hal/doubles. This
+// is the composition file of the simulated module.
 #pragma once
 
 #include <algorithm>
@@ -26,57 +26,61 @@
 
 namespace ex9000::sim {
 
-/// One module on a bus. Its supply is off at first. This class has a function for each action that a user can
-/// perform on a real module.
+/// One module on a bus. Its supply is off at first. The functions of this class perform the actions of a
+/// user, for example switch the supply on, and cause faults.
 class SimulatedModule final : public Station {
  public:
-  /// Attaches itself to `bus`. `model` is a row of kModels; `timing_at` is that of Module.
+  /// Attaches itself to `bus`. `model` is a row of kModels; `timing_at`: see Module.
   SimulatedModule(Bus& bus, const Model& model, TimingAt timing_at = LineTiming::at);
   SimulatedModule(const SimulatedModule&) = delete;
   SimulatedModule& operator=(const SimulatedModule&) = delete;
 
-  // --- actions from outside, between two runs of the bus ---
+  // --- actions from outside ---
 
-  /// Switches the supply on or off. Switching off interrupts a write in progress and clears the state of the
-  /// firmware. The memory, the input levels and INIT* keep their state.
+  /// Switches the supply on or off. Switching off interrupts a memory write that is in progress, and clears
+  /// the state of the firmware. Otherwise the memory, the input levels and INIT* keep their state.
   void power(bool on);
   /// Starts or ends a supply failure. A failure has the same effects as switching off, but does not change
-  /// the switch.
+  /// the switch of the supply.
   void interrupt_supply(bool interrupted);
   [[nodiscard]] bool powered() const { return mcu_.has_value(); }
-  /// Returns whether the switch of the supply is on. It stays on during a supply failure.
+  /// Returns whether the switch of the supply is on. A supply failure does not change the switch.
   [[nodiscard]] bool switched_on() const { return switched_on_; }
   /// Resets the module without loss of power. Has no effect without power.
   void reset();
   /// Connects INIT* to GND or releases it.
   void set_init(bool asserted);
   [[nodiscard]] bool init_asserted() const { return init_switch_.asserted(); }
-  /// Sets the level of an input channel, counted from 0. The firmware ignores channels that the model lacks.
+  /// Sets the level of an input channel, counted from 0. A channel that the model lacks has no effect on the
+  /// firmware.
   void set_input(unsigned channel, bool level);
-  /// Applies `count` full pulses at this instant. Each pulse changes the level and changes it back.
+  /// Applies `count` pulses to an input channel, counted from 0. Each pulse changes the level and changes it
+  /// back. The pulses take no virtual time.
   void pulse_input(unsigned channel, std::uint32_t count);
   /// Stops the main loop until the next reset.
   void hang() { hung_ = true; }
-  /// Keeps the driver enabled for `by` longer after each reply. The setting survives resets.
+  /// Keeps the driver enabled for `by` longer after each reply. Resets and power cycles do not change this
+  /// setting.
   void release_driver_late(VirtualTime by);
-  /// Makes the module receive and send at `baud` regardless of its settings; 0: its settings apply.
+  /// Makes the module receive and send at `baud` regardless of its settings; 0: its settings apply. A reply
+  /// that has begun keeps its rate.
   void force_rate(std::uint32_t baud);
   /// Returns the rate and format in which the module receives; a rate of 0: it does not listen.
   [[nodiscard]] SerialMode mode() const { return mcu_ ? wire_.forced(mcu_->line.mode()) : SerialMode{}; }
   /// See ModuleWire::end_first_delay.
   void release_late_replies();
-  /// See ModuleWire::watch.
+  /// See ModuleWire::Begins, ModuleWire::Ends and ModuleWire::OnTheWires.
   void watch_replies(ModuleWire::Begins begins, ModuleWire::Ends ends, ModuleWire::OnTheWires on_the_wires) {
     wire_.watch(std::move(begins), std::move(ends), std::move(on_the_wires));
   }
-  /// Replaces the content of the memory with an image that contains `settings`. The module loads these
-  /// settings when it starts next.
+  /// Replaces the content of the memory with the `memory_image` of `settings`. The module loads these
+  /// settings at its next start.
   void store(const Settings& settings);
   /// Returns an image of the whole memory that contains `settings`; a blank image for factory settings.
   static std::vector<std::uint8_t> memory_image(const Model& model, const Settings& settings);
 
   [[nodiscard]] const Model& model() const { return model_; }
-  /// Returns the firmware's state. Call this only while the module is powered.
+  /// Returns the firmware's Module object. Call this only while the module is powered.
   [[nodiscard]] const Module& module() const { return mcu_->device.module(); }
   [[nodiscard]] std::uint16_t outputs() const { return outputs_.channels(); }
   /// Returns the levels at the terminals; bit n is channel n.
@@ -86,8 +90,8 @@ class SimulatedModule final : public Station {
   [[nodiscard]] const hal::doubles::Memory& memory() const { return memory_; }
   hal::doubles::Outputs& output_pins() { return outputs_; }
   hal::doubles::StatusLed& led() { return led_; }
-  /// Returns whether the module is receiving, waiting for the end of a silence, processing a request,
-  /// sending, storing or starting up.
+  /// Returns whether the module starts up, waits for the end of a silence or of a turn-around time, processes
+  /// a request, accesses its memory or sends a reply, or whether a late reply waits or is on the wires.
   [[nodiscard]] bool pending() const;
   /// Returns how often the hardware watchdog has reset the module since this object was constructed.
   [[nodiscard]] std::uint64_t watchdog_resets() const { return watchdog_resets_; }
@@ -170,9 +174,9 @@ class SimulatedModule final : public Station {
   bool supply_interrupted_ = false;
   bool hung_ = false;
   std::uint64_t watchdog_resets_ = 0;
-  SerialMode listens_in_;  ///< the mode of the receiver
-  // Each byte uses the members from here on. They are next to each other, so that they take few cache lines:
-  // many modules may receive each byte.
+  SerialMode listens_in_;  ///< the mode of the receiver that the bus knows
+  // `receive` uses the members from here on. They are next to each other, so that they occupy few cache
+  // lines, because many modules may receive each byte.
   ModuleWire wire_;
   VirtualTime next_without_silence_ = kNever;
   VirtualTime runs_at_ = kNever;  ///< when the bus calls `run`

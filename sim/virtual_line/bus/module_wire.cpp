@@ -15,7 +15,7 @@ void ModuleWire::drive(bool on) {
   drives_ = on;
   if (on) {
     ++reply_;
-    fate_ = begins_ ? begins_() : ReplyFate();
+    fate_ = begins_ ? begins_(reply_) : ReplyFate();
     fate_.lost = fate_.lost || late_.size() > kMostLate;
     forced_for_reply_ = forced_;
     if (!late_.empty()) {  // replies keep their order: a reply after a late one is late too

@@ -1,4 +1,4 @@
-// Connects a module to the wires and simulates defects of this connection.
+// Passes a module's replies to the wires, and simulates lost replies, late replies and a wrong baud rate.
 #pragma once
 
 #include <cstddef>
@@ -28,27 +28,28 @@ class ModuleWire final : public Wire {
  public:
   ModuleWire(const VirtualClock& clock, Wire& wire) : clock_(clock), wire_(wire) {}
 
-  /// Called when the UART enables the driver. Returns the effect of defects on the reply. The function must
-  /// not switch off the module's power.
-  using Begins = std::function<ReplyFate()>;
+  /// Called when the UART enables the driver. `reply` is the number of the reply, from 1. Returns the effect
+  /// of defects on the reply. The function must not reset the module or switch off its power.
+  using Begins = std::function<ReplyFate(std::uint64_t reply)>;
   /// Called when the UART disables the driver, even if the reply is lost or is not on the wires yet.
   using Ends = std::function<void()>;
   /// Called with `on` true before the driver is enabled on the wires for a reply. Called with false after the
-  /// driver is disabled, or when `abort` drops the reply. `reply` is the number of the reply, from 1. Lost
-  /// replies have a number too, but are not reported.
+  /// driver is disabled, or when `abort` drops the reply. `reply` is the same number as for Begins. This
+  /// function is not called for lost replies.
   using OnTheWires = std::function<void(std::uint64_t reply, bool on)>;
   void watch(Begins begins, Ends ends, OnTheWires on_the_wires);
   /// Makes the UART run at `baud` regardless of the firmware's setting; 0: the firmware's setting applies.
   void force_rate(std::uint32_t baud) { forced_ = baud; }
-  /// Returns `mode` with the forced rate, if there is one and the UART is on.
+  /// Returns `mode`, with the forced rate if there is one and the UART is on.
   [[nodiscard]] SerialMode forced(SerialMode mode) const { return with_rate(forced_, mode); }
 
   /// Returns whether a late reply is on the wires. The UART may already have sent it completely.
   [[nodiscard]] bool sends_late() const { return driving_late_; }
   [[nodiscard]] VirtualTime next() const { return late_.empty() ? kNever : late_.front().when; }
   void run();
-  /// Ends the delay of the first late reply, if this reply has not begun. Makes all later replies earlier by
-  /// the same time.
+  /// Makes all waiting bytes earlier by the same time, so that the first late reply begins now. Has no effect
+  /// if no byte waits, or if this reply has already begun on the wires. Bytes that the UART has not sent yet
+  /// keep their delay.
   void end_first_delay();
   /// Drops all bytes that are not on the wires yet, and disables the driver if a late reply is on the wires.
   /// Call this when the module loses its supply or is reset.
@@ -71,7 +72,8 @@ class ModuleWire final : public Wire {
     std::uint64_t reply;
   };
 
-  /// Replies are lost if more entries than this are queued, so that endless requests cannot fill the memory.
+  /// A reply is lost if `late_` has more entries than this when the reply begins, so that endless requests
+  /// cannot fill the computer's memory.
   static constexpr std::size_t kMostLate = 65'536;
 
   void hand_on(What what, std::uint8_t byte, SerialMode mode);

@@ -15,7 +15,8 @@ bool level_of(const Waves& waves, VirtualTime at) {
   return std::all_of(waves.begin(), waves.end(), [at](const Wave& wave) { return wave.level(at); });
 }
 
-/// Returns the first time from `from` on and before `until` at which the line has `level`.
+/// Returns the first time from `from` on and before `until` at which the line has `level`; nullopt if there
+/// is none.
 std::optional<VirtualTime> find_level(const Waves& waves, bool level, VirtualTime from, VirtualTime until) {
   if (from < until && level_of(waves, from) == level) {
     return from;

@@ -26,7 +26,7 @@ constexpr LineFormat as_received(LineFormat format) {
   return format == LineFormat::k8N2 ? LineFormat::k8N1 : format;
 }
 
-/// Returns whether stations in these modes get each other's bytes.
+/// Returns whether stations in these modes get each other's bytes unchanged.
 constexpr bool hear_each_other(SerialMode a, SerialMode b) {
   return a.baud == b.baud && as_received(a.format) == as_received(b.format);
 }
@@ -74,18 +74,20 @@ constexpr ByteStatus status_of(Levels levels, LineFormat format) {
   return right ? ByteStatus::Good : ByteStatus::ParityError;
 }
 
-/// The levels that one station puts on the wires for a byte, with the changes by a disturbance, and the byte
-/// that this station has sent.
+/// A byte that a station sends: its value, its times, and its levels on the wires, which a disturbance may
+/// have changed.
 struct Wave {
-  /// `its_mode`: the bit rate, not 0, and the format as receivers read it.
+  /// `its_mode`: the bit rate on the wires, not 0, and the format as receivers read it.
   Wave(VirtualTime its_start, SerialMode its_mode, Levels its_levels)
       : start(its_start), mode(its_mode), levels(its_levels), ends(boundary(bits())) {}
 
   [[nodiscard]] unsigned bits() const { return bits_received(mode.format); }
-  /// Returns the time at which bit `index` begins; for `bits()`, the end of the first stop bit.
+  /// Returns the time at which bit `index` begins. If `index` is `bits()`, this is the end of the first stop
+  /// bit.
   [[nodiscard]] VirtualTime boundary(unsigned index) const;
   [[nodiscard]] VirtualTime end() const { return ends; }
-  /// Returns true for the idle level. Outside the byte, the level is idle too.
+  /// Returns the level at the time `at`: true if idle. The level is idle before the byte, after its first
+  /// stop bit, and from `cut_off` on.
   [[nodiscard]] bool level(VirtualTime at) const;
 
   VirtualTime start;
@@ -95,14 +97,15 @@ struct Wave {
   /// Time at which the driver was disabled during the byte; kNever: it was not.
   VirtualTime cut_off = hal::doubles::kNever;
   std::size_t station = 0;
-  SerialMode nominal;  ///< the rate and format that the station is set to
+  SerialMode nominal;  ///< the nominal rate and the format in which the station sends
   std::uint8_t byte = 0;
   bool disturbed = false;  ///< the levels differ from those of `byte`
   /// At least two drivers were enabled, another byte was on the wires, or the byte was cut off.
   bool collided = false;
-  bool over = false;  ///< has ended; samplers may still read it
+  bool over = false;  ///< the byte has ended; samplers may still read it
 
-  /// Returns whether a receiver with the same mode gets the byte unchanged.
+  /// Returns whether a receiver gets the byte unchanged if it has the same mode and has listened since the
+  /// start of the byte.
   [[nodiscard]] bool arrives_whole() const { return !collided && !disturbed; }
 };
 
@@ -116,15 +119,15 @@ class UartSampler {
     ByteStatus status;
   };
 
-  /// Samples the wires up to `until`. Returns a byte if its first stop bit is over by then, otherwise
-  /// nullopt. After a byte, the caller must call this function again. `mode` has the bit rate on the wires,
-  /// and must be the same in all calls.
+  /// Samples the wires up to `until`, or up to the end of the next byte. Returns a byte if its first stop bit
+  /// is over by then, otherwise nullopt. If the result is a byte, the caller must call this function again
+  /// with the same `until`. `mode` has the bit rate on the wires, and must be the same in all calls.
   std::optional<Received> advance(const Waves& waves, SerialMode mode, VirtualTime until);
 
   /// Returns whether the sampler is in the middle of a byte or waits for the line to become idle.
   [[nodiscard]] bool busy() const { return receiving_ || waits_for_idle_ || complete_; }
-  /// Returns when `advance` must be called again after a call with `now`: at the end of the byte if its stop
-  /// bit has been sampled, otherwise half a bit after `now`.
+  /// Returns when `advance` must be called again after a call with `now`: at the end of a byte whose first
+  /// stop bit has been sampled, otherwise half a bit after `now`.
   [[nodiscard]] VirtualTime next(SerialMode mode, VirtualTime now) const;
   /// Returns the time up to which the sampler has processed the wires.
   [[nodiscard]] VirtualTime position() const { return position_; }
@@ -137,7 +140,7 @@ class UartSampler {
   Levels levels_ = 0;  ///< the bits that have been sampled so far
   VirtualTime start_{0};
   VirtualTime position_{0};
-  std::optional<Received> complete_;  ///< a byte whose stop bit has been sampled but is not over
+  std::optional<Received> complete_;  ///< a byte whose first stop bit has been sampled but is not over
 };
 
 }  // namespace ex9000::sim

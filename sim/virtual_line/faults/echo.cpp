@@ -23,7 +23,8 @@ void Echo::receive(std::uint8_t byte, ByteStatus /*status*/) {
 
 void Echo::run() {
   if (!driving_ && bus_.carries()) {
-    // The next byte may already be on the wires, because `receive` is called only after the stop bit.
+    // The echo waits for the byte that is on the wires, because `receive` is called only after the first stop
+    // bit.
     wake_at(clock_.virtual_now() + wire_.takes(1, mode_));
     return;
   }

@@ -17,13 +17,13 @@ class Echo final : public Station {
   Echo& operator=(const Echo&) = delete;
 
   /// Starts to receive and to send in the mode of the line. The echo sends the received bytes when no byte
-  /// has arrived for `delay`.
+  /// has arrived for `delay` and no byte is on the wires.
   void switch_on(VirtualTime delay) {
     on_ = true;
     delay_ = delay;
     wire_.listen(mode_);
   }
-  /// Stops listening; bytes already received are still sent.
+  /// Stops listening. The echo still sends the bytes that it has already received.
   void switch_off() {
     on_ = false;
     wire_.listen({});
@@ -38,7 +38,8 @@ class Echo final : public Station {
   void receive(std::uint8_t byte, ByteStatus status) override;
 
  private:
-  static constexpr std::size_t kMostHeard = 1024;  ///< bytes of one echo; further bytes are ignored
+  /// The maximum number of bytes in one transmission of the echo. Further received bytes are ignored.
+  static constexpr std::size_t kMostHeard = 1024;
 
   const Bus& bus_;
   VirtualClock& clock_;

@@ -32,7 +32,7 @@ struct Row {
 void take_nothing(Fault& /*fault*/, const std::string& /*word*/) {}
 void take_probability(Fault& fault, const std::string& word) { fault.probability = parse_probability(word); }
 void take_time(Fault& fault, const std::string& word) { fault.time = parse_time(word); }
-/// Requires at least 1 ms, because a shorter delay would keep an instant line busy forever.
+/// Requires at least 1 ms, because an echo with a shorter delay could keep an instant line busy all the time.
 void take_silence(Fault& fault, const std::string& word) {
   fault.time = parse_time(word);
   if (fault.time < std::chrono::milliseconds(1)) {
@@ -77,7 +77,7 @@ const Row& row_called(const std::string& name) {
   return *row;
 }
 
-/// Returns the number of an ordinal, for example 10 for `10th`; nullopt for any other word.
+/// Returns the number of an ordinal, for example 10 for `10th`; nullopt for 0 and for any other word.
 std::optional<std::uint64_t> ordinal(const std::string& word) {
   constexpr std::size_t kSuffix = 2;
   if (word.size() <= kSuffix) {

@@ -1,4 +1,4 @@
-// A fault in the notation of the user: the kind of fault, and its schedule.
+// A fault in the notation of the user: the kind of fault, then its value and its schedule, if it has them.
 //
 //   bit-errors 1e-4                     probability for each bit on the line
 //   lost-reply every 10th reply
@@ -38,14 +38,14 @@ enum class Trouble {
 /// The duration of a power cut without `for`.
 inline constexpr VirtualTime kPowerCutLasts = std::chrono::seconds(1);
 
-/// The times at which a fault occurs, that is, takes effect.
+/// When a fault occurs, that is, takes effect, and how long the fault lasts.
 struct Schedule {
   enum class When { Always, At, EveryTime, EveryReply, Probably, AfterWrites };
 
   When when = When::Always;
   VirtualTime time{0};      ///< At: from the start of the line's time; EveryTime: the period
-  std::uint64_t count = 1;  ///< EveryReply, AfterWrites
-  double probability = 0;   ///< Probably: for each reply
+  std::uint64_t count = 1;  ///< EveryReply: 10 means every 10th reply; AfterWrites: number of writes
+  double probability = 0;   ///< Probably: the probability for each reply
   /// How long the fault lasts after it begins. nullopt: a power cut lasts kPowerCutLasts, another fault that
   /// depends on replies lasts until the end of the reply, and any other fault with a duration is permanent.
   std::optional<VirtualTime> lasts;
@@ -61,10 +61,10 @@ struct Fault {
   std::vector<std::uint8_t> bytes;  ///< the foreign bytes
   Schedule schedule;
   std::optional<std::size_t> module;  ///< the position on the line, from 0; nullopt: all modules
-  std::string text;                   ///< as the user wrote it
+  std::string text;                   ///< the notation of the user, with single spaces
 };
 
-/// Returns true if the fault affects a module, false if it affects the wires.
+/// Returns true if a fault of this kind affects a module, false if it affects the wires.
 bool concerns_a_module(Trouble trouble);
 
 /// Parses `TROUBLE [VALUE] [SCHEDULE]`. The result applies to all modules of the line; the caller may set
@@ -75,7 +75,7 @@ Fault parse_fault(const std::string& text);
 /// Returns a typical fault of each kind, in the notation of the user.
 std::vector<std::string> usual_faults();
 
-/// Returns one line for each kind of fault, with its syntax and its effect, for --help and the manual.
+/// Returns one line for each kind of fault, with its name, its value and its effect, for --help.
 std::string fault_help();
 
 }  // namespace ex9000::sim

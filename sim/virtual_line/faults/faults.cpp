@@ -17,13 +17,14 @@ constexpr std::size_t kMostForeign = 1024;
 
 bool is_of(const Fault& fault, std::size_t module) { return !fault.module || *fault.module == module; }
 
-/// Returns whether the fault is noise, which affects the wires, regardless of the sender.
+/// Returns whether a fault of this kind is noise: it changes, drops or adds bytes, regardless of their
+/// sender.
 bool is_noise(Trouble trouble) {
   return trouble == Trouble::BitErrors || trouble == Trouble::LostBytes ||
          trouble == Trouble::InsertedBytes || trouble == Trouble::StrayZeros;
 }
 
-/// Returns whether the fault has no duration.
+/// Returns whether a fault of this kind has no duration.
 bool is_a_moment(Trouble trouble) { return trouble == Trouble::ForeignTraffic || trouble == Trouble::Hang; }
 
 }  // namespace
@@ -37,7 +38,8 @@ Faults::Faults(Bus& bus, Master& master, Modules& modules, std::uint64_t seed, N
       chance_(seed),
       replies_(modules.size()) {
   for (std::size_t i = 0; i < modules_.size(); ++i) {
-    modules_[i]->watch_replies([this, i] { return reply_begins(i); }, [this, i] { reply_ends(i); },
+    modules_[i]->watch_replies([this, i](std::uint64_t reply) { return reply_begins(i, reply); },
+                               [this, i] { reply_ends(i); },
                                [this, i](std::uint64_t reply, bool on) { reply_on_the_wires(i, reply, on); });
     modules_[i]->memory().on_write([this, i] { written(i); });
   }
@@ -71,7 +73,7 @@ std::size_t Faults::add(const Fault& fault) {
   return numbers_;
 }
 
-/// Attaches the station that the fault requires, if it is not attached yet.
+/// If a fault of this kind requires a station that is not attached yet, attaches this station to the bus.
 void Faults::prepare(Trouble trouble) {
   if (is_noise(trouble) && !noise_) {
     noise_ = std::make_unique<Noise>(bus_, NoiseRates(), chance_.number());
@@ -142,7 +144,7 @@ VirtualTime Faults::next() const {
 
 void Faults::run() { act(); }
 
-/// Processes everything that is due: ends occurrences first, then begins new ones.
+/// Processes everything that is due: ends occurrences first, then begins new ones, then updates the effects.
 void Faults::act() {
   const VirtualTime now = bus_.clock().virtual_now();
   for (Armed& armed : armed_) {
@@ -162,7 +164,8 @@ void Faults::act() {
   end_.run_at(next());
 }
 
-/// Schedules an update of the effects at the present time, after the present actions of the modules.
+/// Schedules an update of the effects at the present time. If a module is in the middle of an action, the
+/// update follows this action.
 void Faults::change() {
   changed_ = true;
   end_.run_at(bus_.clock().virtual_now());
@@ -180,7 +183,7 @@ void Faults::begin(Armed& armed, std::optional<std::size_t> reply_of) {
   }
   if (fault.trouble == Trouble::Hang) {
     for (std::size_t i = 0; i < modules_.size(); ++i) {
-      // If a reply triggered the occurrence, it affects only the sender of the reply. Any other occurrence
+      // An occurrence that a reply triggered affects only the sender of the reply. Any other occurrence
       // affects all modules of the fault.
       if (is_of(fault, i) && reply_of.value_or(i) == i) {
         hanging_.push_back(i);
@@ -252,8 +255,8 @@ void Faults::forget_others_of(Armed& armed, const Occurrence& latest) {
                     occurrences.end());
 }
 
-ReplyFate Faults::reply_begins(std::size_t module) {
-  ++replies_[module];
+ReplyFate Faults::reply_begins(std::size_t module, std::uint64_t reply) {
+  replies_[module] = reply;
   for (Armed& armed : armed_) {
     const Schedule& schedule = armed.fault.schedule;
     if (!schedule.of_replies() || !is_of(armed.fault, module)) {
@@ -271,7 +274,7 @@ ReplyFate Faults::reply_begins(std::size_t module) {
   ReplyFate fate;
   fate.lost = affected_by(Trouble::LostReply, module);
   if (fate.lost) {
-    reply_on_the_wires(module, replies_[module], false);
+    reply_on_the_wires(module, reply, false);
   }
   if (const Fault* late = active(Trouble::LateReply, module)) {
     fate.late_by = late->time;
@@ -289,8 +292,9 @@ void Faults::reply_ends(std::size_t module) {
   }
 }
 
-/// Begins the noise that this reply has triggered when the reply begins on the wires (`on` is true), even if
-/// the reply is late. Ends noise without a duration when the reply has ended, or is dropped (`on` is false).
+/// `on` is true when the reply begins on the wires, which may be late. The function then begins the noise
+/// that this reply has triggered. `on` is false when the reply has ended or is dropped. The function then
+/// ends the noise that this reply has triggered, if the noise has no duration or still waits for the reply.
 void Faults::reply_on_the_wires(std::size_t module, std::uint64_t reply, bool on) {
   for (Armed& armed : armed_) {
     if (!is_noise(armed.fault.trouble)) {

@@ -19,23 +19,24 @@
 
 namespace ex9000::sim {
 
-/// The same faults, the same seed and the same traffic produce the same occurrences at the same times. Call
-/// the functions only between two runs of the bus; only the bus calls `run`.
+/// The same faults, the same seed and the same traffic produce the same occurrences at the same times. Only
+/// the bus calls `run`. Call `add`, `remove` and `remove_all` only while Bus::run_next is not running.
 class Faults final : public Station {
  public:
   using Modules = std::vector<std::unique_ptr<SimulatedModule>>;
   /// Receives one line of text for people when a fault occurs or ends by itself. Faults that depend on
-  /// replies and faults without a schedule (When::Always) are not reported.
+  /// replies and faults without a schedule (Schedule::When::Always) are not reported.
   using Notice = std::function<void(const std::string&)>;
 
-  /// Attaches itself to `bus`. `master` has the line's mode; `notice` may be empty. `bus`, `master` and
-  /// `modules` must live as long as the bus is used.
+  /// Attaches itself to `bus`. `master` has the line's mode; `notice` may be empty. `master`, `modules` and
+  /// this object must live as long as the bus is used.
   Faults(Bus& bus, Master& master, Modules& modules, std::uint64_t seed, Notice notice);
   Faults(const Faults&) = delete;
   Faults& operator=(const Faults&) = delete;
 
   /// Adds a fault and returns its number, counted from 1. A fault without a schedule begins immediately.
-  /// Throws std::invalid_argument if the line does not have the module, or if the scheduled time has passed.
+  /// Throws std::invalid_argument if the line does not have the fault's module, or if the scheduled time has
+  /// passed.
   std::size_t add(const Fault& fault);
   /// Removes a fault and ends its effects. A hang does not end, and bytes that the fault has already queued
   /// are still sent. Returns false if no fault has this number.
@@ -46,7 +47,9 @@ class Faults final : public Station {
     std::size_t number;
     std::string text;
     std::optional<std::size_t> module;
-    std::size_t in_progress;  ///< at most 1; at most 1 for each module if the fault depends on replies
+    /// The number of occurrences in progress: at most 1, or at most 1 for each module if the fault depends on
+    /// replies.
+    std::size_t in_progress;
     std::uint64_t occurrences_so_far;
   };
   [[nodiscard]] std::vector<Info> list() const;
@@ -60,23 +63,23 @@ class Faults final : public Station {
  private:
   /// One occurrence that is in progress or waits for its reply.
   struct Occurrence {
-    /// The module whose reply triggered the occurrence. The occurrence does not affect other modules.
-    /// nullopt: no reply triggered the occurrence.
+    /// The module whose reply triggered the occurrence. If the fault affects modules, the occurrence affects
+    /// only this module. nullopt: no reply triggered the occurrence.
     std::optional<std::size_t> reply_of;
-    /// The end in the line's time. kNever: an occurrence that a reply triggered ends with this reply; any
-    /// other occurrence does not end by itself.
+    /// The end in the line's time; kNever while `waits` is true. Otherwise, kNever means that an occurrence
+    /// that a reply triggered ends with this reply, and that any other occurrence does not end by itself.
     VirtualTime ends = kNever;
-    /// For noise: the number of the reply in the module's count.
+    /// For noise that a reply triggered: the number of this reply, counted from 1 for each module.
     std::uint64_t reply = 0;
-    bool waits = false;  ///< for noise: true until the reply is on the wires
+    bool waits = false;  ///< for noise that a reply triggered: true until this reply is on the wires
   };
   /// A fault that was added, with its occurrences.
   struct Armed {
     std::size_t number = 0;
     Fault fault;
-    VirtualTime begins = kNever;  ///< in the line's time
+    VirtualTime begins = kNever;  ///< the next scheduled time, in the line's time; kNever: none
     std::vector<Occurrence> occurrences;
-    std::uint64_t counted = 0;  ///< replies or writes
+    std::uint64_t counted = 0;  ///< number of replies or writes that the schedule has counted
     std::uint64_t occurrences_so_far = 0;
 
     /// Returns the number of occurrences in progress. Does not count occurrences that wait for their reply.
@@ -86,7 +89,7 @@ class Faults final : public Station {
 
   [[nodiscard]] VirtualTime next() const;
   void change();
-  ReplyFate reply_begins(std::size_t module);
+  ReplyFate reply_begins(std::size_t module, std::uint64_t reply);
   void reply_ends(std::size_t module);
   void reply_on_the_wires(std::size_t module, std::uint64_t reply, bool on);
   void written(std::size_t module);
@@ -118,12 +121,12 @@ class Faults final : public Station {
   Notice notice_;
   Chance chance_;
   std::vector<Armed> armed_;
-  std::vector<std::uint64_t> replies_;  ///< number of replies that each module has begun
+  std::vector<std::uint64_t> replies_;  ///< number of the last reply of each module (ModuleWire)
   std::size_t numbers_ = 0;
   bool changed_ = false;  ///< the next call of `act` must update the effects
   std::vector<std::size_t> hanging_;
   std::vector<std::vector<std::uint8_t>> to_say_;
-  // Created when the first fault requires them.
+  // Each of these objects is created when a fault first requires it.
   std::unique_ptr<Noise> noise_;
   std::unique_ptr<Echo> echo_;
   std::unique_ptr<Master> stranger_;

@@ -1,4 +1,4 @@
-// Noise on the wires: flipped bits, lost characters, and characters that no station has sent.
+// Noise on the wires: changed bits, lost characters, and characters that no station has sent.
 #pragma once
 
 #include <cstdint>
@@ -11,18 +11,18 @@ namespace ex9000::sim {
 
 /// The frequency of each kind of noise, as a probability from 0 to 1.
 struct NoiseRates {
-  double flipped_bit = 0;     ///< for each bit, including start and stop bits
+  double flipped_bit = 0;     ///< for each bit, including the start, parity and first stop bit
   double lost_character = 0;  ///< for each character: receivers see an idle line
   /// For each character: a random byte follows it directly. If the sender's next character also follows
   /// without a gap, the two collide.
   double stray_character = 0;
-  /// For each character: a byte 00 follows it directly, as after the turn-around of a real line.
+  /// For each character: a byte 00 follows it directly, as may happen at the turn-around of a real line.
   double stray_zero = 0;
   /// For each 0 bit of a character that begins while another driver is enabled: receivers see the idle level.
   double lost_in_contention = 0;
 };
 
-/// The same seed and the same traffic produce the same noise.
+/// The same seed, the same rates and the same traffic produce the same noise.
 class Noise final : public Disturbance, public Station {
  public:
   /// Attaches itself to `bus` and disturbs it from now on.

@@ -14,19 +14,21 @@ class Line;
 /// treat two frames as one.
 class FrameSpacing final : private BusObserver {
  public:
-  /// Observes the bus of `line`, which must outlive this object.
+  /// Observes the bus of `line`. Use this object only while `line` exists.
   explicit FrameSpacing(Line& line);
 
-  /// Returns the end of the last byte on the wires.
+  /// Returns the end of the last complete byte on the wires, including a second stop bit; 0 if there was
+  /// none.
   [[nodiscard]] VirtualTime last_byte() const { return last_byte_; }
-  /// Returns whether the master has sent that byte.
+  /// Returns whether the master has sent the last complete byte. Also returns true if there was none.
   [[nodiscard]] bool master_was_last() const { return last_speaker_ == 0; }
 
-  /// Returns the earliest start of a frame that the module at `address` treats as a separate frame. `address`
-  /// is the first byte of the frame. The returned time may be in the past. Call this only if a station other
-  /// than the master has sent last.
+  /// Returns the time from which the master may begin a frame, so that the modules that the frame is for
+  /// treat it as a separate frame. `address` is the first byte of the frame. The returned time may be in the
+  /// past. Call this only if `master_was_last()` is false.
   [[nodiscard]] VirtualTime after_others(std::uint8_t address) const;
-  /// Returns the earliest start of a frame that modules do not join to the previous frame of the master.
+  /// Returns the time from which the master may begin a frame, so that modules do not join it to the previous
+  /// frame of the master. Call this only if `master_was_last()` is true.
   [[nodiscard]] VirtualTime after_own() const;
 
  private:
@@ -35,7 +37,7 @@ class FrameSpacing final : private BusObserver {
             VirtualTime end) override;
 
   const Line& line_;
-  std::size_t last_speaker_ = 0;  ///< the station that has sent last; 0: the master
+  std::size_t last_speaker_ = 0;  ///< the station that has sent last; 0: the master, or no station yet
   VirtualTime last_byte_{0};
 };
 

@@ -34,7 +34,7 @@ class Times {
     }
   }
 
-  /// Removes and returns the duration of a keyword; nullopt if it is not given.
+  /// Removes and returns the duration of a keyword; nullopt if the keyword is not given.
   std::optional<VirtualTime> take(const std::string& word) {
     for (auto time = times_.begin(); time != times_.end(); ++time) {
       if (time->first == word) {
@@ -152,7 +152,8 @@ void MovedInput::plan(VirtualTime begins) {
   }
 }
 
-/// Plans one change of the level. Real contacts open and close several times before they settle.
+/// Plans one change of the level, and the bounces after it: real contacts open and close several times before
+/// they settle.
 void MovedInput::chatter(VirtualTime begins, bool level) {
   moves_.push_back({begins, level});
   if (program_.bounce == VirtualTime(0)) {

@@ -20,9 +20,9 @@ struct InputProgram {
 
   unsigned channel = 0;
   Kind kind = Kind::Square;
-  VirtualTime time{0};    ///< Square, KeyAgain: the period; KeyOnce: line time of the key press
+  VirtualTime time{0};    ///< Square, KeyAgain: the period; KeyOnce: the line's time of the key press
   VirtualTime high{0};    ///< how long the input is on
-  VirtualTime bounce{0};  ///< how long the contacts bounce
+  VirtualTime bounce{0};  ///< how long the contacts bounce after each change
 };
 
 /// Parses a program. `model` defines which channels exist. Throws std::invalid_argument with a one-line
@@ -58,7 +58,7 @@ class MovedInput final : public Station {
   InputProgram program_;
   Chance chance_;
   std::deque<Move> moves_;
-  VirtualTime again_ = kNever;  ///< time of the next repetition
+  VirtualTime again_ = kNever;  ///< time of the next repetition; kNever: none
 };
 
 }  // namespace ex9000::sim

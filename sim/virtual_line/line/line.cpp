@@ -11,7 +11,7 @@ constexpr std::chrono::milliseconds kComingUp{100};
 
 }  // namespace
 
-/// Bytes of one frame arrive without a gap, so a very short silence ends a frame.
+/// Bytes of one frame arrive without a gap, so a very short silence ends a frame with a correct CRC.
 LineTiming instantly(std::uint32_t /*baud*/, LineFormat /*format*/) {
   constexpr Duration kSilence(6);
   constexpr Duration kQuiet = milliseconds(2);

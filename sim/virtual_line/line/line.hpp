@@ -15,28 +15,29 @@
 
 namespace ex9000::sim {
 
-/// The speed of a line, and the rules by which its modules detect the end of frames.
+/// The speed of a line and the timing of its modules.
 struct LineKind {
-  std::uint32_t times_faster = 1;  ///< compared to the nominal rates
+  std::uint32_t times_faster = 1;  ///< factor for all nominal rates
   TimingAt timing_at = LineTiming::at;
 };
 
-/// Bytes take their real time.
+/// Bytes take as long as on a real line.
 constexpr LineKind kPaced{};
-/// Bytes take their real time, and modules follow the standard strictly: a gap of more than T1.5 makes a
-/// Modbus frame invalid.
+/// Bytes take as long as on a real line. A gap of more than T1.5 makes a Modbus frame invalid, as Modbus over
+/// Serial Line V1.02, 2.5.1.1, requires.
 constexpr LineKind kStrictlyPaced{1, LineTiming::strictly_at};
-/// Returns the timing of an instant line: a Modbus frame with a correct CRC ends when no byte follows
-/// immediately; any other Modbus frame ends after a silence of 2 ms.
+/// Returns the timing of an instant line. A valid Modbus frame ends after a silence of about 6 us, and any
+/// other Modbus frame ends after a silence of about 2 ms. The turn-around time of DCON is 0.
 LineTiming instantly(std::uint32_t baud, LineFormat format);
-/// Bytes take almost no time: each takes 0.02 us at 115200 baud and 2 us at 1200 baud.
+/// Bytes take almost no time: each takes about 0.02 us at 115200 baud and about 2 us at 1200 baud.
 constexpr LineKind kInstant{4000, instantly};
 
-/// Station 0 of the bus is the master; the modules follow in the given order.
+/// A line with a master and modules. Station 0 of the bus is the master. The next stations are the modules,
+/// in the order in which the constructor gets them.
 class Line {
  public:
-  /// Creates a line with these modules. Their supply is off at first. The master uses the factory baud rate.
-  /// `receive` gets each byte that the master receives.
+  /// Creates a line with these modules. At first, the supply of the modules is off, and the master uses the
+  /// factory baud rate and 8N1. `receive` is called for each byte that the master receives.
   Line(const std::vector<ModuleSpec>& modules, LineKind kind, Master::Receive receive);
 
   /// Switches on the supply of all modules and runs the line for 100 ms, in which the modules start up.
@@ -63,18 +64,20 @@ class Line {
   [[nodiscard]] const Faults* faults_so_far() const { return faults_.get(); }
   /// Starts `program`, which changes the level of an input of the module at `index`.
   void move_input(std::size_t index, const InputProgram& program);
-  /// Returns whether something is in progress that ends by itself, usually within milliseconds: bytes on the
-  /// wires or in a queue, the silence after a Modbus frame, a delayed reply, a store, a module that starts
-  /// up. Events that depend only on the clock do not count: a host watchdog, a scheduled fault, an input
-  /// program.
+  /// Returns whether something is in progress that ends by itself, usually within milliseconds: a byte on the
+  /// wires, an enabled driver, bytes that a station still has to send, the silence after a Modbus frame, a
+  /// request that a module processes, a delayed reply, a store, the start of a module, or a change of the
+  /// active faults. Events that depend only on the clock do not count, for example a host watchdog, a
+  /// scheduled fault or an input program. Requests that wait in `requests` do not count either.
   [[nodiscard]] bool unsettled() const;
-  /// Returns whether the line is unsettled, or a request of the queue waits or is in progress.
+  /// Returns whether the line is unsettled, or a request in `requests` waits or is in progress.
   [[nodiscard]] bool pending() const;
-  /// Returns the silence that modules of this line require after the first stop bit of the last byte. On a
-  /// paced line, this is the rest of the stop bits and T3.5, in the master's mode.
+  /// Returns the silence that modules of this line require between frames, counted from the end of the first
+  /// stop bit of the last byte. Except on an instant line, this is the rest of the stop bits and T3.5, at the
+  /// baud rate and format of the master.
   [[nodiscard]] VirtualTime rtu_silence() const;
   /// Returns the silence after which earlier bytes cannot belong to the next frame, even if the CRC of these
-  /// bytes is wrong.
+  /// bytes is wrong. It is counted like `rtu_silence`.
   [[nodiscard]] VirtualTime rtu_separate() const;
 
  private:

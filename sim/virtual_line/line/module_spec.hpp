@@ -1,4 +1,4 @@
-// The description of a module on the command line or in a bus file: MODEL[@ADDR][,KEY=VALUE]...
+// The description of a module: MODEL[@ADDR][,KEY=VALUE]... on the command line, an object in a bus file.
 #pragma once
 
 #include <string>
@@ -17,7 +17,7 @@ struct ModuleSpec {
   bool settings_given = false;  ///< at least one setting was given explicitly
   bool init_asserted = false;
   std::string eeprom;  ///< path of the EEPROM file; empty: settings are lost when the program ends
-  std::string eeprom_place = "eeprom=";  ///< prefix of messages about that file
+  std::string eeprom_place = "eeprom=";  ///< prefix of messages about the EEPROM file
   std::vector<InputProgram> inputs;      ///< programs that change inputs
 };
 
@@ -25,15 +25,16 @@ struct ModuleSpec {
 /// wrong and what would be right.
 ModuleSpec parse_module_spec(const std::string& text);
 
-// The steps of parse_module_spec. They throw the same exceptions.
+// The steps of parse_module_spec. If a value is wrong, they throw like parse_module_spec.
 
 /// Returns a module of this model with factory settings.
 ModuleSpec factory_fresh(const Model& model);
 /// Sets the address. `text` is one or two hex digits.
 void set_address(ModuleSpec& spec, const std::string& text);
-/// Applies one setting: KEY=VALUE of a module on the command line, or a key of a module in a bus file.
+/// Applies KEY=VALUE of a module on the command line, or one of these keys of a module in a bus file:
+/// protocol, baud, format, checksum, edge, name, init or eeprom.
 void apply_setting(ModuleSpec& spec, const std::string& key, const std::string& value);
-/// Checks that the settings are valid in combination.
+/// Checks that the address is a Modbus address if the protocol is Modbus RTU.
 void check(const ModuleSpec& spec);
 
 /// Returns the model with this designation, in upper or lower case, with or without EX. Throws like

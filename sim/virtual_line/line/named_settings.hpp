@@ -1,5 +1,5 @@
-// Sets the settings of a module by the names that users write: KEY=VALUE on the command line, in a bus file
-// or in a transcript.
+// Sets the settings of a module by the names that users write on the command line, in bus files and in
+// transcripts.
 #pragma once
 
 #include <string>
@@ -11,7 +11,7 @@ namespace ex9000::sim {
 
 /// Sets the setting that `key` names: protocol, baud, format, checksum, edge or name. Returns false and
 /// changes nothing for any other key. Throws std::invalid_argument with a one-line message if the value is
-/// not valid for this setting.
+/// not valid for this setting of this model.
 bool set_by_name(Settings& settings, const Model& model, const std::string& key, const std::string& value);
 
 }  // namespace ex9000::sim

@@ -39,14 +39,16 @@ void RequestQueue::send_next() {
   send();
 }
 
-/// Returns whether bytes of another master, or a late reply, are on the line or have not settled yet.
+/// Returns whether the master sends, bytes are on the wires, or the line is unsettled. After a reply to this
+/// queue, an unsettled line does not count, because `send` leaves the required silence.
 bool RequestQueue::others_use_the_line() const {
   return line_.master().sending() || line_.bus().carries() ||
          (line_.spacing().last_byte() != own_byte_ && line_.unsettled());
 }
 
-/// Sends the first request. While others use the line, tries again after 1 ms. At the deadline, sends the
-/// request anyway; if another master is still sending, reports instead that the request was not sent.
+/// Sends the first request. While others use the line, tries again every 1 ms until the deadline. At the
+/// deadline, sends the request anyway, unless the master still has bytes of another program to send. In this
+/// case, reports that the request was not sent.
 void RequestQueue::send() {
   constexpr VirtualTime kBetweenLooks = std::chrono::milliseconds(1);
   Master& master = line_.master();
@@ -55,7 +57,7 @@ void RequestQueue::send() {
     enter(State::WaitsForLine, now + kBetweenLooks);
     return;
   }
-  if (master.sending()) {  // the request would wait until all these bytes are sent
+  if (master.sending()) {  // the request would wait behind all these bytes
     Reply none;
     none.sent = false;
     finish(none);
@@ -86,7 +88,7 @@ void RequestQueue::hear(std::uint8_t byte, ByteStatus status) {
   VirtualTime ends = now + line_.rtu_silence();
   if (reply_.bytes.size() < kLongestFrame) {
     reply_.bytes.push_back(byte);
-  } else {  // no frame is so long; a station that never stops sending must not block the queue
+  } else {  // too long for a frame; a station that never stops sending must not block the queue
     reply_.damaged = true;
     ends = std::min(ends, std::max(now, deadline_));
   }
@@ -122,8 +124,9 @@ void RequestQueue::run() {
   }
 }
 
-/// Returns whether the received frame is the reply to the request in progress. If another master has sent
-/// bytes since then, returns false, because the frame may be the reply to that master.
+/// Returns whether the received frame is the reply to the request in progress. If another program has sent
+/// bytes through the master since this request, returns false, because the frame may be the reply to those
+/// bytes.
 bool RequestQueue::is_reply() const {
   const Request& request = waiting_.front();
   const bool is_for_this_queue = line_.master().taken() == taken_;
@@ -132,8 +135,8 @@ bool RequestQueue::is_reply() const {
           (!reply_.damaged && request.is_reply({reply_.bytes.data(), reply_.bytes.size()})));
 }
 
-/// Sends the next request before it reports the reply to this one, because `done` may add a request, which
-/// must follow those that already wait.
+/// Sends the next request, and then reports the reply to the finished request. The order matters because
+/// `done` may call `ask`, which must not find the state of the finished request.
 void RequestQueue::finish(const Reply& reply) {
   const Request request = std::move(waiting_.front());
   waiting_.pop_front();

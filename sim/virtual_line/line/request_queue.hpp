@@ -13,42 +13,43 @@ namespace ex9000::sim {
 
 class Line;
 
-/// Sends each request as the master of the line, then waits for its reply, as a serial device server does.
-/// Keeps the order of the requests, and leaves the silence that modules require between frames. No function
-/// blocks. All times are in line time.
+/// Sends each request through the master of the line, and then waits for its reply or for the turn-around
+/// time, as a serial device server does. Keeps the order of the requests, and leaves the silence that modules
+/// require between frames. No function blocks. All times are in the virtual time of the line.
 ///
-/// If another master has used the line, or a reply is late, a request first waits until everything on the
-/// line has settled, for at most kReplyTimeout. The other master does not wait for this queue. If the other
-/// master sends during a request, the request gets no reply.
+/// Other programs can use the line at the same time: they send through the same master, but not through this
+/// queue. If the last byte on the wires did not belong to a reply to this queue, a request first waits until
+/// the line has settled (Line::unsettled), for at most kReplyTimeout. The other programs do not wait for this
+/// queue. If one of them sends while a request is in progress, the request gets no reply.
 class RequestQueue final : private Station {
  public:
-  /// The maximum time from the last byte of a request to the first byte of its reply. This is more than twice
-  /// the time in which a module must store settings and reply (wire.md section 7).
+  /// The maximum time from the end of a request to the end of the first byte of its reply. This is more than
+  /// twice the time within which a module that stores settings must begin its reply (wire.md section 7).
   static constexpr VirtualTime kReplyTimeout = std::chrono::milliseconds(500);
-  /// The turn-around time: after a broadcast, the queue waits for this time, so that modules can process the
-  /// request (Modbus over Serial Line V1.02, 2.4.1: 100 ms to 200 ms).
+  /// The turn-around time: after a request that expects no reply, the queue waits for this time, so that
+  /// modules can process the request (Modbus over Serial Line V1.02, 2.4.1: 100 ms to 200 ms).
   static constexpr VirtualTime kTurnaround = std::chrono::milliseconds(100);
 
   struct Reply {
     std::vector<std::uint8_t> bytes;  ///< at most 256; empty: not sent, no reply in time, or none expected
     bool sent = true;                 ///< false: the request was not sent, because others used the line
     bool damaged = false;             ///< a byte had a line error, or more than 256 bytes arrived
-    VirtualTime delay{0};             ///< from the end of the request to the end of the first byte
+    VirtualTime delay{0};             ///< from the end of the request to the end of the first byte of `bytes`
   };
 
   struct Request {
     std::vector<std::uint8_t> bytes;  ///< the frame on the line, at least one byte
     bool expects_reply = true;
-    /// Returns whether the frame is the reply. Other frames are ignored, as if they had not arrived. If this
-    /// function is empty, every frame is the reply, even a damaged one.
+    /// Returns whether `frame` is the reply. The queue ignores damaged frames, and frames for which this
+    /// function returns false. If this function is empty, the first frame is the reply, even a damaged one.
     std::function<bool(Bytes frame)> is_reply;
     /// The queue calls this function exactly once, unless the owner is destroyed before the queue sends the
-    /// request.
+    /// request, or the queue is destroyed first.
     std::function<void(const Reply& reply)> done;
-    std::weak_ptr<void> owner;  ///< the client
+    std::weak_ptr<void> owner;  ///< the client; must not be empty
   };
 
-  /// Attaches a timer to the bus of `line`, which must outlive this object.
+  /// Attaches this object to the bus of `line`. This object must live as long as the bus is used.
   explicit RequestQueue(Line& line);
   RequestQueue(const RequestQueue&) = delete;
   RequestQueue& operator=(const RequestQueue&) = delete;
@@ -63,10 +64,10 @@ class RequestQueue final : private Station {
  private:
   enum class State {
     Idle,           ///< nothing to send
-    WaitsForLine,   ///< others use the line; the request waits for at most kReplyTimeout
+    WaitsForLine,   ///< the request waits until the line has settled, for at most kReplyTimeout
     WaitsForReply,  ///< the request is being sent, or no byte of its reply has arrived yet
-    Receives,       ///< bytes of the reply arrive; a silence ends it
-    TurnsAround,    ///< the request is being sent and has no reply, or the turn-around time passes
+    Receives,       ///< bytes of a frame arrive; a silence ends the frame
+    TurnsAround,    ///< the request expects no reply; it is being sent, or the turn-around time passes
   };
 
   void run() override;
@@ -81,10 +82,10 @@ class RequestQueue final : private Station {
   BusEnd& timer_;
   State state_ = State::Idle;
   std::deque<Request> waiting_;  ///< the first one is in progress, unless the state is Idle or WaitsForLine
-  VirtualTime own_byte_{0};      ///< end of the last reply; a later byte may be from others
-  std::uint64_t taken_ = 0;      ///< the value of Master::taken when the request was sent
+  VirtualTime own_byte_{0};      ///< end of the last reply to this queue
+  std::uint64_t taken_ = 0;      ///< Master::taken after the request was passed to the master
   VirtualTime sent_{0};          ///< end of the last byte of the request
-  VirtualTime deadline_{0};      ///< when the wait for the line, for the reply or after a broadcast ends
+  VirtualTime deadline_{0};      ///< when the wait for the line or the reply, or the turn-around time, ends
   Reply reply_;
 };
 

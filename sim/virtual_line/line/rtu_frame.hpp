@@ -1,4 +1,4 @@
-// Modbus RTU frames of a master.
+// Builds the Modbus RTU requests of a master, and checks the replies.
 #pragma once
 
 #include <algorithm>
@@ -29,15 +29,16 @@ inline std::vector<std::uint8_t> rtu_frame(std::uint8_t address, const std::vect
 /// Returns the PDU in a frame of at least three bytes.
 inline Bytes pdu_of(Bytes frame) { return frame.first(frame.size - 2).from(1); }
 
-/// Returns whether `frame` is a valid reply, perhaps an exception, to `request`; both are complete frames.
-/// The address and the function code must be those of the request. A reply to a read (01 to 04) must have the
-/// byte count and the length that the request implies. A reply to a write (05, 06, 0F, 10) must repeat the
-/// address, and the value or the count (MODBUS Application Protocol V1.1b3, section 6). The rest of a reply
-/// to another function is not checked. These checks reject nearly all echoes of requests that read, and most
-/// late replies to other requests.
+/// Returns whether `frame` is a valid reply, perhaps an exception, to `request`. Both begin with the address
+/// and end with the CRC. The CRC of `frame` must be correct. The address and the function code must be those
+/// of the request; an exception also has the bit kRtuException, and a length of 5 bytes. A reply to a read
+/// (01 to 04) must have the byte count and the length that the request implies. A reply to a write (05, 06,
+/// 0F, 10) must have 8 bytes and repeat the first 6 bytes of the request (MODBUS Application Protocol
+/// V1.1b3, section 6). The rest of a reply to another function is not checked. These checks reject nearly all
+/// echoes of requests that read, and most late replies to other requests.
 inline bool is_rtu_reply(Bytes request, Bytes frame) {
   constexpr std::size_t kException = 5;        // size of an exception; no reply is shorter
-  constexpr std::size_t kAddressAndCount = 8;  // minimum size of the requests below
+  constexpr std::size_t kAddressAndCount = 8;  // minimum size of a request that reads or writes
   if (frame.size < kException || crc16(frame).value() != 0 || frame[0] != request[0] ||
       (frame[1] | kRtuException) != (request[1] | kRtuException)) {
     return false;
@@ -55,7 +56,7 @@ inline bool is_rtu_reply(Bytes request, Bytes frame) {
   if (request.size < kAddressAndCount) {
     return false;
   }
-  if (writes) {  // the reply repeats the address, and the value or the count
+  if (writes) {  // the reply repeats the data address, and the value or the count
     return frame.size == kAddressAndCount && std::equal(frame.begin(), frame.begin() + 6, request.begin());
   }
   const std::size_t count = request.word(4);

@@ -49,7 +49,7 @@ class ModuleWireTest : public testing::Test {
     wire.drive(false);
   }
   void watch() {
-    wire.watch([this] { return fate; }, [this] { ++ended; },
+    wire.watch([this](std::uint64_t /*reply*/) { return fate; }, [this] { ++ended; },
                [this](std::uint64_t reply, bool on) {
                  on_the_wires.push_back(std::to_string(reply) + (on ? " on" : " off"));
                });

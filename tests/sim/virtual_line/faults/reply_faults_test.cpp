@@ -77,6 +77,14 @@ TEST(LateReply, IsNeverSentAfterTheSupplyHasFailed) {
   EXPECT_EQ(bench.heard(), "");
 }
 
+TEST(NoiseWithEachReply, DamagesRepliesEvenIfTheModuleHasRepliedBeforeTheFirstFault) {
+  FaultBench bench;
+  ASSERT_EQ(bench.ask("$01M"), kName);
+  bench.add("bit-errors 1 every reply");
+  EXPECT_NE(bench.ask("$01M"), kName);
+  EXPECT_TRUE(bench.garbled());
+}
+
 TEST(LateReply, NoiseDamagesOnlyTheLateReply) {
   FaultBench bench;
   bench.add("late-reply 50ms every 2nd reply");
