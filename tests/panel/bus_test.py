@@ -101,8 +101,25 @@ class Bus(Panel):
         left_out = """[...document.querySelectorAll('.row[data-kind=missed]')].map((row) =>
             row.querySelector('.from').textContent + ': ' + row.querySelector('.meaning').textContent)"""
         for name in "hall", "yard":
-            self.browser.until(f"{left_out}.some((said) => /^{name}: [0-9]+ frames were left out here$/.test(said))")
+            self.browser.until(f"{left_out}.some((said) => /^{name}: [0-9]+ rows were left out here$/.test(said))")
         self.picture("left-out")
+
+    def test_a_paused_page_counts_the_omitted_notes_of_a_line_without_frames(self):
+        self.show("EX9052D-M@02")
+        rows = self.browser.promised("""
+            const {Timeline} = await import("/timeline.js");
+            const timeline = new Timeline();
+            timeline.begin([{name: "hall"}, {name: "yard"}], (line) => ["hall", "yard"][line], () => 0);
+            timeline.setPaused(true);
+            const frame = (number) => ({number, station: 0, bytes: "00", began: number, ended: number});
+            timeline.add([
+              {line: 1, entries: [{number: 0, note: "the host was late", began: 0}]},
+              {line: 0, entries: [...Array(1300).keys()].map(frame)},
+            ]);
+            timeline.setPaused(false);
+            timeline.tell();
+            return timeline.entries.filter(({missed}) => missed).map(({from, means}) => `${from}: ${means}`);""")
+        self.assertEqual(sorted(rows), ["hall: 300 rows were left out here", "yard: 1 row was left out here"])
 
     def test_a_paused_page_starts_again_with_a_new_run_and_its_modules(self):
         simulator, master = self.show_two()

@@ -14,26 +14,26 @@ namespace ex9000::sim {
 
 /// The exceptions of a gateway (MODBUS Application Protocol V1.1b3, section 7).
 enum class GatewayException : std::uint8_t {
-  PathUnavailable = 0x0A,  ///< no module can have this address, or all modules that listen speak ASCII
-  NoReply = 0x0B,          ///< no module has replied in time
+  PathUnavailable = 0x0A,  ///< no module can have this address, or the modules that listen speak only ASCII
+  NoReply = 0x0B,          ///< the request was not sent, or has no valid reply in time
 };
 
-/// Sends each request as an RTU frame to the module whose address is the unit.
+/// Sends requests on the line as RTU frames. The unit of a request is the address in the frame.
 class Gateway {
  public:
-  /// Receives the PDU of the reply; nullopt if the request has none.
+  /// Receives the PDU of the reply; nullopt if the request has no reply.
   using Answer = std::function<void(std::optional<std::vector<std::uint8_t>> pdu)>;
 
   /// `line` must outlive this object.
   explicit Gateway(Line& line) : line_(line) {}
 
-  /// Calls `answer` exactly once, during this call or later, unless `owner` is destroyed first. The answer
-  /// is:
+  /// Calls `answer` exactly once, during this call or later, unless `owner` is destroyed before the request
+  /// is sent on the line. The answer is:
   /// - for unit 0: nullopt, because a broadcast has no reply;
   /// - for a unit above 247, or if at least one module listens and all that listen speak ASCII: exception
   ///   0x0A;
-  /// - if the request is not sent, or no valid reply begins within RequestQueue::kReplyTimeout: exception
-  ///   0x0B;
+  /// - if the request is not sent, another master sends between the request and the end of the reply, or no
+  ///   valid reply begins within RequestQueue::kReplyTimeout: exception 0x0B;
   /// - otherwise: the reply of the module.
   void ask(const MbapFrame& request, const std::weak_ptr<void>& owner, const Answer& answer);
 

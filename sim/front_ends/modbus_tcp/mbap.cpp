@@ -6,7 +6,7 @@ namespace {
 
 constexpr std::size_t kTransaction = 0;
 constexpr std::size_t kProtocol = 2;
-constexpr std::size_t kLength = 4;  ///< number of the bytes after this field
+constexpr std::size_t kLength = 4;  ///< position of the length, which is the number of bytes after it
 constexpr std::size_t kUnit = 6;
 constexpr std::size_t kPdu = 7;
 constexpr std::size_t kLeastLength = 2;  ///< the unit and a function code

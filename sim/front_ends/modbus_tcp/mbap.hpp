@@ -13,7 +13,7 @@ namespace ex9000::sim {
 /// A request or a reply: the header without its protocol and its length, and the PDU.
 struct MbapFrame {
   std::uint16_t transaction = 0;  ///< chosen by the client; a reply has the number of its request
-  std::uint8_t unit = 0;          ///< address of the module
+  std::uint8_t unit = 0;          ///< address of the module; 0: all modules
   std::vector<std::uint8_t> pdu;  ///< 1 to 253 bytes: the function code and its data
 };
 
@@ -22,11 +22,10 @@ class MbapReader {
  public:
   /// Appends received bytes.
   void add(Bytes bytes);
-  /// Removes and returns the next complete frame; nullopt if it is not complete yet, or if the stream is
-  /// broken.
+  /// Removes and returns the next frame; nullopt if this frame is not complete yet, or if `broken` is true.
   std::optional<MbapFrame> next();
-  /// Returns whether a header has a wrong protocol or length. In this case the start of the next frame is
-  /// unknown, so the caller must close the connection. Frames before that header are still valid.
+  /// Returns whether `next` has found a header with a wrong protocol or length. In this case the start of the
+  /// next frame is unknown, so the caller must close the connection. The frames before this header are valid.
   [[nodiscard]] bool broken() const { return broken_; }
   /// Returns the number of bytes that `next` has not returned yet.
   [[nodiscard]] std::size_t size() const { return bytes_.size(); }

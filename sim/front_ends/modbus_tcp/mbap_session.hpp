@@ -14,9 +14,9 @@
 
 namespace ex9000::sim {
 
-/// Takes the requests from the bytes of a client, and passes them to the gateway one after the other, so that
-/// the clients of a line take turns. Replies have the order of the requests. The destructor drops requests
-/// that have not been sent. No function blocks.
+/// Takes the requests from the bytes of a client. Passes each request to the gateway only after the answer to
+/// the previous one, so that the clients of a line take turns. Replies have the order of the requests. The
+/// destructor drops requests that have not been sent. No function blocks.
 class MbapSession {
  public:
   /// Sends a reply to the client. Returns false if the client accepts no more at present.
@@ -35,9 +35,10 @@ class MbapSession {
 
   /// Returns how many bytes wait to become requests.
   [[nodiscard]] std::size_t unread() const { return reader_.size(); }
-  /// Returns whether the client has sent a wrong header. Its later bytes are ignored.
+  /// Returns whether the session has found a header with a wrong protocol or length. Later bytes of the
+  /// client are ignored.
   [[nodiscard]] bool broken() const { return reader_.broken(); }
-  /// Returns whether all complete requests have been answered.
+  /// Returns whether all complete requests have been answered and the session does not wait for `resume`.
   [[nodiscard]] bool idle() const { return !waiting_ && !blocked_ && !passing_on_; }
 
  private:
@@ -48,8 +49,8 @@ class MbapSession {
   Send send_;
   std::function<void()> answered_;
   MbapReader reader_;
-  bool waiting_ = false;  ///< a request is not answered yet
-  bool blocked_ = false;  ///< `send` has returned false
+  bool waiting_ = false;  ///< the gateway has not answered a request yet
+  bool blocked_ = false;  ///< `send` has returned false, and `resume` has not been called yet
   bool passing_on_ = false;
   std::shared_ptr<MbapSession*> lives_ = std::make_shared<MbapSession*>(this);
 };

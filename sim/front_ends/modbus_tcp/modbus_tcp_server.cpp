@@ -16,8 +16,8 @@ using boost::asio::ip::tcp;
 
 /// The maximum number of clients. The server disconnects each further client.
 constexpr std::size_t kMostClients = 64;
-/// The server stops reading from a client while this many bytes of the client wait to become requests. The
-/// limit is not lower than SteppedLine::kMostBytes, the largest N of `advance ... after N`.
+/// The server does not read from a client while at least this many bytes of the client wait to become
+/// requests. The limit is not lower than SteppedLine::kMostBytes, the largest N of `advance ... after N`.
 constexpr std::size_t kMostUnread = 65536;
 /// The size of the send buffer of each client, in bytes. When the buffer of a client that does not read is
 /// full, the server passes on no more requests of this client.
@@ -36,7 +36,7 @@ struct ModbusTcpServer::Client : std::enable_shared_from_this<Client> {
             },
             [this, &server] { server.go_on(shared_from_this()); }) {}
 
-  /// Returns whether the server may read more bytes.
+  /// Returns whether the server may read more bytes of this client while it is not paused.
   [[nodiscard]] bool may_read() const {
     return socket.is_open() && !ended && !session.broken() && session.unread() < kMostUnread;
   }
@@ -114,7 +114,8 @@ void ModbusTcpServer::read(const ClientPointer& client) {
   });
 }
 
-/// Reads the available bytes, up to the size of a buffer. Returns the error if there are none.
+/// Reads the available bytes, up to the size of a buffer, and delivers them. If there are none, returns the
+/// error.
 boost::system::error_code ModbusTcpServer::take(const ClientPointer& client) {
   boost::system::error_code error;
   const std::size_t size = client->socket.read_some(boost::asio::buffer(client->bytes), error);
@@ -128,7 +129,8 @@ boost::system::error_code ModbusTcpServer::take(const ClientPointer& client) {
   return error;
 }
 
-/// Passes `action` to `received_`, which runs it when the line's clock has reached the present time.
+/// Passes a function to `received_` that runs `action` when the line's clock has the present time, unless the
+/// client has been removed by then.
 void ModbusTcpServer::deliver(const ClientPointer& client, std::size_t size,
                               const std::function<void()>& action) {
   ++client->arriving;
@@ -173,8 +175,8 @@ bool ModbusTcpServer::write(const ClientPointer& client) {
   return false;
 }
 
-/// Reads from the client again, or disconnects it if it can send no more requests and has received all
-/// replies.
+/// Reads from the client again if it can send more requests. Otherwise, disconnects it when all its replies
+/// have been written.
 void ModbusTcpServer::go_on(const ClientPointer& client) {
   const bool sends_no_more = client->ended || client->session.broken();
   if (!sends_no_more) {
@@ -184,9 +186,9 @@ void ModbusTcpServer::go_on(const ClientPointer& client) {
   }
 }
 
-/// Closes the connection. Before that, reads the bytes that have already arrived. Otherwise the close would
-/// reset the connection, and the client could lose its last replies. The Client object remains until the
-/// functions that are running now have returned.
+/// Closes the connection. Before that, reads and drops the bytes that have already arrived, at most 256 KiB:
+/// if unread bytes were left, the close would reset the connection, and the client could lose its last
+/// replies. The Client object remains until the functions that are running now have returned.
 void ModbusTcpServer::forget(const ClientPointer& client) {
   constexpr int kMostPieces = 64;
   boost::system::error_code ended;

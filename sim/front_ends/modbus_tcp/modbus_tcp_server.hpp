@@ -22,9 +22,10 @@ namespace ex9000::sim {
 /// function blocks.
 class ModbusTcpServer {
  public:
-  /// The server calls this function when `size` bytes of a client have arrived. The function must call
-  /// `process` once, immediately or later, when the line's clock has the present time, because `process`
-  /// sends requests on the line. The function returns false if the server must stop reading until `resume`.
+  /// The server calls this function when `size` bytes of a client have arrived, or with a `size` of 0 when a
+  /// client accepts replies again. The function must call `process` once, immediately or later, when the
+  /// line's clock has the present time, because `process` may send requests on the line. The function returns
+  /// false if the server must stop reading until `resume`.
   using Received = std::function<bool(std::size_t size, std::function<void()> process)>;
 
   /// Starts to listen. Throws std::invalid_argument with a one-line message if the address is not available.
@@ -34,11 +35,12 @@ class ModbusTcpServer {
   ModbusTcpServer& operator=(const ModbusTcpServer&) = delete;
   ~ModbusTcpServer();
 
-  /// Starts to accept clients. Call this once. The server calls `received` while the io_context runs.
+  /// Starts to accept clients. Call this once. The server calls `received` while the io_context runs, and
+  /// during `read_waiting`.
   void start(Received received);
   /// Continues to read after `received` has returned false.
   void resume();
-  /// Calls `received` during this call for all bytes that have arrived, until `received` returns false; the
+  /// Calls `received` during this call for the bytes that have arrived, until `received` returns false; the
   /// io_context need not run. Call this only if `received` can accept more bytes.
   void read_waiting();
   /// Returns the HOST:PORT on which the server listens.

@@ -1,4 +1,4 @@
-// A value that viewers get only after it has changed.
+// A value that viewers get again only after it has changed.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@ namespace ex9000::sim {
 template <class Value>
 class ChangeTracked {
  public:
-  /// Stores `value`. `look` is the number of the present look.
+  /// Stores `value`. `look` is the number of the present look, from 1. The first value counts as a change.
   void set(Value value, std::uint64_t look) {
     if (!value_ || !(*value_ == value)) {
       value_ = std::move(value);

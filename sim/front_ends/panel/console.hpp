@@ -1,4 +1,4 @@
-// Requests that a person sends to a line from the page.
+// Requests that a person sends to a line from the panel's page.
 #pragma once
 
 #include <cstddef>
@@ -19,17 +19,17 @@ struct ConsoleRequest {
   std::string text;          ///< a DCON command if it begins with a delimiter, otherwise a PDU in hex
 };
 
-/// Returns nullopt if `message` is not a request for the console.
+/// Returns the request in `message`, or nullopt if `message` is not a request of the console.
 std::optional<ConsoleRequest> parse_console_request(const Message& message);
 
-/// Returns the frame to send. `done` and `owner` are not set. Throws std::invalid_argument with a one-line
-/// message if the text is neither a DCON command nor a PDU.
+/// Returns the frame to send. `is_reply`, `done` and `owner` are not set. Throws std::invalid_argument with a
+/// one-line message if the text is too long, or is neither a DCON command nor a PDU.
 RequestQueue::Request frame_of(const ConsoleRequest& request);
 
-/// Returns the message for the page: the bytes of the reply, their meaning and their delay, or the reason why
-/// there is none.
+/// Returns the message for the page: the reply, its meaning and its delay, or the reason why there is no
+/// reply.
 Message answer_to(const ConsoleRequest& request, const RequestQueue::Reply& reply);
-/// Returns the message for a request that is not sent.
+/// Returns the message for a request that was not sent or that has no reply. `why` is the reason.
 Message rejection_of(const ConsoleRequest& request, const std::string& why);
 
 }  // namespace ex9000::sim

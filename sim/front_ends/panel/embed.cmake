@@ -1,4 +1,4 @@
-# Generates a source file from the page's files: cmake -DOUT=page_files.cpp -DFILES=a.html;b.js -P embed.cmake
+# Generates a source file from the page's files: cmake -DOUT=page_files.cpp "-DFILES=a.html;b.js" -P embed.cmake
 set(types_html "text/html")
 set(types_css "text/css")
 set(types_js "text/javascript")

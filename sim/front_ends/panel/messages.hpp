@@ -18,28 +18,31 @@ using Message = nlohmann::ordered_json;
 /// Returns the constant data that the page requires to draw a module's plate.
 Message plate_layout(const Model& model);
 
-// The parts of a face are separate messages because they change independently.
+// The parts of a module's Face are separate messages because they change independently.
 Message message_of(const Plate& plate);
-/// Returns a message that contains the first `inputs` counters.
+/// Returns a message that contains the latches and the first `inputs` counters.
 Message message_of(const InputRecords& gathered, unsigned inputs);
 Message message_of(const HostWatchdogState& guard);
 Message message_of(const Stored& stored);
 
-/// Returns the list of a line's faults. `first` is the position of the line's first module, from 0.
+/// Returns the list of a line's faults. `first` is the position of the line's first module across all lines,
+/// from 0.
 Message message_of(const std::vector<Faults::Info>& faults, std::size_t first);
 
-/// Returns an entry of the traffic. `modules` is the number of modules on the line; a fault has added each
-/// station with a higher number.
+/// Returns entry `number` of the traffic. `modules` is the number of modules on the line; frames from
+/// stations with a higher number come from faults.
 Message message_of(const RecentTraffic::Entry& entry, std::uint64_t number, std::size_t modules);
 
 /// A request of the page to carry out a command.
 struct PageRequest {
-  std::uint64_t id = 0;             ///< chosen by the page, for the reply
-  std::string command;              ///< a command of the control socket
-  std::optional<std::string> undo;  ///< carried out if the page disconnects before it sends this command
+  std::uint64_t id = 0;  ///< chosen by the page, for the reply
+  std::string command;   ///< a command of the control socket
+  /// A command that undoes `command`. If `command` has succeeded, the program carries out `undo` when the
+  /// page disconnects, unless the page has already sent `undo`.
+  std::optional<std::string> undo;
 };
 
-/// Returns nullopt if `message` is not a request.
+/// Returns the request in `message`, or nullopt if `message` is not a valid request to carry out a command.
 std::optional<PageRequest> parse_page_request(const Message& message);
 
 /// Returns the message in `text`; a message that is not an object if `text` is not JSON.

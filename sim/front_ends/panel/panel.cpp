@@ -22,9 +22,9 @@ namespace ex9000::sim {
 
 namespace {
 
-/// The maximum number of frames in one message, for all lines together, unless kFewestFrames applies. Between
-/// two messages, two lines at 115200 baud carry fewer frames. Writing this number of frames causes no delay
-/// that a master notices.
+/// The maximum number of frames and notes in one message, for all lines together, unless kFewestFrames
+/// applies. At speed 1, two lines at 115200 baud carry fewer frames between two calls of `look`. Writing this
+/// number of frames causes no delay that a master notices.
 constexpr std::size_t kMostFrames = 250;
 /// The limit for each line is at least this number, even if there are many lines.
 constexpr std::size_t kFewestFrames = 20;
@@ -32,11 +32,11 @@ constexpr std::size_t kFewestFrames = 20;
 /// The limit for actions that a page holds active; only a faulty page exceeds it.
 constexpr std::size_t kMostHeld = 256;
 
-/// The limit for requests of the console of one page that wait for the line.
+/// The limit for the console requests of one page that have not been answered yet.
 constexpr std::size_t kMostAsked = 16;
 
-/// The longest time between two messages to a page. Without messages, the page cannot distinguish an idle
-/// simulator from a stopped one.
+/// The time after which a page gets another message even if nothing has changed. Without messages, the page
+/// cannot distinguish an idle simulator from a simulator that does not respond.
 constexpr std::chrono::seconds kHeartbeat{1};
 
 /// Returns an id that distinguishes this run of the program from other runs.
@@ -71,7 +71,7 @@ struct Panel::Watched {
   const Line* line = nullptr;
   std::function<VirtualTime()> present;
   VirtualTime now{0};            ///< the line's time at the last look
-  std::size_t first_module = 0;  ///< position across all lines
+  std::size_t first_module = 0;  ///< position across all lines, from 0
   std::vector<Module> modules;
   RecentTraffic recent;
   ChangeTracked<SerialMode> mode;
@@ -167,7 +167,8 @@ class Panel::Viewer final : public PanelViewer {
   }
 
  private:
-  /// Sends a request of the console. Its answer follows in a later message.
+  /// Sends or rejects a request of the console; the answer follows in a later message. Returns false if the
+  /// line does not exist.
   bool ask_line(const ConsoleRequest& request) {
     if (request.line >= state().lines.size()) {
       return false;

@@ -21,14 +21,14 @@ class Panel final : public PanelSource {
  public:
   using CarryOut = std::function<Control::Reply(const std::string& command)>;
 
-  /// Sends a request on a line; `line` is its position, from 0. `done` must be called on the thread that uses
-  /// this Panel.
+  /// Sends a request on the line at position `line`, from 0. `request.done` must be called on the thread that
+  /// uses this Panel.
   using Ask = std::function<void(std::size_t line, RequestQueue::Request request)>;
 
   using WallClock = std::function<std::chrono::steady_clock::time_point()>;
 
-  /// `speed` is the ratio of the lines' time to the wall clock. `wall_clock` is the clock for the keep-alive
-  /// messages to idle pages.
+  /// `speed` is the ratio of the lines' time to the wall clock. `wall_clock` is the clock for the messages
+  /// that pages get even if nothing has changed.
   Panel(CarryOut carry_out, Ask ask, double speed, WallClock wall_clock = std::chrono::steady_clock::now);
   ~Panel() override;
   Panel(const Panel&) = delete;
@@ -37,7 +37,7 @@ class Panel final : public PanelSource {
   /// Adds a line. Call this before the first viewer connects. `line` must outlive this object; `present`
   /// returns the line's time.
   void add_line(const LineSummary& summary, const Line& line, std::function<VirtualTime()> present);
-  /// Adds a frame of a line. `line` is its position, from 0.
+  /// Adds a frame of the line at position `line`, from 0.
   void hear(std::size_t line, const Frame& frame);
   void note(std::size_t line, VirtualTime now, const std::string& text);
 

@@ -117,7 +117,7 @@ class PanelServer::Listener::Client : public std::enable_shared_from_this<Client
   }
 
   [[nodiscard]] bool is_page() const { return viewer_ != nullptr; }
-  /// Returns whether the connection is a page or will become one.
+  /// Returns whether the connection is a page or is becoming one.
   [[nodiscard]] bool takes_a_page() const { return takes_a_page_; }
 
   /// Sends the next message for the page if there is one and the previous message has been sent.
@@ -199,8 +199,9 @@ class PanelServer::Listener::Client : public std::enable_shared_from_this<Client
     return request.method() == http::verb::get || request.method() == http::verb::head;
   }
 
-  /// Returns false if a page of another site has caused the request. Browsers do not send Origin with every
-  /// request, but newer browsers always send Sec-Fetch-Site. Accepts requests without Sec-Fetch-Site.
+  /// Returns false if Sec-Fetch-Site states that a page of another origin has caused the request. Browsers do
+  /// not send Origin with every request; newer browsers also send Sec-Fetch-Site. Accepts requests without
+  /// Sec-Fetch-Site.
   [[nodiscard]] static bool is_fetched_by_us(const Request& request) {
     const auto fetched = request.equal_range("Sec-Fetch-Site");
     return std::all_of(fetched.first, fetched.second, [](const auto& field) {
@@ -233,8 +234,8 @@ class PanelServer::Listener::Client : public std::enable_shared_from_this<Client
         [self = shared_from_this()](const error_code& /*error*/, std::size_t /*size*/) { self->leave(); });
   }
 
-  /// Reads the rest of the request before the connection closes. If unread bytes were left, the close would
-  /// reset the connection, and the client could lose the response.
+  /// Reads the rest of the request, up to about 1 MiB, before the connection closes. If unread bytes were
+  /// left, the close would reset the connection, and the client could lose the response.
   void leave() {
     error_code ignored;
     stream().socket().shutdown(tcp::socket::shutdown_send, ignored);
@@ -301,8 +302,9 @@ class PanelServer::Listener::Client : public std::enable_shared_from_this<Client
     });
   }
 
-  /// Processes a request of the page. Reads the next request only when the reply to this one has been queued,
-  /// so a client cannot send requests faster than the server answers them.
+  /// Processes a request of the page, and disconnects the page if the request is not valid. Reads the next
+  /// request only when the reply to a command has been queued, so a client cannot send commands faster than
+  /// the server answers them. The viewer limits the console requests, which are answered later.
   void answer_page_request() {
     answering_ = false;
     const std::string asked = beast::buffers_to_string(buffer_.data());
@@ -373,8 +375,8 @@ std::size_t PanelServer::Listener::pages() const {
   }));
 }
 
-/// Captures the present state immediately for a new page. When the first page opens, starts to capture the
-/// state regularly.
+/// Captures the present state immediately for a new page. If the state is not captured regularly yet, starts
+/// to capture it regularly.
 void PanelServer::Listener::watch() {
   if (looking_) {
     look();

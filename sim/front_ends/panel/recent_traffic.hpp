@@ -31,13 +31,15 @@ class RecentTraffic {
 
   /// Entries are numbered from 0 in the order of arrival. Returns the number of the next entry.
   [[nodiscard]] std::uint64_t end() const { return first_ + entries_.size(); }
-  /// Returns the number of the first entry to show: it is at least `from`, still stored, and one of the last
-  /// `most` entries.
+  /// Returns the number of the first entry to show. This entry has a number of at least `from`, is still
+  /// stored, and is one of the last `most` entries. If there is no such entry, returns `end()` or a higher
+  /// number.
   [[nodiscard]] std::uint64_t first_of(std::uint64_t from, std::size_t most) const {
     const std::uint64_t newest = end() - std::min<std::uint64_t>(most, end());
     return std::max({from, first_, newest});
   }
-  /// `number` must be at least the result of `first_of`, and less than `end()`.
+  /// Returns a stored entry. `number` must be at least the result of a call of `first_of` after the last
+  /// `add`, and less than `end()`.
   [[nodiscard]] const Entry& entry(std::uint64_t number) const {
     return entries_[static_cast<std::size_t>(number - first_)];
   }

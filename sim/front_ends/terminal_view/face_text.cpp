@@ -38,7 +38,8 @@ std::string supply_text(const Plate& plate) {
   return plate.switched_on ? "no power" : "power off";
 }
 
-/// Returns the settings that a master requires to reach the module.
+/// Returns the settings that a master requires to reach the module. Returns `starting` if the module is
+/// powered but has not started up, and an empty string if the module has no power.
 std::string in_force_text(const Plate& plate) {
   if (!plate.listening) {
     return plate.powered ? "starting" : "";

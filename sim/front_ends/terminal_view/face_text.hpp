@@ -19,14 +19,16 @@ struct Lamps {
 inline constexpr Lamps kRoundLamps{"●", "○"};
 inline constexpr Lamps kPlainLamps{"*", "-"};
 
-/// Returns the face as lines of up to 79 columns; the counters of a model with more than eight inputs may
-/// require more. `number` is the module's position across all lines, from 1, and `now` is the time of its
-/// line's clock.
+/// Returns the face as lines of up to 80 columns. A module number above 999, and the counters of a model with
+/// more than eight inputs, may require more columns. `number` is the module's position across all lines, from
+/// 1, and `now` is the time of its line's clock.
 std::vector<std::string> face_text(std::size_t number, const SimulatedModule& module, VirtualTime now,
                                    const Lamps& lamps);
 
-/// Returns a short text for each shown value that differs between `before` and `now`, or for all shown values
-/// if `before` is null.
+/// Returns a short text for each of these parts that differs between `before` and `now`, or for all of these
+/// parts if `before` is null: the supply, INIT*, the settings in force, the LED, the outputs, the power-on
+/// and safe values, the inputs, the counters, the latches, and the host watchdog without its remaining time.
+/// Parts that do not exist in `now` have no text: the outputs of a model without outputs, for example.
 std::vector<std::string> changes_text(const Model& model, const Face* before, const Face& now);
 
 }  // namespace ex9000::sim

@@ -28,7 +28,7 @@ class Terminal {
   [[nodiscard]] virtual Screen screen() const = 0;
   /// Writes `text`. Blocks only if the terminal accepts output too slowly.
   virtual void write(const std::string& text) = 0;
-  /// Returns whether the terminal has accepted everything that was written.
+  /// Returns whether the terminal has accepted everything that `write` got.
   virtual bool keeps_up() = 0;
 };
 

@@ -21,8 +21,8 @@ std::string environment(const char* name) {
   return value == nullptr ? "" : value;
 }
 
-/// Returns the value of the first variable that is not empty, because that variable applies (POSIX.1-2017,
-/// XBD 8.2).
+/// Returns the value of the first of these variables that is not empty, because this variable determines the
+/// character encoding (POSIX.1-2017, XBD 8.2). Returns an empty string if all are empty.
 std::string locale() {
   for (const char* variable : {"LC_ALL", "LC_CTYPE", "LANG"}) {
     if (std::string value = environment(variable); !value.empty()) {
@@ -84,8 +84,8 @@ bool TerminalOutput::keeps_up() {
   return waiting_.empty();
 }
 
-/// Writes until the terminal accepts no more. If the terminal has disappeared, discards the output; a signal
-/// then ends the program.
+/// Writes the waiting output until the terminal accepts no more. If a write fails, for example because the
+/// terminal has disappeared, discards the waiting output.
 void TerminalOutput::flush() {
   while (!waiting_.empty()) {
     const ssize_t taken = ::write(fd_, waiting_.data(), waiting_.size());

@@ -10,9 +10,10 @@ namespace ex9000::sim {
 /// Returns whether the name of a locale or character map, for example `UTF-8` or `en_US.utf8`, means UTF-8.
 bool names_utf8(const std::string& locale);
 
-/// Stores output that the terminal has not accepted yet, so that a terminal stopped by Ctrl-S does not stop
-/// the program. Opens the terminal a second time, because the shell shares the file description of
-/// `descriptor`, and O_NONBLOCK there would also affect the shell.
+/// Stores up to 1 MiB of output that the terminal has not accepted yet. A terminal that is stopped by Ctrl-S
+/// therefore does not block the program until this limit is exceeded. Opens the terminal a second time,
+/// because the shell shares the file description of `descriptor`, and O_NONBLOCK there would also affect the
+/// shell.
 class TerminalOutput final : public Terminal {
  public:
   /// Opens the terminal of `descriptor`, which remains open.
@@ -22,8 +23,9 @@ class TerminalOutput final : public Terminal {
   TerminalOutput(const TerminalOutput&) = delete;
   TerminalOutput& operator=(const TerminalOutput&) = delete;
 
-  /// Returns false if the descriptor is not a terminal, if TERM is `dumb` because the cursor cannot be moved,
-  /// or if the terminal could not be opened. In these cases no other function may be called.
+  /// Returns false if the descriptor is not a terminal, if TERM is `dumb` (the cursor of such a terminal
+  /// cannot be moved), or if the terminal could not be opened. In these cases no other function may be
+  /// called.
   [[nodiscard]] bool is_open() const { return fd_ != kClosed; }
 
   // --- Terminal ---

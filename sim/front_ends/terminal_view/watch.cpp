@@ -13,8 +13,8 @@ namespace {
 constexpr const char* kEraseAll = "\x1b[H\x1b[J";
 std::string back_over(std::size_t lines) { return "\x1b[" + std::to_string(lines) + "F\x1b[J"; }
 
-/// Cuts long lines, because a wrapped line would move the cursor to a wrong position. Counts only the first
-/// byte of each UTF-8 character.
+/// Cuts `line` after `columns` characters, because a wrapped line would move the cursor to a wrong position.
+/// Counts only the first byte of each UTF-8 character.
 std::string shortened(const std::string& line, std::size_t columns) {
   std::size_t seen = 0;
   for (std::size_t i = 0; i < line.size(); ++i) {
@@ -59,7 +59,8 @@ void Watch::print(const std::string& lines) {
   put(painted_.empty() ? lines : back_over(painted_.size()) + lines + "\n" + joined(painted_, "\n"));
 }
 
-/// Writes to a terminal in one call, so that no partial output is visible.
+/// Passes all lines to the terminal in one call, so that the terminal shows no partial output between two
+/// calls. Without a terminal, passes them to `print_`.
 void Watch::put(const std::string& lines) {
   if (terminal_ == nullptr) {
     print_(lines);
@@ -85,7 +86,7 @@ std::vector<std::string> Watch::painting() const {
     lines.insert(lines.end(), faces[i].begin(), faces[i].end());
   }
   if (shown != faces.size()) {
-    lines.push_back(std::to_string(faces.size() - shown) + " more not shown; the terminal has too few rows");
+    lines.push_back(std::to_string(faces.size() - shown) + " more modules are not shown; the terminal has too few rows");
   }
   for (std::string& line : lines) {
     line = shortened(line, screen_.columns);
@@ -93,7 +94,7 @@ std::vector<std::string> Watch::painting() const {
   return lines;
 }
 
-/// Returns the face of each module; the first face of a line begins with the line's name.
+/// Returns the face of each module. The first face of a line begins with the line's name if the line has one.
 std::vector<std::vector<std::string>> Watch::all_faces() const {
   const Lamps& lamps = screen_.utf8 ? kRoundLamps : kPlainLamps;
   std::vector<std::vector<std::string>> faces;

@@ -19,16 +19,17 @@ class Watch {
   /// Gets lines of text; the last one has no newline.
   using Print = std::function<void(const std::string& lines)>;
 
-  /// `terminal` may be null; then `print` gets the lines. `terminal` must outlive this object.
+  /// If `terminal` is null, `print` gets the lines; otherwise `print` is not called. `terminal` must outlive
+  /// this object.
   Watch(Terminal* terminal, Print print) : terminal_(terminal), print_(std::move(print)) {}
 
-  /// Adds a line; call this before `look`. `line` must outlive this object, and `present` returns its time.
-  /// An empty name is not shown.
+  /// Adds a line; call this before `look`. `line` must outlive this object, and `present` returns the time of
+  /// the line. An empty name is not shown.
   void add_line(std::string name, const Line& line, std::function<VirtualTime()> present);
   /// Shows the changes since the last look. Does nothing while the terminal has not accepted all earlier
   /// output.
   void look();
-  /// Prints lines of other output above the faces.
+  /// Prints lines of other output, above the faces if faces are drawn.
   void print(const std::string& lines);
 
  private:
@@ -36,7 +37,7 @@ class Watch {
     std::string name;
     const Line& line;
     std::function<VirtualTime()> present;
-    std::vector<std::optional<Face>> faces;  ///< as last shown; nullopt: not shown yet
+    std::vector<std::optional<Face>> faces;  ///< as last printed; nullopt: not printed yet
   };
 
   [[nodiscard]] std::vector<std::string> painting() const;
@@ -47,8 +48,8 @@ class Watch {
   Terminal* terminal_;
   Print print_;
   std::vector<Watched> lines_;
-  Screen screen_;                     ///< the screen at the last drawing
-  std::vector<std::string> painted_;  ///< the lines above the cursor; empty: no faces
+  Screen screen_;                     ///< as `look` last read it
+  std::vector<std::string> painted_;  ///< the lines above the cursor; empty: no faces are drawn
 };
 
 }  // namespace ex9000::sim

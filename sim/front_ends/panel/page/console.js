@@ -1,12 +1,12 @@
-// The console of a line: sends a request to a module, once or repeatedly, and shows the replies.
+// The console of a line: sends a request to one module or to all modules, once or repeatedly, and shows the replies.
 
 import {hexByte, make} from "/element.js";
 
-/// The number of replies that stay visible.
+/// The maximum number of replies in the list.
 const mostReplies = 50;
 const intervals = [["200", "0.2 s"], ["1000", "1 s"], ["5000", "5 s"]];
 const everyModule = "all";
-/// The largest numbers of bits and of registers in one request.
+/// The largest numbers of bits and of registers that one request reads.
 const mostBits = 2000;
 const mostWords = 125;
 
@@ -38,7 +38,7 @@ function modbusItems(model) {
   }));
 }
 
-/// Returns {label, request} for each command of a model at an address.
+/// Returns {label, request} for each DCON command of a model at an address.
 function dconItems(model, address) {
   return model.dcon_commands.map(({command, meaning}) => ({
     label: `${command}: ${meaning}`,
@@ -47,8 +47,9 @@ function dconItems(model, address) {
 }
 
 export class Console {
-  /// `several`: whether there are several lines. `modules`: {position, model} of each module on the line.
-  /// `stateOf(position)` returns the state of a module. `ask(request)` sends a request, see Live.
+  /// `several`: whether there are several lines. `index`: the position of the line, from 0. `modules`: {position,
+  /// model} of each module on the line. `stateOf(position)` returns the state of a module. `ask(request)` sends a
+  /// request, see Live.
   constructor(line, {several, index}, modules, stateOf, ask) {
     this.index = index;
     this.modules = modules;
@@ -109,7 +110,7 @@ export class Console {
     }
   }
 
-  /// Returns the text to send: with a checksum if the module expects one.
+  /// Returns the text to send. Adds a checksum to a DCON command if the chosen module expects a checksum.
   get request() {
     const text = this.text.value.trim();
     if (!isDcon(text) || this.module.value === everyModule || !this.plate?.checksum) {
@@ -123,7 +124,7 @@ export class Console {
     if (!ask) {
       return;
     }
-    // A DCON command contains its address, which may be higher than a Modbus address.
+    // A DCON command contains its address, which may be higher than the highest Modbus address.
     const address = isDcon(ask) || this.module.value === everyModule ? 0 : this.plate?.address ?? 1;
     const reply = await this.ask({line: this.index, address, ask});
     this.show(ask, reply);
@@ -139,7 +140,7 @@ export class Console {
     this.replies.scrollTop = this.replies.scrollHeight;
   }
 
-  /// Sends after `delay` ms, and then again an interval after each reply, while polling is switched on.
+  /// While polling is switched on, sends the request after `delay` ms, and again an interval after each reply.
   schedule(delay) {
     clearTimeout(this.timer);
     if (!this.poll.checked) {

@@ -1,6 +1,6 @@
 // The values of a module: the present, power-on and safe value of each output, the settings, and the bytes of all
-// stored copies. The elements are created once and then only updated, so that the reader's position and selection are
-// kept.
+// stored copies. The elements are created once and then only updated, so that the page keeps the scroll position and
+// the selected text.
 
 import {bit, hexByte, make, setAttribute, setText} from "/element.js";
 
@@ -31,7 +31,7 @@ export class Drawer {
     this.draw();
   }
 
-  /// Draws only while the drawer is open.
+  /// Does nothing while the drawer is closed, or before the plate and the stored copies have arrived.
   draw() {
     if (!this.element.open || !this.stored || !this.plate) {
       return;

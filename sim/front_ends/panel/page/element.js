@@ -1,4 +1,4 @@
-// Functions that create elements with attributes and children, and that update only changed values.
+// Functions that create and update elements, and that convert values. An update does nothing if the value is the same.
 
 export function make(tag, attributes = {}, ...children) {
   const element = document.createElement(tag);

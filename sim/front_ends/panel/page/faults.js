@@ -4,9 +4,9 @@ import {make, setAttribute, setText} from "/element.js";
 import {Switch} from "/switch.js";
 
 export class Faults {
-  /// `several`: whether there are several lines. `unfolded`: whether their lists are open at first. `usual`: the
-  /// initial list of faults. `modules`: {position, model} of each module on the line. `tell(command)` carries out a
-  /// command.
+  /// `several`: whether there are several lines. `unfolded`: whether the lists of several lines are open at
+  /// first. `usual`: the initial list of faults. `modules`: {position, model} of each module on the line.
+  /// `tell(command)` carries out a command and resolves to {ok, text}.
   constructor(line, {several, unfolded, usual}, modules, tell) {
     this.prefix = several ? `line ${line.name} ` : "";
     this.tell = tell;
@@ -43,7 +43,8 @@ export class Faults {
 
   key(text, module) { return `${module ?? ""} ${text}`; }
 
-  /// Adds a fault to the list. The list keeps a fault that has ended, so that the user can switch it on again.
+  /// Adds a fault to the list if it is not there yet, and returns its entry. The list keeps a fault that has ended, so
+  /// that the user can switch it on again.
   learn(text, module) {
     const key = this.key(text, module);
     if (!this.known.has(key)) {

@@ -1,4 +1,5 @@
-// The list of frames. Only the visible entries and some around them have a row, because there may be thousands of them.
+// The list of frames and notes. Only the visible entries and some around them have a row, because there may be many
+// more entries than fit on the screen.
 
 import {make, setAttribute, setText} from "/element.js";
 
@@ -37,7 +38,7 @@ export class FrameList {
   }
 
   /// Call this when `count` entries at the top were removed. Moves the scroll position, so that the visible entries
-  /// stay the same.
+  /// stay the same, unless the list follows the newest entry.
   dropped(count) {
     if (!this.follows && count) {
       this.rows.scrollTop -= count * this.height;

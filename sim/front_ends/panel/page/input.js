@@ -1,11 +1,12 @@
-// An input of a module: its LED, which can be clicked, held and pulsed, its counter and its latches.
+// An input of a module: its counter, its latches, and its LED. The LED is a button that switches, holds or pulses the
+// input.
 
 import {make, setAttribute, setText} from "/element.js";
 import {Switch} from "/switch.js";
 
 export class Input {
-  /// `tell(command, undo)` carries out a command of this module, given without the module's number. `way()` returns
-  /// the effect of a click: toggle, hold or pulse.
+  /// `tell(command, undo)` carries out a command of this module, see `tell` in live.js. `command` and `undo` do not
+  /// contain the module's number. `way()` returns the effect of a click without Shift or Alt: toggle, hold or pulse.
   constructor(title, label, channel, tell, way) {
     this.label = label;
     this.channel = channel;
@@ -28,8 +29,8 @@ export class Input {
 
   command(on) { return `input ${this.channel} ${on ? "on" : "off"}`; }
 
-  /// Sets the other level while the button or key is down. The simulator restores the level if the page disconnects
-  /// before `release`.
+  /// Inverts the level until `release` is called. The simulator restores the level if the page disconnects before this
+  /// call.
   press() {
     if (this.held === null) {
       this.held = this.level.on;
@@ -60,7 +61,8 @@ export class Input {
     for (const over of ["pointerup", "pointercancel", "lostpointercapture", "blur"]) {
       button.addEventListener(over, () => this.release());
     }
-    // A click from a screen reader has no pointer, so it cannot hold an input, and its `detail` is 0.
+    // A click without a pointer, for example from a screen reader, has a `detail` of 0. Such a click cannot hold the
+    // input, so it switches or pulses the input.
     const isPointers = (event) => event.detail > 0;
     button.addEventListener("click", (event) => {
       if (isPointers(event) && heldByPointer) {

@@ -7,8 +7,9 @@ import {hexByte, make} from "/element.js";
 export const mostUnfolded = 64;
 
 export class LineView {
-  /// `modules`: {position, model} of each module. `count` is the size class of the plates. `newsOf(position)` returns
-  /// the state of a module, and `plateOf(position)` returns its plate, which it creates at the first call.
+  /// `modules`: {position, model} of each module. `count` selects the size of the plates: one, some or many. `open`:
+  /// whether the line is open at first. `newsOf(position)` returns the state of a module. `plateOf(position)` returns
+  /// the plate of a module; the first call creates the plate.
   constructor(line, modules, count, open, newsOf, plateOf) {
     this.line = line;
     this.modules = modules;
@@ -28,15 +29,15 @@ export class LineView {
     this.fill();
   }
 
-  /// Creates the plates of an open line. The plates of a folded line do not exist until the line is opened.
+  /// Shows the plates of the found modules if the line is open. A plate is created when it is shown for the first time.
   fill() {
     if (this.element.open) {
       this.plates.replaceChildren(...this.found.map(({position}) => this.plateOf(position).element));
     }
   }
 
-  /// Returns the modules that match all of `words`, which must be in lower case. If the name of the line matches,
-  /// returns all modules of the line.
+  /// Returns the modules that match all of `words`, which must be in lower case. A word matches a module if it is part
+  /// of the line's name, or of the module's number, model, address or name.
   matches(words) {
     const its = this.line.name.toLowerCase();
     const contains = (text) => words.every((word) => text.includes(word));
@@ -49,7 +50,7 @@ export class LineView {
     return `${position + 1} ${model} ${address} ${stored?.settings.name ?? ""}`.toLowerCase();
   }
 
-  /// Shows only `found`, and hides the line if nothing is found.
+  /// Shows only the plates of the modules in `found`, and hides the line if `found` is empty.
   show(found) {
     this.found = found;
     this.element.hidden = !found.length;

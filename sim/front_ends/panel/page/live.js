@@ -2,15 +2,16 @@
 
 const firstWait = 100;
 const longestWait = 1000;
-/// The time without a message after which the connection counts as lost, in ms. The simulator sends a message at least
-/// every second.
+/// The time without a message after which the connection counts as lost, in ms. If nothing changes, the simulator sends
+/// a message about once a second.
 const patience = 3500;
 /// The code with which the server closes the connection if too many pages are open.
 const tooMany = 1013;
 
 export class Live {
-  /// `take(message)` gets each message. It must call `answer` with each reply after it has shown the changes.
-  /// `lost(why)` is called with a reason when the connection is lost, and with "" when a connection is established.
+  /// `take(message)` gets each message. When the page has shown the changes in a message, the page must call `answer`
+  /// with each reply in the message. `lost(why)` is called with "gone" or "tooMany" when a connection is lost or cannot
+  /// be established, and with "" when the first message of a connection arrives.
   constructor(take, lost) {
     this.take = take;
     this.lost = lost;
@@ -36,7 +37,8 @@ export class Live {
     socket.onclose = (event) => this.gone(socket, event.code === tooMany ? "tooMany" : "gone");
   }
 
-  /// Restarts the timeout that detects a stopped simulator or a broken connection, because neither closes the socket.
+  /// Restarts the timeout. The timeout detects a simulator that does not respond or a broken connection, because
+  /// neither closes the socket.
   listen(socket) {
     clearTimeout(this.silence);
     this.silence = setTimeout(() => {
@@ -65,11 +67,12 @@ export class Live {
     this.wait = Math.min(2 * this.wait, longestWait);
   }
 
-  /// Sends a command of the control socket; resolves to {ok, text}. The simulator carries out the command `undo` if the
-  /// page disconnects before it has sent `undo`.
+  /// Sends a command of the control socket; resolves to {ok, text}. `undo` is another command, or undefined. If
+  /// `command` succeeds and the page disconnects before it has sent `undo`, the simulator carries out `undo`.
   tell(command, undo) { return this.send({do: command, undo}); }
 
-  /// Sends a request {line, address, ask} on a line; resolves to {ok, text, meaning, delay}.
+  /// Sends a request {line, address, ask} on a line; resolves to {ok, text, meaning, delay}. `meaning` and `delay`, in
+  /// us, may be undefined.
   ask(request) { return this.send(request); }
 
   send(message) {

@@ -1,4 +1,5 @@
-// The panel: one page that shows the simulator's messages as they arrive.
+// The panel: one page that shows the state and the traffic in the simulator's messages, and sends the user's commands
+// and requests.
 
 import {Console} from "/console.js";
 import {setText} from "/element.js";
@@ -17,7 +18,8 @@ let speed = 1;
 let plates = [];
 let states = [];
 let lines = [];
-/// For each line, the time of its clock, and the time at which the page received it.
+/// For each line: `showed` is the time of its clock in us, and `when` is the time in ms at which the page received
+/// `showed`.
 let clocks = [];
 let fresh = [];
 let due = false;
@@ -86,7 +88,8 @@ function begin(hello) {
   }, now);
 }
 
-/// Shows the modules that match the words in the search field. Opens their lines, unless too many match.
+/// Shows only the modules that match the words in the search field. Opens the lines of these modules, or folds the
+/// lines if more than `mostUnfolded` modules match.
 function find() {
   const words = at("find").value.toLowerCase().split(/\s+/).filter(Boolean);
   const found = lines.map(({view}) => view.matches(words));
@@ -137,7 +140,7 @@ function take(message) {
   }
 }
 
-/// Draws everything, once per repaint.
+/// Shows the new messages, and draws the countdowns and the traffic. Called once per repaint.
 function repaint(when) {
   fresh.splice(0).forEach(show);
   plates.forEach((plate) => plate.tick(now(plate.layout.line)));
@@ -161,7 +164,8 @@ function lost(why) {
   }
 }
 
-/// The header. The positions of sticky elements below it and of scroll targets depend on its height.
+/// The header of the page. The stylesheet uses the header's height for the positions of the element `lost` and of
+/// scroll targets.
 const header = document.querySelector(".top");
 const measure = () => document.documentElement.style.setProperty("--top", `${header.offsetHeight}px`);
 new ResizeObserver(measure).observe(header);

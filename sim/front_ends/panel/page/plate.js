@@ -1,4 +1,5 @@
-// A module's face plate: its terminals, LEDs and switches, and a drawer with its stored values.
+// A module's face plate: its terminals, LEDs, readouts and switches, and the folded list of its settings and values
+// (see drawer.js).
 
 import {Drawer} from "/drawer.js";
 import {bit, hexByte, make, setAttribute, setText} from "/element.js";
@@ -8,8 +9,9 @@ import {Switch} from "/switch.js";
 const edgeTerminals = ["DATA+", "DATA−", "+VS", "GND"];
 
 export class Plate {
-  /// `position` counts from 0. `tell(command, undo)` carries out a command of this module, given without the module's
-  /// number. `way()` returns the effect of a click on an input: toggle, hold or pulse.
+  /// `position` counts from 0. `tell(command, undo)` carries out a command of this module, see `tell` in live.js.
+  /// `command` and `undo` do not contain the module's number. `way()` returns the effect of a click on an input without
+  /// Shift or Alt: toggle, hold or pulse.
   constructor(layout, position, tell, way) {
     this.layout = layout;
     this.position = position;
@@ -52,7 +54,8 @@ export class Plate {
         ...edge.map((label) => make("li", {}, make("span", {class: "screw"}), label))));
   }
 
-  /// Creates the rows of terminals. More than eight terminals use two rows; blank items fill the last row.
+  /// Creates the list of the outputs or of the inputs; returns "" if there are none. More than eight terminals use two
+  /// rows; blank items fill the last row.
   strip(className, name, channels) {
     if (!channels.length) {
       return "";
@@ -130,7 +133,7 @@ export class Plate {
       bit(gathered.low, channel)));
   }
 
-  /// Updates the countdown. `now` is the time of the line's clock in us.
+  /// Updates the readout and the countdown of the host watchdog. `now` is the time of the line's clock in us.
   tick(now) {
     const guard = this.guardState;
     if (!guard) {

@@ -14,8 +14,8 @@ const scaleHeight = 20;
 const inWords = (gap) => gap >= 1e6 ? `${(gap / 1e6).toFixed(2)} s` : `${(gap / 1000).toFixed(1)} ms`;
 
 export class Strip {
-  /// `frame` scrolls if it is too small for the lanes in `canvas`. `span` selects the visible time in us. Entries for
-  /// which `matches` is false are drawn pale.
+  /// `frame` is the element around `canvas`; it scrolls if it is too small for the lanes in `canvas`. `span` selects
+  /// the visible time in us. Frames for which `matches(entry)` is false are drawn pale.
   constructor(frame, canvas, span, matches) {
     this.frame = frame;
     this.canvas = canvas;
@@ -32,7 +32,7 @@ export class Strip {
     this.measure();
   }
 
-  /// Creates a lane for each of `lines`; `now(line)` returns its time in us.
+  /// Creates a lane for each of `lines`. `now(index)` returns the time of the line at position `index` in us.
   begin(lines, now) {
     this.lines = lines;
     this.now = now;
@@ -86,7 +86,7 @@ export class Strip {
     return this.colours[name];
   }
 
-  /// Draws after a change, or while a visible entry moves. Called once per repaint.
+  /// Draws after a change, and repeatedly while the strip is not paused and contains entries. Called once per repaint.
   draw(when, entries) {
     const wait = unmoving.matches ? slowestUnmoving : slowest;
     if (this.lines.length && !(when - this.drawn < wait) && (this.stale || (!this.paused && !this.empty))) {
@@ -168,7 +168,8 @@ export class Strip {
     this.pen.fillText(line.name, 4, top + 12);
   }
 
-  /// Call this for the last entry of a lane first, because `lane.before` is the frame that follows the entry.
+  /// Call this for the entries of a lane from the last to the first, because `lane.before` must be the frame that
+  /// follows the entry.
   drawEntry(entry, lane) {
     if (entry.note || entry.missed) {
       this.pen.fillStyle = this.colour("note");

@@ -1,9 +1,9 @@
-// A switch that is on or off, for people and screen readers.
+// A switch that is on or off, with the attributes that screen readers need.
 
 import {make, setAttribute} from "/element.js";
 
 export class Switch {
-  /// `ask(on)` carries out the change and resolves when the result is shown.
+  /// `ask(on)` requests the change, and resolves when the page has shown the result or when the request has failed.
   constructor(name, className, ask, ...children) {
     this.ask = ask;
     this.asked = 0;

@@ -1,5 +1,5 @@
-// Stores, pauses and searches the traffic of the lines, and shows it as a strip on a time scale and as a list of
-// frames.
+// Stores, pauses and searches the traffic of the lines, and shows it as a strip on a time scale and as a list of frames
+// and notes.
 
 import {setAttribute, setText} from "/element.js";
 import {FrameList} from "/frame_list.js";
@@ -13,12 +13,15 @@ const trimmedFrom = 2000;
 /// list when the waiting entries are added.
 const mostWaiting = 1000;
 const waitingTrimmedFrom = 1200;
-/// The minimum time between two drawings of the list, in ms. Without it, a busy line would redraw the list at each
-/// repaint.
+/// The minimum time between two drawings of the list by `draw`, in ms. Without this limit, the traffic of a busy line
+/// would cause a drawing at each repaint.
 const slowest = 30;
 
-/// Returns the number of frames, including missed ones; notes do not count.
-const sum = (entries) => entries.reduce((count, entry) => count + (entry.missed ?? (entry.note ? 0 : 1)), 0);
+/// Return the number of frames, and of frames and notes, in `entries`. For entries that were left out, the number of
+/// frames may not be known; then `frames` counts notes too.
+const framesIn = (entries) =>
+  entries.reduce((count, entry) => count + (entry.frames ?? entry.missed ?? (entry.note ? 0 : 1)), 0);
+const rowsIn = (entries) => entries.reduce((count, entry) => count + (entry.missed ?? 1), 0);
 const rowsOfFrames = (entries) => entries.filter(({note}) => !note).length;
 
 /// Inserts an entry by its time, because entries may arrive late.
@@ -42,8 +45,9 @@ export class Timeline {
     this.begin([], null, null);
   }
 
-  /// Starts with an empty list. `lines` is an array of {name}. `who(line, station)` returns the name of a sender;
-  /// without `station` it returns the name of the line. `now(line)` returns the time of the line in us.
+  /// Starts with an empty list. `lines` is an array of {name}. The functions `who` and `now` get the position of a line
+  /// in this array. `who(line, station)` returns the name of a sender, and `who(line)` returns the name of the line.
+  /// `now(line)` returns the time of the line in us.
   begin(lines, who, now) {
     this.who = who;
     this.entries = [];
@@ -92,15 +96,16 @@ export class Timeline {
     }
   }
 
-  /// Adds entries during a pause. If there are too many, replaces the oldest entries of each line by one entry that
-  /// states how many frames are missing.
+  /// Adds entries during a pause. If too many entries wait, replaces the oldest ones by one entry for each of their
+  /// lines. This entry states how many frames and notes were left out.
   addWhilePaused(fresh) {
     this.pending.push(...fresh);
     if (this.pending.length > waitingTrimmedFrom) {
       const gone = this.pending.splice(0, this.pending.length - mostWaiting);
       const left = [...new Set(gone.map(({line}) => line))].map((line) => gone.filter((entry) => entry.line === line));
       this.pending.unshift(...left.map((entries) =>
-        this.prepared({line: entries[0].line, missed: sum(entries), began: entries.at(-1).began})));
+        this.prepared({line: entries[0].line, missed: rowsIn(entries), frames: framesIn(entries),
+          began: entries.at(-1).began})));
     }
     this.stale = true;
   }
@@ -109,7 +114,7 @@ export class Timeline {
     if (entry.missed) {
       entry.from = this.who(entry.line);
       entry.said = "";
-      entry.means = `${entry.missed} ${entry.missed === 1 ? "frame was" : "frames were"} left out here`;
+      entry.means = `${entry.missed} ${entry.missed === 1 ? "row was" : "rows were"} left out here`;
     } else if (entry.note) {
       entry.from = this.who(entry.line);
       entry.said = "";
@@ -153,7 +158,7 @@ export class Timeline {
 
   tell() {
     const kept = rowsOfFrames(this.entries);
-    const waiting = sum(this.pending) ? `, ${sum(this.pending)} more` : "";
+    const waiting = framesIn(this.pending) ? `, ${framesIn(this.pending)} more` : "";
     const of = this.sought ? `${rowsOfFrames(this.shown)} of ` : "";
     const frames = this.sought ? "" : kept === 1 ? " frame" : " frames";
     setText(this.tally, `${of}${kept}${frames}${waiting}`);

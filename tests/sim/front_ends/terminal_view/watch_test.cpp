@@ -97,7 +97,7 @@ TEST_F(WatchTest, HasRoundLampsOnAUtf8Terminal) {
 }
 
 TEST_F(WatchTest, LeavesOutModulesThatDoNotFitTheTerminal) {
-  const std::string left_out = " more not shown; the terminal has too few rows";
+  const std::string left_out = " more modules are not shown; the terminal has too few rows";
   watch({"EX9067D", "EX9067D@02", "EX9067D@03", "EX9067D@04"});
   terminal_.shape.rows = 21;  // five lines for each module, and one for the cursor
   EXPECT_EQ(looked()[0].find(left_out), std::string::npos);
