@@ -9,7 +9,8 @@
 namespace ex9000::board {
 
 /// `device`: the hal::Device of the composition. The timers are one-shot timers (hal/one_shot_timer.hpp) that
-/// also have the function `take_expiry`. No handler can interrupt another one.
+/// also have the function `take_expiry`. The composition must ensure that no handler can interrupt another
+/// one.
 template <auto& device, class SilenceTimer, class LineEndTimer, class WakeTimer>
 struct Handlers {
   static void on_line() {

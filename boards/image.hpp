@@ -1,6 +1,7 @@
 // Checks and definitions for all images, on any microcontroller whose UART reports a byte in the middle of
-// its first stop bit. Include this file once, after the `board.hpp` of a board, which must define kOutputs
-// and kInputs: arrays of pin groups, each with a `count`.
+// its first stop bit. Include this file in only one source file of a program, after the `board.hpp` of a
+// board. `board.hpp` must define kOutputs and kInputs, which are arrays of pin groups. Each pin group must
+// have a `count` of pins.
 #pragma once
 
 #include "boards/image_info.hpp"
@@ -17,8 +18,8 @@ static_assert(
 #endif
 
 #ifdef EX9000_PRESET
-/// Only image files have this information; boards/CMakeLists.txt defines EX9000_PRESET and EX9000_COMMIT for
-/// them.
+/// Only image files contain this information, because only boards/CMakeLists.txt defines EX9000_PRESET and
+/// EX9000_COMMIT.
 // NOLINTNEXTLINE(misc-definitions-in-headers): included once
 __attribute__((section(".image_info"), used)) constexpr ImageInfo kImageInfo{
     {kImageMark}, {kFirmwareVersion}, {EX9000_PRESET}, {kOnlyModel.designation}, {EX9000_COMMIT}};

@@ -1,6 +1,7 @@
-// What an image says about itself: version, board, model and commit. The linker script puts this information
-// directly after the vector table, so its place in the flash is the same for all images of a family of
-// processors. toolchain/image-info reads it. boards/README.md describes it.
+// The information in an image about this image: version, board, model and commit. The linker script puts this
+// information directly after the vector table. All images of a family of microcontrollers have a vector table
+// of the same size, so they contain the information at the same place in the flash. toolchain/image-info
+// reads the information. boards/README.md describes it.
 #pragma once
 
 #include <array>
@@ -22,7 +23,7 @@ struct InfoText {
   }
 };
 
-/// The beginning of the information. Another layout must have another mark.
+/// The mark, the first text of the information. Change the mark if you change the layout of ImageInfo.
 inline constexpr std::string_view kImageMark = "EX9INFO1";
 
 struct ImageInfo {

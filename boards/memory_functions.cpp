@@ -1,12 +1,13 @@
-// Functions that the compiler calls to copy, clear and compare memory. A freestanding program must define
-// them itself (GCC manual, "Language Standards Supported by GCC"). They work byte by byte, because an image
-// copies little data, so their speed does not matter.
+// Functions that the compiler calls to copy, fill and compare memory. A freestanding program must define them
+// itself (GCC manual, "Language Standards Supported by GCC"). The manual also lists memmove, but images do
+// not need it. These functions process one byte at a time, because an image copies little data.
 #include <cstddef>
 
 // The compiler may recognise a loop, for example as a copy, and replace the loop with a call of memcpy. In an
 // image, memcpy would then call itself endlessly. The options of the images forbid such calls
 // (boards/CMakeLists.txt). memory_functions_test.cpp is compiled without these options. There, the attribute
 // keeps the loops, so that the test does not call the functions of the C library instead.
+// `externally_visible` keeps the functions in an image that is compiled with -fwhole-program.
 #define NO_SELF_CALL __attribute__((optimize("no-tree-loop-distribute-patterns"), externally_visible))
 
 extern "C" {

@@ -1,4 +1,4 @@
-// Views of bytes that they do not own.
+// Views of bytes. A view does not own its bytes.
 #pragma once
 
 #include <cstddef>

@@ -28,8 +28,8 @@ constexpr std::uint8_t hex_digit(unsigned value) {
   return static_cast<std::uint8_t>("0123456789ABCDEF"[value & 0xFU]);
 }
 
-/// Returns the two hex digits of `value`. The high digit is in the low byte, so that a little-endian store
-/// writes the digits in text order.
+/// Returns the two hex digits of `value`. The high digit, which is the first character in a text, is in the
+/// low byte.
 constexpr std::uint16_t hex_digits(std::uint8_t value) {
   return static_cast<std::uint16_t>(hex_digit(value >> 4U) | hex_digit(value) << 8U);
 }

@@ -20,24 +20,24 @@
 
 namespace ex9000 {
 
-/// The device without its board. It accesses no peripheral and reads no clock. The caller passes bytes,
-/// edges, levels and the time as arguments, and reads the outputs, the LED, the reply and the memory job. An
-/// object exists from one reset to the next.
+/// A module without its board. It accesses no peripheral and reads no clock. The caller passes events, levels
+/// and the time as arguments, and reads results such as the outputs, the LED, the reply and the memory job.
+/// An object exists from one reset to the next.
 ///
-/// Interrupts call `frame_waits`, `edges_need_times` and the functions named `on_...`. `on_byte`,
-/// `on_silence` and `on_own_driver_off` must not interrupt each other, so they share one interrupt priority;
-/// if several are pending, `on_silence` must run first (hal/one_shot_timer.hpp). `on_edge` and `on_tick` may
-/// have other priorities. The main loop calls all other functions. No function blocks.
+/// Interrupts call `edges_need_times`, `frame_waits` and the functions named `on_...`. These interrupts must
+/// not interrupt each other, so they share one priority. If `on_byte` and `on_silence` are both pending,
+/// `on_silence` must run first (hal/one_shot_timer.hpp). The main loop calls the other functions. No function
+/// blocks.
 class Module {
  public:
-  /// `timing_at` returns the times of this line; not null.
+  /// `timing_at`: the function that returns the times of the line; must not be null.
   explicit constexpr Module(const Model& model, TimingAt timing_at = LineTiming::at)
       : timing_at_(timing_at), state_(model), keeper_(model), cycle_(state_, receiver_.tallies()) {}
   Module(const Module&) = delete;
   Module& operator=(const Module&) = delete;
 
-  /// Call this once, before interrupts are enabled. `input_levels`: bit n is channel n, 1 = +4 to +30 V.
-  /// These levels do not count as edges. `reason`: why the module was reset.
+  /// Starts the module at a reset. Call this once, before interrupts are enabled. `input_levels`: bit n is
+  /// channel n, 1 = +4 to +30 V. These levels do not count as edges. `reason`: why the module was reset.
   void start(std::uint16_t input_levels, Time now, ResetReason reason = ResetReason::Unknown);
 
   // --- interrupts ---
@@ -58,8 +58,8 @@ class Module {
   /// Returns whether a complete request is waiting. The turn-around time of an ASCII request may still be
   /// running. The main loop may call this too.
   [[nodiscard]] bool request_waits() const { return receiver_.queue().has_frame(); }
-  /// Returns whether a host OK, or a request that counts like one, is waiting for `step`. The host watchdog
-  /// restarts from the time at which the host OK was received. The main loop may call this too.
+  /// Returns whether a host OK, or a request that counts like one, is waiting for `step`. `step` restarts the
+  /// host watchdog from the time that HostOks recorded. The main loop may call this too.
   [[nodiscard]] bool host_ok_waits() const { return receiver_.host_oks().waiting(); }
   /// Returns whether a request or a host OK is waiting. The main loop must then call `step` (see HostOks).
   [[nodiscard]] bool frame_waits() const { return request_waits() || host_ok_waits(); }
@@ -70,11 +70,13 @@ class Module {
   /// gap is over. Call this at every tick and when the time that `idle_for` returned has passed.
   /// `init_switch`: whether INIT* is asserted (tied to GND), not debounced.
   void poll_panel(bool init_switch, Time now);
-  /// Runs one pass of the main loop: completes the start after a reset, and processes host OKs, timeouts,
-  /// timed outputs, stores and the waiting request, if they are due.
+  /// Does the module's work in one pass of the main loop: completes the start after a reset, updates the
+  /// statistics, and processes host OKs, the expiry of the host watchdog, timed outputs, stores and the
+  /// waiting request, if they are due.
   void step(Time now);
-  /// Returns how long the main loop may sleep, at most `at_most`. An interrupt or a finished memory job must
-  /// wake it earlier. If the result is 0, call `poll_panel` and `step` again immediately.
+  /// Returns how long the main loop may sleep, at most `at_most`. The tick, a waiting frame (`frame_waits`),
+  /// the end of a reply, and a finished memory job must wake the main loop earlier. If the result is 0, call
+  /// `poll_panel` and `step` again immediately.
   [[nodiscard]] Duration idle_for(Time now, Duration at_most) const;
 
   /// Returns the levels to drive: bit n is channel n, 1 = energised. All are 0 until the settings are loaded.
@@ -83,8 +85,8 @@ class Module {
   /// Returns whether to feed the hardware watchdog. See ModuleWatchdog::main_loop_alive.
   bool feed_watchdog() { return module_watchdog_.main_loop_alive(); }
 
-  /// Returns whether the start is complete: the settings are loaded and the mode is selected. The line can
-  /// then be opened at `baud()` with `format()`.
+  /// Returns whether the start is complete: the settings are loaded, and the module has selected INIT mode or
+  /// normal operation. The line can then be opened at `baud()` with `format()`.
   [[nodiscard]] bool listening() const { return start_ == Start::Done; }
   /// Return the baud rate in bits per second and the line format. They do not change while `listening()`.
   [[nodiscard]] std::uint32_t baud() const { return baud_rate(state_.in_force.baud_code); }
@@ -98,10 +100,10 @@ class Module {
   /// See SettingsStore::done.
   void memory_done(bool ok) { keeper_.done(ok); }
 
-  /// Returns the reply to send now; empty if there is no reply, or if the time to send it has not come. The
-  /// bytes are valid until `reply_sent`.
+  /// Returns the reply to send now, only once for each reply; empty if no reply is ready, or if the time to
+  /// send it has not come. The bytes are valid until `reply_sent`.
   Bytes take_reply(Time now) { return cycle_.take_reply(now); }
-  /// Call this when the last stop bit has been sent and the driver is off.
+  /// Ends the reply. Call this when its last stop bit has been sent and the driver is off.
   void reply_sent(Time now) { cycle_.reply_sent(now, turn_around()); }
 
   // --- for panels, logs and tests ---
@@ -153,7 +155,7 @@ class Module {
   TimingAt timing_at_;
   Start start_ = Start::Loading;
   Deadline init_timeout_;
-  Time second_began_;  ///< when the current second since reset began
+  Time second_began_;  ///< when the current second of the uptime began
 
   State state_;
   InputEdges edges_;

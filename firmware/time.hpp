@@ -50,7 +50,7 @@ class Time {
 };
 
 /// A point in time that may be in the future. Its functions are correct within 35 minutes before and after
-/// that point, so the code that has acted on a deadline must disarm it.
+/// that point, so the code that has acted on a deadline must disarm it or set it again.
 class Deadline {
  public:
   constexpr void set(Time when) {

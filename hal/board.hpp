@@ -1,4 +1,4 @@
-// Checks that a board has all peripherals with the required functions.
+// Checks that a board has all required peripherals, and that they have the required functions.
 #pragma once
 
 #include <type_traits>
@@ -16,8 +16,8 @@
 namespace ex9000::hal {
 
 /// Returns true if `Board` is a struct with the members that are listed below. Each member is a driver or a
-/// reference to a driver. If a member is missing or lacks a function that its header requires, compilation
-/// fails with a message that names the member.
+/// reference to a driver. If a member is missing, lacks a required function or has one with a wrong
+/// signature, compilation fails with a message that names the member.
 // NOLINTBEGIN(bugprone-macro-parentheses): the arguments are names
 template <class Board>
 constexpr bool is_board() {

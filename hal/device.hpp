@@ -1,4 +1,4 @@
-// Connects the module to its peripherals. Every board and every simulated module uses this class.
+// Connects the module to its peripherals. Every board and every simulated module uses the class `Device`.
 #pragma once
 
 #include <cstdint>
@@ -11,9 +11,10 @@
 
 namespace ex9000::hal {
 
-/// A module on a board. The object exists from one reset to the next. A composition file creates it, calls
-/// `start`, and makes the interrupts call the `on_...` functions. Then it repeats the following in an endless
-/// loop: it calls `turn` until `turn` returns false, and sleeps until `has_work` returns true.
+/// A module on a board. The object exists from one reset to the next. The composition file of a board, for
+/// example boards/rp2040/composition.hpp, creates the object, calls `start`, and makes the interrupts call
+/// the `on_...` functions. Then the main loop repeats two steps: it calls `turn` until `turn` returns false,
+/// and sleeps until `has_work` returns true.
 ///
 /// `Board`: see hal/board.hpp.
 template <class Board>
@@ -23,7 +24,8 @@ class Device {
  public:
   /// Creates a device with its own board. `timing_at`: see Module.
   constexpr Device(const Model& model, TimingAt timing_at) : board_(), module_(model, timing_at) {}
-  /// Creates a device with a board that refers to peripherals of the caller.
+  /// Creates a device with a copy of `board`, for example of a board that refers to peripherals of the
+  /// caller.
   constexpr Device(const Model& model, TimingAt timing_at, const Board& board)
       : board_(board), module_(model, timing_at) {}
 
@@ -35,7 +37,7 @@ class Device {
   }
 
   // --- interrupts ---
-  // on_receive, on_silence and on_sent must have the same priority. The others may have other priorities.
+  // They must not interrupt each other, so they share one priority.
 
   /// Processes a received byte. Call this for each byte, even if it has an error, but not for a byte that was
   /// received while the module's own driver was on.
@@ -47,10 +49,12 @@ class Device {
       wake();  // the turn-around time may be over already, if bytes take no time on this line
     }
   }
-  /// Processes the end of the silence after a byte. Call this when the silence timer expires.
+  /// Processes the end of the silence after a byte, or of the turn-around time after an ASCII frame. Call
+  /// this when the silence timer expires.
   void on_silence() {
     const Duration more = module_.on_silence();
-    // While a reply is being sent, no timer is necessary: `on_sent` ends a frame that is still open.
+    // While a reply is being sent, no timer is necessary: `on_sent` completes or drops a frame that is still
+    // open.
     if (!(more == Duration()) && !board_.line.sending()) {
       board_.silence_timer.restart(more);
     }
@@ -63,7 +67,8 @@ class Device {
     module_.on_own_driver_off(board_.clock.now_in_interrupt());
     wake();
   }
-  /// Processes an edge of an input. `channel`: from 0 on; `level`: the level after the edge, true = logic 1.
+  /// Processes an edge of an input. `channel`: counted from 0; `level`: the level after the edge, true =
+  /// logic 1.
   void on_edge(unsigned channel, bool level) {
     const Time now = module_.edges_need_times() ? board_.clock.now_in_interrupt() : Time();
     module_.on_edge(channel, level, now);
@@ -83,8 +88,9 @@ class Device {
 
   [[nodiscard]] bool has_work() const { return wakes_.load() != wakes_seen_; }
 
-  /// Runs one pass of the main loop: processes requests, settings, outputs and the panel. If it returns true,
-  /// call this again immediately, because no interrupt will wake the main loop.
+  /// Runs one pass of the main loop: carries out the work that is due, for example requests, replies, memory
+  /// jobs and outputs. If the result is true, call this again immediately: work is due, and there may be no
+  /// interrupt that wakes the main loop in time.
   bool turn() {
     wakes_seen_ = wakes_.load();  // must be first, so that later events cause another pass
     const Time now = board_.clock.now();
@@ -105,8 +111,9 @@ class Device {
   [[nodiscard]] const Module& module() const { return module_; }
 
  private:
-  /// Processes INIT*, the status LED and the hardware watchdog. Also drives the outputs again, in case a
-  /// disturbance has changed their registers.
+  /// Passes the level of INIT* to Module::poll_panel, updates the status LED, and feeds the hardware watchdog
+  /// if the module permits this. Also drives the outputs again, in case a disturbance has changed their
+  /// registers.
   void poll_panel() {
     module_.poll_panel(board_.init_switch.asserted(), board_.clock.now());
     board_.status_led.light(module_.led_lit());
@@ -142,8 +149,8 @@ class Device {
     board_.line.send(reply);
   }
 
-  /// Returns whether the tick or the wake timer has fired since the last call, or an event was due at the end
-  /// of the last pass.
+  /// Returns whether the tick or the wake timer has fired since the last call, or whether an event was
+  /// already due at the end of the last pass. Also returns true in the first pass.
   bool panel_is_due() {
     const std::uint32_t times_due = times_due_.load();
     const bool due = due_now_ || times_due != times_seen_;
@@ -159,8 +166,8 @@ class Device {
     board_.outputs.drive(driven_);
   }
 
-  /// Continues a memory job, or the work of the memory between jobs. Returns true if it must be called again
-  /// immediately.
+  /// Continues a memory job, or the work of the memory between jobs. Passes the result of a finished job to
+  /// the module. Returns true if this function must be called again immediately.
   bool poll_memory(Time now) {
     const bool polls_again = board_.memory.poll(now);
     if (memory_job_under_way_ && !board_.memory.busy()) {
@@ -183,8 +190,9 @@ class Device {
     memory_job_under_way_ = true;
   }
 
-  /// Sets the wake timer to the next event. The duration of this pass delays that event, but these delays do
-  /// not add up. If the event is already due, returns true and does not set the timer.
+  /// Sets the wake timer to the time until the next event: at most kMemoryPollPeriod during a memory job,
+  /// otherwise at most kLongestWake. The duration of this pass delays that event, but these delays do not add
+  /// up. If the event is already due, returns true and does not set the timer.
   bool set_wake_timer(Time now) {
     const Duration idle = module_.idle_for(now, memory_job_under_way_ ? kMemoryPollPeriod : kLongestWake);
     due_now_ = idle == Duration();

@@ -29,13 +29,13 @@ inline constexpr std::uint32_t kFlashPage = 256;
 ///         Returns whether the flash is erasing or programming. A suspended erase does not make it busy.
 ///     void suspend()
 ///         Suspends an erase, so that `busy()` is false after at most 20 us. Then other sectors can be read
-///         and, if the flash permits this, programmed. Has no effect on a flash that is not busy. Do not call
-///         it during a program operation, or less than 20 us after `resume`.
+///         and programmed. Has no effect on a flash that is not busy. Do not call it during a program
+///         operation, or less than 20 us after `resume`.
 ///     void resume()
-///         Continues a suspended erase. The flash is then `busy()`. Has no effect if no erase is suspended.
-///         Call it only while not `busy()`.
+///         Continues a suspended erase, so that the flash is `busy()`. Has no effect if no erase is
+///         suspended. Call it only while not `busy()`.
 ///     void read(std::uint32_t address, MutableBytes destination)
-///         Reads `destination.size` bytes. Call it only while not `busy()`.
+///         Reads `destination.size` bytes from `address` on. Call it only while not `busy()`.
 ///
 /// A reset of the MCU does not affect an operation that is running or suspended. A power failure ends the
 /// operation: the bytes to program, or all bytes of the sector to erase, then have undefined values.

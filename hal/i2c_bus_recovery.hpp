@@ -7,9 +7,10 @@
 
 namespace ex9000::hal {
 
-/// A device that was interrupted during a byte may hold the data line low. This class sends up to nine clock
-/// pulses until the device releases the line, and then sends START and STOP. When the recovery has ended, the
-/// caller must connect the lines to the master again. All functions are for the main loop and do not block.
+/// If the transfer of a byte is interrupted, for example by a reset of the MCU, a device may hold the data
+/// line low. This class sends clock pulses until the device releases the data line, but at most nine. Then it
+/// sends START and STOP. When the recovery has ended, the caller must connect the lines to the master again.
+/// All functions are for the main loop and do not block.
 ///
 /// `Wires` controls the two lines directly, as open-drain outputs with pull-ups:
 ///
@@ -25,7 +26,8 @@ class I2cBusRecovery {
     deadline_.disarm();
   }
 
-  /// Continues the recovery. Returns true when it has ended. Until then, call this again immediately.
+  /// Continues the recovery. Returns whether the recovery has ended. If it has not ended, call this again
+  /// immediately.
   bool poll(Time now) {
     if (deadline_.armed() && !deadline_.reached(now)) {
       return false;

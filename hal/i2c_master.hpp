@@ -1,4 +1,4 @@
-// The functions that a driver of an I2C master must have.
+// An I2C transfer, its result, and the functions that a driver of an I2C master must have.
 #pragma once
 
 #include <cstddef>
@@ -18,9 +18,10 @@ namespace ex9000::hal {
 ///     void begin(const I2cTransfer&, Time now)
 ///         Begins a transfer. Call this only while not `busy()`. The transfer must stay valid while `busy()`.
 ///     bool poll(Time now)
-///         Continues the transfer. While `busy()`, call this after each interrupt of the master and at least
-///         every `kMemoryPollPeriod` (hal/memory.hpp). If it returns true, call this again immediately,
-///         because no interrupt will occur.
+///         Continues the transfer or the recovery of the bus. Call this in every pass of the main loop and,
+///         while `busy()`, after each interrupt of the master and at least every `kMemoryPollPeriod`
+///         (hal/memory.hpp). If this returns true, call it again immediately, because no interrupt will
+///         occur.
 ///     bool busy() const
 ///         Returns whether a transfer is running.
 ///     I2cResult result() const
@@ -45,10 +46,10 @@ struct I2cTransfer {
 enum class I2cResult : std::uint8_t {
   Done,
   NoAcknowledge,  ///< no device acknowledged the address, or a byte was not acknowledged
-  Failed,         ///< the transfer did not advance: a line is stuck, or another master uses the bus
+  Failed,         ///< any other error, for example an expired timeout or lost arbitration
 };
 
-/// True if `T` has the functions of a master that I2cTransfer lists.
+/// True if `T` has the functions that the description of I2cTransfer lists.
 template <class T, class = void>
 inline constexpr bool kIsI2cMaster = false;
 template <class T>

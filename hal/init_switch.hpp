@@ -10,8 +10,8 @@ namespace ex9000::hal {
 /// The INIT* pin, active low. If a jumper connects the pin to another signal, INIT* reads as released.
 ///
 ///     bool asserted() const
-///         Returns whether INIT* is tied to GND now. The value is not debounced. For the main loop; does not
-///         block.
+///         Returns whether INIT* is connected to GND now. The value is not debounced. For the main loop; does
+///         not block.
 ///
 /// True if `T` has this function.
 template <class T, class = void>

@@ -9,12 +9,12 @@
 namespace ex9000::hal {
 
 /// The input channels. The edge interrupt calls `Device::on_edge` for each edge. Edges of a channel that
-/// occur before the interrupt runs may share one call. The interrupt must clear the edge flag before it reads
-/// the level.
+/// occur before the interrupt runs may share one call. The interrupt must clear the edge flag of a channel
+/// before it reads the level of this channel.
 ///
 ///     std::uint16_t start()
-///         Starts to report edges, and returns the levels before the first edge: bit n is channel n, 1 =
-///         logic 1 (+4 to +30 V). For the main loop, once after reset; does not block.
+///         Starts to report edges, and returns the levels before the first reported edge: bit n is channel n,
+///         1 = logic 1 (+4 to +30 V). For the main loop, once after reset; does not block.
 ///
 /// True if `T` has this function.
 template <class T, class = void>

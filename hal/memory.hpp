@@ -10,8 +10,8 @@
 
 namespace ex9000::hal {
 
-/// The period of `poll` during a job. It limits the delay of events without an interrupt, for example a bus
-/// error.
+/// The longest time between two calls of `poll` during a job. It limits the delay of events without an
+/// interrupt, for example the expiry of a timeout.
 inline constexpr Duration kMemoryPollPeriod = milliseconds(1);
 
 /// A nonvolatile memory, for example an AT24C64 or a part of a flash. It carries out one job at a time while
@@ -26,14 +26,15 @@ inline constexpr Duration kMemoryPollPeriod = milliseconds(1);
 ///         memory has programmed the bytes, not when it has received them. Call this only while not `busy()`.
 ///         `source` must stay valid while `busy()`.
 ///     bool poll(Time now)
-///         Continues the job. Call this after each interrupt of the memory and every `kMemoryPollPeriod`. If
-///         no job is running, call this in every pass of the main loop: a memory may prepare for the next
-///         job. If it returns true, call this again immediately, because no interrupt will occur.
+///         Continues the job. Call this in every pass of the main loop, even if no job is running, because a
+///         memory may prepare for the next job. During a job, also call this after each interrupt of the
+///         memory and at least every `kMemoryPollPeriod`. If this returns true, call it again immediately,
+///         because no interrupt will occur.
 ///     bool busy() const
 ///         Returns whether a job is running.
 ///     bool succeeded() const
-///         Returns whether the last job succeeded. A job fails, for example, if the memory does not answer or
-///         takes longer than its data sheet allows. Call this only while not `busy()`.
+///         Returns whether the last job succeeded. A job fails, for example, if the memory does not complete
+///         it before the driver's timeout expires. Call this only while not `busy()`.
 ///
 /// True if `T` has these functions.
 template <class T, class = void>

@@ -8,20 +8,23 @@
 
 namespace ex9000::hal {
 
-/// The longest time that the wake timer is set to.
+/// The longest time to which the wake timer is set.
 inline constexpr Duration kLongestWake = milliseconds(1000);
 
-/// A timer that calls one function of `Device` in its interrupt. `Device` requires two:
+/// A timer that expires once after each start, and then causes an interrupt. `Device` requires two timers:
 ///
-///   - The silence timer calls `on_silence`. It is set to 60 us to 34 ms. Its interrupt and the receive
-///     interrupt must not interrupt each other. If both are pending, the interrupt of the silence timer
-///     must run first: a byte after the silence does not belong to the frame before the silence.
-///   - The wake timer calls `on_wake_timer` for the next event that is due. It is set to 1 us to
-///     `kLongestWake`. If this timer failed, the next tick would process the event.
+///   - The silence timer. Its interrupt calls `Device::on_silence`. At the baud rates of a module, the timer
+///     is set to 78 us to 34 ms. Its interrupt and the receive interrupt must not interrupt each other. If
+///     both are pending, the interrupt of the silence timer must run first, because a byte after the silence
+///     does not belong to the frame before the silence.
+///   - The wake timer. Its interrupt calls `Device::on_wake_timer`. The timer is set to the time until the
+///     next event, at least 1 us and at most `kLongestWake`. If this timer failed, the next tick would
+///     process the event.
 ///
 ///     void restart(Duration after)
-///         Makes the timer fire once, `after` from now, at most 5 us late and never early. Cancels an earlier
-///         start, even if its interrupt is already pending. For interrupts and the main loop; does not block.
+///         Makes the timer expire once, `after` from now, at most 5 us late and never early. Cancels an
+///         earlier start, even if its interrupt is already pending. For interrupts and the main loop; does
+///         not block.
 ///
 /// True if `T` has this function.
 template <class T, class = void>

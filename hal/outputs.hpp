@@ -8,14 +8,14 @@
 
 namespace ex9000::hal {
 
-/// The output channels: open collectors, relays or PhotoMOS. All are de-energised from reset until the first
-/// `drive`.
+/// The output channels: open-collector transistors, relays or PhotoMOS relays. All are de-energised from
+/// reset until the first `drive`.
 ///
 ///     void drive(std::uint16_t channels)
-///         Drives all channels: bit n is channel n, 1 = energised (the transistor conducts, the relay is
-///         pulled in). The board defines the polarity. All channels change within a few processor clocks, and
-///         unchanged channels have no glitch. The main loop calls this at each change and at least at every
-///         tick. It does not block.
+///         Drives all channels: bit n is channel n, 1 = energised (the transistor or PhotoMOS relay conducts,
+///         or the coil of the relay carries current). The board defines the polarity. All changes occur
+///         within a few processor clocks. The channels that do not change have no glitch. The main loop calls
+///         this at each change and at least at every tick. This does not block.
 ///
 /// True if `T` has this function.
 template <class T, class = void>

@@ -12,19 +12,22 @@ namespace ex9000::hal {
 
 /// The UART and its RS-485 driver, half duplex.
 ///
-/// The receive interrupt calls `Device::on_receive` for each byte, including bytes with errors. While the
-/// driver is on, the receive interrupt does not call this function, because the received bytes are the echo.
-/// When a reply has been sent, an interrupt of the same priority calls `Device::on_sent`.
+/// While the driver is off, the receive interrupt calls `Device::on_receive` for each byte, including bytes
+/// with errors. While the driver is on, the receive interrupt does not call this function, because the
+/// received bytes are the echo. When a reply has been sent and the driver is off, an interrupt of the same
+/// priority calls `Device::on_sent`.
 ///
 ///     void open(std::uint32_t baud, LineFormat format)
 ///         Starts to receive at `baud` bits per second (1200 to 115200). Before this call, the driver is off
-///         and nothing is received. A byte with wrong parity is reported as ByteStatus::ParityError. The
-///         receiver checks only the first stop bit. For the main loop, once after reset; does not block.
+///         and nothing is received. A byte whose only error is wrong parity is reported as
+///         ByteStatus::ParityError. The receiver checks only the first stop bit. For the main loop, once
+///         after reset; does not block.
 ///     void send(Bytes bytes)
 ///         Turns the driver on, sends `bytes` and turns the driver off. The driver is on before the first
 ///         start bit. It is turned off within one character time after the last stop bit has left the shift
-///         register (transmission complete, not "data register empty"). For the main loop, only while not
-///         `sending()`; does not block. `bytes` must not be empty, and must stay valid while `sending()`.
+///         register. The data register becomes empty earlier, so its flag must not turn the driver off. For
+///         the main loop, only while not `sending()`; does not block. `bytes` must not be empty, and must
+///         stay valid while `sending()`.
 ///     bool sending() const
 ///         Returns whether the driver is on. For interrupts and the main loop.
 ///

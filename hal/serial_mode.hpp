@@ -1,4 +1,4 @@
-// The mode of a UART, for code outside the firmware: doubles, simulated lines, and ports.
+// The mode of a UART, for code outside the firmware, for example hal/doubles and the simulator.
 #pragma once
 
 #include <cstdint>

@@ -10,7 +10,7 @@ namespace ex9000::hal {
 /// The status LED.
 ///
 ///     void light(bool on)
-///         Turns the LED on or off. For the main loop, at least at every tick; does not block.
+///         Turns the LED on or off. The main loop calls this at least at every tick. This does not block.
 ///
 /// True if `T` has this function.
 template <class T, class = void>

@@ -8,7 +8,8 @@
 
 namespace ex9000::hal {
 
-/// If the hardware watchdog is not fed, it resets the MCU within this time (wire.md section 6).
+/// If the hardware watchdog is not fed, it resets the MCU within this time (wire.md section 6). While a board
+/// starts its clocks, this may take longer.
 inline constexpr Duration kWatchdogPeriod = milliseconds(1600);
 
 /// The MCU's own watchdog. It starts at the first `feed` or earlier, and the firmware never stops it.

@@ -1,5 +1,5 @@
-# Debian's gcc-arm-none-eabi without an operating system, for a Cortex-M3 unless another file that includes this one has
-# set CMAKE_SYSTEM_PROCESSOR.
+# Debian's gcc-arm-none-eabi for a processor without an operating system: a Cortex-M3, unless CMAKE_SYSTEM_PROCESSOR is
+# already set.
 set(CMAKE_SYSTEM_NAME Generic)
 if(NOT CMAKE_SYSTEM_PROCESSOR)
   set(CMAKE_SYSTEM_PROCESSOR cortex-m3)

@@ -34,7 +34,10 @@ def checksum(data: bytes) -> int:
 
 
 def sealed(elf: bytes) -> bytes:
-    """Returns the ELF file with the right checksum in its second stage. Raises NotAnImage if it has no second stage."""
+    """Returns the ELF file with the right checksum in its second stage.
+
+    Raises NotAnImage if `elf` is not a 32-bit little-endian ELF file, or if it has no second stage.
+    """
     for offset, address, data in _segments(elf):
         if address == FLASH and len(data) >= SECOND_STAGE:
             end = offset + SECOND_STAGE - 4
@@ -44,9 +47,9 @@ def sealed(elf: bytes) -> bytes:
 
 
 def flash_content(elf: bytes) -> dict[int, bytes]:
-    """Returns the pages of the flash that an ELF file fills, by address. Unused bytes of a page are FFh.
+    """Returns the pages of the flash that an ELF file uses, by address. Unused bytes of a page are FFh.
 
-    Raises NotAnImage if the file does not fill the start of the flash.
+    Raises NotAnImage if `elf` is not a 32-bit little-endian ELF file, or if it does not use the first page.
     """
     pages: dict[int, bytearray] = {}
     for _, start, data in _segments(elf):
@@ -59,7 +62,7 @@ def flash_content(elf: bytes) -> dict[int, bytes]:
 
 
 def uf2(elf: bytes) -> bytes:
-    """Returns the UF2 file of an ELF file. Raises NotAnImage if the ELF file does not fill the start of the flash."""
+    """Returns the UF2 file of an ELF file. Raises NotAnImage in the same cases as `flash_content`."""
     pages = flash_content(elf)
     blocks = []
     for number, (address, page) in enumerate(pages.items()):
@@ -69,7 +72,10 @@ def uf2(elf: bytes) -> bytes:
 
 
 def _segments(elf: bytes) -> Iterator[tuple[int, int, bytes]]:
-    """Yields offset, load address and content of each segment that has content."""
+    """Yields offset, load address and content of each loadable segment that has content.
+
+    Raises NotAnImage if `elf` is not a 32-bit little-endian ELF file.
+    """
     if elf[:6] != b"\x7fELF\x01\x01":
         raise NotAnImage("is not a 32-bit little-endian ELF file; name the linked image")
     offset, size, count = struct.unpack_from("<I", elf, 28)[0], *struct.unpack_from("<HH", elf, 42)

@@ -1,4 +1,5 @@
-// The start of a Cortex-M from reset to main: its vectors, and the initialisation of the memory for C++.
+// The start of a Cortex-M from reset to `main`: the vector table, and the initialisation of the variables in
+// RAM.
 #pragma once
 
 #include <cstdint>
@@ -7,8 +8,8 @@ namespace ex9000::start_up {
 
 using Handler = void (*)();
 
-/// The vector table of the processor (ARMv7-M Architecture Reference Manual, B1.5.3): the initial stack
-/// pointer, the system exceptions, and the interrupts by number.
+/// The vector table of a Cortex-M (ARMv7-M Architecture Reference Manual, B1.5.3): the initial stack pointer,
+/// the system exceptions, and the interrupts by number.
 template <unsigned interrupts>
 struct VectorTable {
   const void* stack_top;
@@ -30,7 +31,8 @@ struct VectorTable {
 /// The beginning of the stack, which grows down. The linker script defines this symbol.
 extern "C" std::uint32_t stack_top[];
 
-/// Completes the initialisation of the variables in RAM, and calls `main`.
+/// Initialises the variables in RAM, and calls `main`. On the RP2040, this function initialises only the
+/// variables that begin as zero, because the second stage has copied the others to RAM.
 extern "C" [[noreturn]] __attribute__((externally_visible)) void reset_handler();
 
 /// Handles faults and unexpected interrupts: resets the microcontroller immediately, which switches all
@@ -40,7 +42,7 @@ extern "C" [[noreturn]] void fault_handler();
 /// An interrupt and its handler.
 struct Served {
   unsigned number;
-  Handler handler;  ///< null: this image has no handler
+  Handler handler;  ///< null if this image does not use the interrupt
 };
 
 /// Returns the interrupts that have a handler; bit n is interrupt n.
@@ -55,7 +57,8 @@ constexpr std::uint32_t numbers_of(const List& list) {
   return numbers;
 }
 
-/// Returns the vector table. All exceptions and interrupts without a handler call `fault_handler`.
+/// Returns the vector table. `list`: the interrupts that the image may use. Each exception and each interrupt
+/// without another handler runs `fault_handler`.
 template <unsigned interrupts, class List>
 constexpr VectorTable<interrupts> vectors(Handler on_system_tick, const List& list) {
   constexpr Handler kFault = fault_handler;
@@ -79,5 +82,6 @@ constexpr VectorTable<interrupts> vectors(Handler on_system_tick, const List& li
 
 }  // namespace ex9000::start_up
 
-/// Starts the drivers and runs the main loop; does not return. In an image, the composition file defines it.
+/// Does not return. In an image, the composition file defines `main`, which starts the drivers and runs the
+/// main loop.
 int main();

@@ -16,11 +16,12 @@ using hal::stellaris::Port;
 inline constexpr auto kFamily = hal::stellaris::Family::Tm4c;
 
 /// The crystal oscillates at 16 MHz, and the system clock is 50 MHz. The LM3S6965 board has the same system
-/// clock, so the tests of the divisors apply to both boards.
+/// clock, so start_up_driver_test.cpp expects the same UART divisors on both boards.
 inline constexpr hal::stellaris::ClockTree kClock{0x15, 4};
 
 #ifdef EX9000_BUS_ON_USB
-/// The line is UART0. The debugger on the LaunchPad connects UART0 to a USB serial port.
+/// The line is UART0 on PA0 (receive) and PA1 (transmit). The debugger on the LaunchPad connects UART0 to a
+/// USB serial port.
 inline constexpr unsigned kUart = 0;
 inline constexpr PinGroup kUartPins{Port::A, 0, 2};
 inline constexpr std::uint32_t kUartFunction = 1;

@@ -1,4 +1,4 @@
-"""Reads an image and checks that this image is for the board."""
+"""Reads an image file and checks that the image is for the expected board."""
 
 from __future__ import annotations
 
@@ -15,26 +15,27 @@ _LOADED = 1  # PT_LOAD
 
 @dataclass(frozen=True)
 class Memory:
-    """A preset, and the addresses that image.ld of its board defines."""
+    """A preset, and two addresses that depend on the memory regions in image.ld of its board."""
 
     preset: str
     vectors: int  # address of the vector table
-    top_of_ram: int
+    top_of_ram: int  # first address after the RAM
 
 
 @dataclass(frozen=True)
 class Segment:
-    address: int  # in the running program
-    stored_at: int  # where the programmer of the board writes it
+    address: int  # of the content while the program runs
+    stored_at: int  # address to which the content is flashed
     content: bytes
 
 
 def read(path: Path, memory: Memory) -> list[Segment]:
-    """Returns the loaded segments of an image.
+    """Returns the segments of an image that are loaded and not empty.
 
-    Raises Refusal if the file cannot be read or is not an ELF image for this board. An emulator does not check this.
-    Without this check, QEMU would run a wrong file for 60 s before `run` reports an error, and `run` would report none
-    if the file had enabled the UART by then.
+    Raises Refusal if the file cannot be read, is not an ELF file for Arm, ends inside its headers, or is not an image
+    for the board of `memory`. The emulators do not check that an image is for their board. Without this check, QEMU
+    would run a wrong file for 60 s, and then the program `run` would report an error. If the wrong file enabled the
+    UART within this time, `run` would not report an error.
     """
     try:
         file = path.read_bytes()
@@ -48,6 +49,7 @@ def read(path: Path, memory: Memory) -> list[Segment]:
         segments = list(_segments(file))
     except struct.error as error:
         raise Refusal(f"{path}: the file is incomplete; build the image again") from error
+    # The first word of the vector table is the initial stack pointer. In an image, this is the top of the RAM.
     if _word_at(segments, memory.vectors) != memory.top_of_ram:
         raise Refusal(f"{path}: the image is for another board; name an image of the preset {memory.preset}")
     return segments
@@ -63,8 +65,7 @@ def _segments(file: bytes) -> Iterator[Segment]:
 
 
 def _word_at(segments: list[Segment], address: int) -> int | None:
-    """Returns the word at an address, or None if no segment of at least four bytes begins there. The first word of the
-    vectors is the initial stack pointer."""
+    """Returns the word at an address, or None if no segment of at least four bytes begins at this address."""
     for segment in segments:
         if segment.address == address and len(segment.content) >= 4:
             return int(struct.unpack_from("<I", segment.content)[0])

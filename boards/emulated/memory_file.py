@@ -12,18 +12,19 @@ _BLANK = b"\xff"
 
 
 def in_memory(size: int, content: bytes = b"") -> int:
-    """Returns the descriptor of a memory of this size, which exists until its last descriptor is closed. The bytes
-    after `content` are blank."""
+    """Creates a memory of `size` bytes in RAM of the host, and returns its descriptor. The memory begins with
+    `content`, and its other bytes are blank. It exists until its last descriptor is closed."""
     descriptor = os.memfd_create("memory")
     os.write(descriptor, content + _BLANK * (size - len(content)))
     return descriptor
 
 
 def in_file(option: str, path: Path, size: int) -> int:
-    """Returns the descriptor of a memory file and locks the file against other runs. Creates a missing file, and fills
-    a new or empty file with blank bytes.
+    """Locks a memory file, so that no other run can use this file, and returns the descriptor of the file. Creates a
+    missing file, and fills a new or empty file with `size` blank bytes.
 
-    Raises Refusal, with the name of the option, if the file cannot be written, is locked, or has another size.
+    Raises Refusal if the file cannot be opened for reading and writing, is locked, or is not empty and does not have
+    `size` bytes. The message contains `option`, which is the option of the command line that names the file.
     """
     try:
         descriptor = os.open(path, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o666)

@@ -16,7 +16,7 @@ from emulated.refusal import Refusal
 
 
 class Ended(Exception):
-    """The emulator has ended, or has reported an error. The message says why."""
+    """The emulator has ended, or has reported an error. The message describes this event."""
 
 
 class Machine(Protocol):
@@ -26,13 +26,14 @@ class Machine(Protocol):
 
     @property
     def carry_within(self) -> float:
-        """Returns the time in seconds within which `carry` must be called."""
+        """Returns the time in seconds within which `carry` must be called again."""
 
     def carry(self, requests: bytes, ready: list[int]) -> bytes:
-        """Takes the bytes from the master and returns the bytes from the module. `ready`: the descriptors of `watched`
-        that are readable.
+        """Takes the bytes from the master and returns the bytes from the module. `ready`: the readable descriptors. It
+        may also contain descriptors that are not in `watched`.
 
-        Does not wait for bytes. Raises Ended if the emulator has ended or has reported an error.
+        Does not wait for bytes of the master or of the module. Raises Ended if the emulator has ended or has
+        reported an error.
         """
 
     def end(self) -> None:
@@ -40,7 +41,7 @@ class Machine(Protocol):
 
 
 def parser_for(emulator: str, preset: str) -> argparse.ArgumentParser:
-    """Returns a parser with the arguments that all boards have."""
+    """Returns a parser for the arguments that the programs `run` of all boards have in common."""
     parser = argparse.ArgumentParser(
         prog="run",
         description=f"Runs a firmware image in {emulator}. The first line that it prints is the path of the "
@@ -55,7 +56,7 @@ def parser_for(emulator: str, preset: str) -> argparse.ArgumentParser:
 
 
 def run(arguments: argparse.Namespace, emulator: str, start: Callable[[], Machine]) -> int:
-    """Runs the machine that `start` returns, until a signal arrives.
+    """Runs the machine that `start` returns, until a signal arrives or the emulator ends.
 
     Returns the exit status: 0 after a signal, 1 after Ended, 2 after a Refusal.
     """
@@ -92,7 +93,7 @@ def _signal_descriptor() -> int:
 
 
 def _carry_bytes(machine: Machine, terminal: PseudoTerminal, signal_descriptor: int) -> None:
-    """Passes bytes until a signal arrives."""
+    """Passes bytes until a signal arrives, or until `carry` raises Ended."""
     while True:
         watched = [signal_descriptor, terminal.open_events, *machine.watched]
         if terminal.is_opened():
@@ -102,5 +103,6 @@ def _carry_bytes(machine: Machine, terminal: PseudoTerminal, signal_descriptor: 
             return
         if terminal.open_events in ready:
             terminal.process_open_events()
-        # The terminal is always read, because a master may have written bytes and then closed it.
+        # The terminal is read even if no master has it open, because a master may have written bytes and then closed
+        # the terminal.
         terminal.write(machine.carry(terminal.read(), ready))

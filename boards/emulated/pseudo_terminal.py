@@ -1,7 +1,7 @@
 """A pseudo-terminal that masters open and close like a serial port.
 
-QEMU can create a pseudo-terminal itself, but only checks from time to time whether a master has opened it. During the
-first 0.7 s, a new master would lose the bytes that the module sends.
+QEMU can create a pseudo-terminal itself, but only checks from time to time whether a master has opened this terminal.
+Until QEMU detects a new master, it discards the bytes that the module sends.
 """
 
 from __future__ import annotations
@@ -23,7 +23,8 @@ _IN_CLOSE_WRITE, _IN_CLOSE_NOWRITE, _IN_OPEN = 0x08, 0x10, 0x20
 class PseudoTerminal:
     """A pseudo-terminal in raw mode.
 
-    As on a real line, bytes are lost if no master has opened it, or if a master closes it without reading them.
+    As on a real line, bytes from the module are lost if no master has the terminal open. Unread bytes are lost when the
+    last master closes the terminal.
     """
 
     def __init__(self) -> None:
@@ -37,9 +38,9 @@ class PseudoTerminal:
         self._link: Path | None = None
 
     def link(self, path: Path) -> None:
-        """Creates a symbolic link to the terminal. Replaces a link that a killed run has left.
+        """Creates a symbolic link to the terminal. Replaces a stale link, which a killed run may have left.
 
-        Raises Refusal if anything else is at the path, or if the path cannot be written.
+        Raises Refusal if anything else is at the path, or if the link cannot be created.
         """
         try:
             if path.is_symlink() and _is_stale(path, self.device):
@@ -57,10 +58,10 @@ class PseudoTerminal:
             self._link.unlink()
 
     def is_opened(self) -> bool:
-        """Returns whether a master has opened the terminal."""
+        """Returns whether at least one master has the terminal open."""
         poll = select.poll()
         poll.register(self.master, 0)
-        return not poll.poll(0)  # if no master has opened it, poll reports a hang-up
+        return not poll.poll(0)  # poll reports a hang-up if no master has the terminal open
 
     def process_open_events(self) -> None:
         """Processes the events of masters that open or close the terminal. Call this when `open_events` is readable."""
@@ -71,10 +72,10 @@ class PseudoTerminal:
             self._forget_unread()
 
     def _forget_unread(self) -> None:
-        """Discards unread bytes, so that the next master does not get the reply to another master.
+        """Discards unread bytes, so that the next master does not receive a reply to another master.
 
-        Call this when the last master has closed the terminal: the next master may read as soon as it has opened the
-        terminal.
+        Call this immediately after the last master has closed the terminal, because the next master may read as soon as
+        it has opened the terminal.
         """
         self._written = False
         slave = os.open(self.device, os.O_RDWR | os.O_NOCTTY | os.O_CLOEXEC)
@@ -82,14 +83,16 @@ class PseudoTerminal:
         os.close(slave)
 
     def read(self) -> bytes:
-        """Returns the bytes that masters have written, even if they have closed the terminal. May be empty."""
+        """Returns at most 4096 bytes that masters have written, even if these masters have closed the terminal. Returns
+        an empty result if there are no bytes."""
         try:
             return os.read(self.master, 4096)
-        except OSError:  # there are no bytes, or no master has opened the terminal
+        except OSError:
             return b""
 
     def write(self, data: bytes) -> None:
-        """Writes bytes to a master without waiting. If the master does not read, bytes after about 4 KiB are lost."""
+        """Writes bytes to the terminal without waiting. Bytes are lost if no master has the terminal open, or if no
+        master reads and the buffers of the kernel are full."""
         if self.is_opened():
             self._written = True
             with contextlib.suppress(BlockingIOError):
@@ -97,7 +100,8 @@ class PseudoTerminal:
 
 
 def _watch(device: str) -> int:
-    """Returns an inotify descriptor for opening and closing `device`. Uses libc, because Python has no inotify."""
+    """Returns an inotify descriptor that is readable after a program has opened or closed `device`. Uses libc, because
+    the standard library of Python has no functions for inotify."""
     libc = ctypes.CDLL(None, use_errno=True)
     descriptor = int(libc.inotify_init1(os.O_NONBLOCK | os.O_CLOEXEC))
     events = _IN_OPEN | _IN_CLOSE_WRITE | _IN_CLOSE_NOWRITE
@@ -108,6 +112,7 @@ def _watch(device: str) -> int:
 
 
 def _is_stale(link: Path, own_device: str) -> bool:
-    """Returns whether the link points to a terminal that no longer exists, or to the new terminal by chance."""
+    """Returns whether the link points to a terminal that no longer exists, or to `own_device`. The new terminal can
+    have the name of an earlier one."""
     target = os.readlink(link)
     return target.startswith("/dev/pts/") and (target == own_device or not os.path.exists(target))

@@ -2,4 +2,5 @@
 
 
 class Refusal(Exception):
-    """An error that the user can fix. Its one-line message names the argument or program, the error, and the remedy."""
+    """An error that the user can fix. Its message is one line: what the error concerns (for example an argument or a
+    program), the error, and the remedy."""

@@ -1,5 +1,5 @@
-// The Raspberry Pi Pico W. Its LED is connected to the radio chip, so the module requires an external status
-// LED.
+// The Raspberry Pi Pico W. The LED on the board is connected to the radio chip, so the status LED is an
+// external LED at GP22.
 #pragma once
 
 #include "boards/pico/module.hpp"

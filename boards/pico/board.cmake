@@ -4,15 +4,14 @@ set(start_up rp2040/start_up.cpp rp2040/second_stage.cpp)
 # The images need libgcc, because the processor has no instruction for a division.
 set(board_libraries gcc)
 
-# The second stage starts the image from the flash. Users copy the image to the flash as a UF2 file.
+# The build writes the checksum of the second stage, and also writes each image as a UF2 file, which users copy to the
+# drive of the boot ROM.
 set(starts_from_uf2 ON)
 
 set(test_programs tests/rp2040/flash_exercise)
 
-# OpenOCD's script for the board.
 set(openocd_script ${CMAKE_CURRENT_LIST_DIR}/openocd.cfg)
 
-# The memory of the settings.
 set(EX9000_MEMORY flash CACHE STRING "Memory of the settings: flash (the end of the flash) or eeprom (an AT24C64 on I2C)")
 set_property(CACHE EX9000_MEMORY PROPERTY STRINGS flash eeprom)
 if(EX9000_MEMORY STREQUAL eeprom)

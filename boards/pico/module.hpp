@@ -1,5 +1,6 @@
-// The clock, the pins and the polarity of the Raspberry Pi Pico and the Pico W. The two boards differ only in
-// the status LED. README.md in this folder describes the wiring.
+// The clock, the memory of the settings, the pins and the polarity of the Raspberry Pi Pico and the Pico W.
+// For the firmware, the two boards differ only in the pin of the status LED, which board.hpp of each board
+// defines. README.md in this folder describes the wiring.
 #pragma once
 
 #include <array>
@@ -35,8 +36,9 @@ inline constexpr Pin kInitSwitch{3};
 /// The EEPROM is on I2C0: GPIO4 (SDA) and GPIO5 (SCL).
 inline constexpr PinGroup kI2cPins{4, 2};
 
-/// The pins in the order of the channels. Outputs begin with the first eight pins, inputs with the second
-/// eight. A model with more than eight outputs has no inputs, and vice versa, so it can use all pins.
+/// The pins in the order of the channels. The first eight outputs are on GPIO6 to GPIO13, and the first eight
+/// inputs are on GPIO14 to GPIO21. A model with more than eight outputs has no inputs, and a model with more
+/// than eight inputs has no outputs, so each such model can use both groups.
 inline constexpr std::array<PinGroup, 2> kOutputs{PinGroup{6, 8}, PinGroup{14, 8}};
 inline constexpr std::array<PinGroup, 2> kInputs{PinGroup{14, 8}, PinGroup{6, 8}};
 inline constexpr bool kOutputsActiveHigh = true;

@@ -1,6 +1,6 @@
-// The parts of an image for a board of this family: drivers, module, vector table and `main`. This file
-// connects the drivers to the pins of `board.hpp`, the module to the drivers, and the interrupts to their
-// handlers. It defines `main`, so only one source file of a program may include it.
+// Defines the drivers, the module, the vector table and `main` of an image for a board with an RP2040. This
+// file connects the drivers to the pins that `board.hpp` defines, the module to the drivers, and the
+// interrupts to their handlers. It defines `main`, so only one source file of a program may include it.
 #pragma once
 
 #include <array>
@@ -51,7 +51,8 @@ static_assert(
     hal::kIsOneShotTimer<LineEndTimer>,
     "LineEndTimer: lacks a function, or a function has a wrong signature; see hal/one_shot_timer.hpp");
 
-/// The memory of the settings: its driver, the blocks to release from reset, its start and its interrupt.
+/// The memory that stores the settings: its driver, the blocks to release from reset for the driver, whether
+/// it has an interrupt, and the functions that start the driver and handle the interrupt.
 template <Memory memory>
 struct MemoryOnBoard;
 template <>
@@ -72,7 +73,7 @@ struct MemoryOnBoard<Memory::Eeprom> {
 };
 using Settings = MemoryOnBoard<kMemory>;
 
-/// See hal/board.hpp.
+/// The drivers that the firmware requires. hal/board.hpp names for each member the header that describes it.
 struct Board {
   Clock clock;
   Line line;
@@ -119,8 +120,9 @@ constexpr unsigned kInterrupts = 26;
 __attribute__((section(".vectors"), used)) constexpr auto kVectors =
     start_up::vectors<kInterrupts>(on_system_tick, kServed);
 
-/// Starts the drivers. The watchdog starts first, so that it can reset the MCU if a later step hangs. The
-/// outputs start as early as possible after the watchdog, because their pins float until then.
+/// Starts the drivers and the module, and then enables the interrupts of `kServed`. The watchdog is the first
+/// driver to start, so that it can reset the MCU if a later step hangs. The outputs are the second, because
+/// their pins float until they start.
 void start() {
   const ResetReason reason = Watchdog::reset_reason();
   Watchdog::start();

@@ -1,13 +1,13 @@
 // The second stage of the boot sequence. The boot ROM copies the first 256 bytes of the flash to the end of
-// RAM and calls this function, if the checksum in the last four bytes is right. toolchain/seal-second-stage
-// writes the checksum. Source: RP2040 data sheet, 2.8.1.
+// the SRAM. If the checksum in the last four of these bytes is right, the boot ROM calls `second_stage`.
+// toolchain/seal-second-stage writes the checksum. Source: RP2040 data sheet, 2.8.1.
 #include <cstdint>
 
 #include "hal/rp2040/boot.hpp"
 
 namespace ex9000::start_up {
 
-// Symbols of the linker script. The image begins with its vector table.
+// Symbols of the linker script. The vector table is at `image_begin`.
 extern "C" std::uint32_t image_begin[];
 extern "C" std::uint32_t image_end[];
 

@@ -1,4 +1,4 @@
-// The start of an image after the second stage, which has copied code and initialised data to RAM.
+// The start of an image after the second stage, which has copied the image to RAM.
 #include "boards/cortex_m/start_up.hpp"
 #include "hal/rp2040/watchdog.hpp"
 

@@ -1,6 +1,7 @@
-// The parts of an image for a board of this family: drivers, module, vector table and `main`. This file
-// connects the drivers to the pins of `board.hpp`, the module to the drivers, and the interrupts to their
-// handlers. It defines `main`, so only one source file of a program may include it.
+// Defines the drivers, the module, the vector table and `main` of an image for a board of the Stellaris
+// family (LM3S and TM4C). This file connects the drivers to the pins that `board.hpp` defines, the module to
+// the drivers, and the interrupts to their handlers. It defines `main`, so only one source file of a program
+// may include it.
 #pragma once
 
 #include <array>
@@ -47,7 +48,7 @@ static_assert(
     hal::kIsOneShotTimer<LineEndTimer>,
     "LineEndTimer: lacks a function, or a function has a wrong signature; see hal/one_shot_timer.hpp");
 
-/// The peripherals that the firmware requires. hal/board.hpp lists the members and their contracts.
+/// The drivers that the firmware requires. hal/board.hpp names for each member the header that describes it.
 struct Board {
   Clock clock;
   Line line;
@@ -143,8 +144,9 @@ constexpr ClockGates kClockGates{
     ports_of_the_module(),
 };
 
-/// Starts the drivers. The watchdog starts first, so that it can reset the MCU if a later step hangs. The
-/// outputs start as early as possible after the watchdog, because their pins float until then.
+/// Starts the drivers and the module, and then enables the interrupts of `kServed`. The watchdog is the first
+/// driver to start, so that it can reset the MCU if a later step hangs. The outputs are the second, because
+/// their pins float until they start.
 void start() {
   SystemControl::open(kClockGates);
   Watchdog::start();

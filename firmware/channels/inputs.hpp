@@ -1,4 +1,5 @@
-// Input channels: levels, latches and counters - wire.md section 5.
+// Input channels: inversion, filters, levels, latches and counters - wire.md section 5 and
+// firmware/extensions.md.
 #pragma once
 
 #include <array>
@@ -13,49 +14,51 @@
 namespace ex9000 {
 
 /// Passes edges from the edge interrupt to the main loop, as one count for each channel. Rising and falling
-/// edges alternate, so the main loop computes the number of each from the count and the previous level.
+/// edges alternate, so the main loop computes how many edges of each kind there were from the count and the
+/// previous level.
 class InputEdges {
  public:
-  /// Sets the levels at reset; bit n is channel n. These levels do not count as edges. The main loop calls
-  /// this before it enables edge interrupts.
+  /// Sets the levels at reset; bit n is channel n. These levels do not count as edges. Call this before
+  /// interrupts are enabled.
   void begin(std::uint16_t levels) { levels_ = levels; }
 
-  /// Counts one edge on `channel`, or two edges if `level`, the present level of the channel, is the same as
-  /// before. The edge interrupt calls this when the hardware has flagged an edge. Ignores the call if
-  /// `channel` is kMaxInputs or greater. `now` must be the current time if `needs_times()`; otherwise it has
-  /// no effect.
+  /// Counts one edge on `channel` if `level`, the present level of the channel, differs from the level at the
+  /// last call for this channel, or at reset. If the two levels are the same, counts two edges. The edge
+  /// interrupt calls this when the hardware has flagged an edge. Ignores the call if `channel` is kMaxInputs
+  /// or greater. `now` must be the current time if `needs_times()`; otherwise any value is allowed.
   void on_edge(unsigned channel, bool level, Time now);
 
-  /// Sets whether filters need the times of edges from now on. Without filters, an interrupt need not read
-  /// the clock, so it can serve more edges. For the main loop.
+  /// Sets whether filters need the times of edges from now on. Without filters, the edge interrupt need not
+  /// read the clock, so the module can process more edges in the same time. For the main loop.
   void time_edges(bool on) { needs_times_.store_in_main_loop(on); }
   [[nodiscard]] bool needs_times() const { return needs_times_.load(); }
 
-  /// Returns the number of calls of `on_edge`, of all channels together; it wraps.
+  /// Returns the number of calls of `on_edge` that were not ignored, of all channels together; wraps.
   [[nodiscard]] std::uint32_t edges() const { return edges_.load(); }
   /// Returns the number of edges of `channel` since the last call for this channel, modulo 65536. For the
   /// main loop, which must call this at least once every 65535 edges.
   std::uint16_t collect(unsigned channel) { return channels_[channel].collect(); }
-  /// Returns the time of the last edge of `channel`, if `needs_times()` was true at that edge. For the main
-  /// loop.
+  /// Returns the time of the last edge of `channel`. Valid only if `needs_times()` was true at that edge. For
+  /// the main loop.
   [[nodiscard]] Time last_edge(unsigned channel) const { return Time(last_edges_[channel].load()); }
 
  private:
-  std::uint16_t levels_ = 0;  // for the interrupt only
+  std::uint16_t levels_ = 0;  // after `begin`, for the interrupt only
   WrittenByInterrupt<std::uint32_t> edges_;
   std::array<EventTally, kMaxInputs> channels_;
   std::array<WrittenByInterrupt<std::uint32_t>, kMaxInputs> last_edges_;
   WrittenByMainLoop<bool> needs_times_;
 };
 
-/// Levels, latches and counters as the protocols read them. The order is: inversion, filter, everything else.
-/// For the main loop only.
+/// Levels, latches and counters as the protocols read them. The inversion applies first, then the filter.
+/// Levels, latches and counters follow the filtered level. For the main loop only.
 ///
-/// A channel without a filter counts every edge. With a filter, a changed level counts as one edge when it
-/// has been stable for the filter time since the last edge.
+/// Without a filter, every edge of a channel counts. With a filter, a changed level counts as one edge when
+/// it has been stable for the filter time since the last edge. An edge that counts changes the level and sets
+/// a latch. The counters count only rising or only falling edges.
 class Inputs {
  public:
-  /// The range of the counters: five decimal digits in ASCII, 16 bits in Modbus. A counter wraps to 0.
+  /// The range of `counter`: five decimal digits in ASCII, 16 bits in Modbus. A counter wraps to 0.
   enum class CounterRange : std::uint8_t { FiveDigits, SixteenBits };
 
   /// Sets the levels at reset. `levels`: the same value as for InputEdges::begin.
@@ -72,16 +75,17 @@ class Inputs {
   /// Sets the filter times. They apply from the last edge of each channel on.
   void use_filters(const InputFilters& filters) { filters_ = filters; }
 
-  /// Counts and latches the edges of the first `channels` channels, and the levels that have been stable
-  /// for their filter time at `now`. Call this at least once every 65535 edges of a channel.
+  /// Processes the first `channels` channels: counts and latches each edge of a channel without a filter, and
+  /// each changed level that has been stable for its filter time at `now`. Call this at least once every
+  /// 65535 edges of a channel.
   void collect(InputEdges& edges, unsigned channels, Time now);
-  /// Returns the time until the next filtered level counts, at most `at_most`.
+  /// Returns the time until the next changed level has been stable for its filter time, at most `at_most`.
   [[nodiscard]] Duration until_settled(const InputEdges& edges, Time now, Duration at_most) const;
 
   [[nodiscard]] std::uint16_t levels() const { return levels_; }
-  /// Returns the channels with a rising edge since reset or `clear_latches`; bit n is channel n.
+  /// Returns the channels with a rising edge since reset or the last `clear_latches`; bit n is channel n.
   [[nodiscard]] std::uint16_t latched_high() const { return latched_high_; }
-  /// Returns the channels with a falling edge since reset or `clear_latches`; bit n is channel n.
+  /// Returns the channels with a falling edge since reset or the last `clear_latches`; bit n is channel n.
   [[nodiscard]] std::uint16_t latched_low() const { return latched_low_; }
   /// Returns the counter of `channel`: 0 to 99999 in ASCII, 0 to 65535 in Modbus.
   [[nodiscard]] std::uint32_t counter(unsigned channel) const { return counters_[channel]; }
@@ -90,13 +94,13 @@ class Inputs {
   [[nodiscard]] std::uint32_t long_counter(unsigned channel) const { return long_counters_[channel]; }
 
   void clear_latches() { latched_high_ = latched_low_ = 0; }
-  /// Clears counter n for each bit n that is set in `channels`.
+  /// Clears `counter` and `long_counter` of each channel n whose bit n is set in `channels`.
   void clear_counters(std::uint16_t channels);
 
  private:
   void count(unsigned channel, std::uint32_t edges);
   [[nodiscard]] Deadline settles_at(const InputEdges& edges, unsigned channel) const;
-  /// Returns the channels with a changed level that does not count yet.
+  /// Returns the channels with a changed level that does not count yet; bit n is channel n.
   [[nodiscard]] std::uint16_t settling() const { return static_cast<std::uint16_t>(levels_ ^ standing_); }
 
   std::uint32_t edges_seen_ = 0;  ///< InputEdges::edges at the last `collect`

@@ -6,7 +6,8 @@ namespace {
 
 constexpr Duration kUnit = milliseconds(100);
 /// `start` gets the time at which the main loop's pass began. The same pass switches the output on, at most
-/// this much later. A timer runs this much longer, so that the output is never on for less than its time.
+/// 300 us after that time. A timer therefore runs 300 us longer, so that the output is never on for less than
+/// the requested time.
 constexpr Duration kLateStart(300);
 
 }  // namespace

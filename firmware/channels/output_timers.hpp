@@ -1,4 +1,4 @@
-// Timers that switch outputs off - firmware/extensions.md.
+// The timers of the timed outputs - firmware/extensions.md.
 #pragma once
 
 #include <array>
@@ -9,7 +9,7 @@
 
 namespace ex9000 {
 
-/// One timer for each output. A timer counts units of 0.1 s, because its time of up to 6553.5 s is longer
+/// One timer for each output. A timer counts units of 0.1 s, because its time, up to 6553.5 s, may be longer
 /// than a Deadline permits (time.hpp). For the main loop only.
 class OutputTimers {
  public:
@@ -18,13 +18,14 @@ class OutputTimers {
   void start(unsigned channel, std::uint16_t units, Time now);
   /// Stops the timers of `channels`, bit n for channel n.
   void stop(std::uint16_t channels) { running_ = static_cast<std::uint16_t>(running_ & ~channels); }
-  /// Stops the timers that have expired and returns their channels, bit n for channel n. The main loop calls
-  /// this in every pass. Two calls must be at most 30 minutes apart.
+  /// Stops the timers that have expired and returns their channels, bit n for channel n. While a timer runs,
+  /// call this in every pass of the main loop; two calls must be at most 30 minutes apart.
   std::uint16_t expire(Time now);
 
   /// Returns the channels whose timer is running; bit n is channel n.
   [[nodiscard]] std::uint16_t running() const { return running_; }
-  /// Returns the time left at the last `expire`, in units of 0.1 s, rounded up; 0 if the timer does not run.
+  /// Returns how many units of 0.1 s were left at the last `start` or `expire`, including the current unit; 0
+  /// if the timer of `channel` does not run.
   [[nodiscard]] std::uint16_t left(unsigned channel) const;
   /// Returns the time until `expire` must be called, at most `at_most`.
   [[nodiscard]] Duration until_due(Time now, Duration at_most) const;

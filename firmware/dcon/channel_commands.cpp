@@ -1,5 +1,5 @@
-// Commands that read all channels, directly or as a sample that all modules take at the same time:
-// manuals 2.2, 2.5, 2.7, 2.10 (EX9052D 2.13).
+// Commands that read the present state of all channels, and commands that take and read the synchronised
+// sample: manuals 2.2, 2.5, 2.7, 2.10 (EX9052D 2.13).
 #include "firmware/dcon/commands.hpp"
 #include "firmware/dcon/writing.hpp"
 

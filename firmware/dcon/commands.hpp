@@ -1,4 +1,4 @@
-// The DCON (ASCII) command set, one table row for each command - wire.md section 4.
+// The DCON (ASCII) command set, one table row for each command - wire.md section 4 and extensions.md.
 #pragma once
 
 #include <cstdint>
@@ -10,9 +10,10 @@
 
 namespace ex9000::dcon {
 
-/// Judges the arguments of a command, writes the reply without checksum and CR, and records in the outcome
-/// what the module must do. The arguments are the characters after address and key; their number matches the
-/// row.
+/// Judges the arguments of a command and returns the reason of a refusal, or None. If the command is not
+/// refused, writes its reply, if it has one, without checksum and CR, and records in the outcome what the
+/// module must do. The arguments are the characters after the address and the key (Dispatch::key). The caller
+/// has checked that their number is in the range of the row.
 using Handler = Refusal (*)(Exchange& exchange);
 
 // configuration_commands.cpp
@@ -54,10 +55,12 @@ Refusal set_response_delay(Exchange& exchange);
 constexpr char kNoKey = 0;
 constexpr char kBroadcastKey = '*';
 
-/// The part of a row that an image contains.
+/// The part of a row of kCommands that a firmware image contains.
 struct Dispatch {
   char delimiter = 0;
-  char key = kNoKey;  ///< the character after the address; kBroadcastKey: the address is `**`
+  /// The character after the address that selects the command. kNoKey and kBroadcastKey: the command has no
+  /// such character. kBroadcastKey: its address is `**`.
+  char key = kNoKey;
   std::uint8_t fewest_args = 0;
   std::uint8_t most_args = 0;
   Needs needs = Needs::Nothing;
@@ -67,7 +70,7 @@ struct Dispatch {
 enum class Access : std::uint8_t { Read, Write, Store };
 
 /// The mark (I) of a command in wire.md section 4. Required: the command is permitted only in INIT mode or
-/// while INIT* is asserted.
+/// while INIT* is asserted. For `%`, this applies only to a change of the baud rate, line format or checksum.
 enum class Init : std::uint8_t { NotRequired, Required };
 
 /// A row with its documentation. The firmware never uses the texts, so an image does not contain them.
@@ -78,7 +81,7 @@ struct Command {
   std::string_view meaning;
   std::string_view range;  ///< range of the arguments
   Access access;           ///< Store: may change settings; the module stores them before it replies
-  Init init;               ///< for `%`: required only to change the baud rate, line format or checksum
+  Init init;
   Dispatch dispatch;
 };
 

@@ -1,5 +1,5 @@
 // Commands for configuration, reset status, name, protocol and version: manuals 2.1, 2.4, 2.6, 2.8, 2.9, 2.12
-// to 2.14.
+// to 2.14 (EX9052D 2.14 to 2.16).
 #include "firmware/dcon/commands.hpp"
 #include "firmware/dcon/writing.hpp"
 #include "firmware/hex.hpp"

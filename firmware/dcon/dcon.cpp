@@ -12,12 +12,13 @@ namespace {
 
 constexpr std::size_t kBodyAt = 3;
 
-/// The table without its texts, which an image does not contain.
+/// The rows of kCommands that at least one built model has, without the texts, which an image does not
+/// contain.
 constexpr auto kDispatch = rows_of_built_models<kCommands, &Command::dispatch>();
 
 bool is_broadcast(Bytes frame) { return frame[1] == '*'; }
 
-/// Returns the characters after the key, or after the address if the row has no key.
+/// Returns the characters after the key, or after the address if the command has no key.
 Bytes arguments(const Dispatch& row, Bytes frame) {
   const bool has_key = row.key != kNoKey && row.key != kBroadcastKey;
   return frame.from(kBodyAt + (has_key ? 1 : 0));
@@ -35,8 +36,9 @@ bool matches(const Dispatch& row, const Model& model, Bytes frame) {
   return args >= row.fewest_args && args <= row.most_args && has(model, row.needs);
 }
 
-/// Returns whether the reply to a refused command has no address. This applies to commands that set outputs
-/// (manuals 2.3, 2.11; wire.md D12).
+/// Returns whether the reply to this refused frame has no address. Only a model with outputs sends such a
+/// reply: for `@AA` with data, and for each `#AA...` except `#AAN` on a model that also has inputs (manuals
+/// 2.3, 2.11; wire.md D12).
 bool refused_without_address(const Model& model, Bytes frame) {
   const std::size_t body = frame.size - kBodyAt;
   if (!model.has_outputs()) {
@@ -45,7 +47,7 @@ bool refused_without_address(const Model& model, Bytes frame) {
   if (frame[0] == '#') {
     return !(model.has_inputs() && body == 1);
   }
-  return frame[0] == '@';  // this frame has data, because `@AA` without data is never refused
+  return frame[0] == '@';  // a refused `@` frame has data, because `@AA` without data is never refused
 }
 
 void refuse(Exchange& exchange, Refusal refusal) {

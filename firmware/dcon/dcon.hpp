@@ -12,11 +12,11 @@ namespace ex9000::dcon {
 constexpr std::size_t kNoCommand = static_cast<std::size_t>(-1);
 
 /// Finds the row of the command that `frame` contains. Returns the index of the row, or kNoCommand if `model`
-/// has no such command. The index counts only the rows of kCommands that at least one built model has.
-/// `frame` begins with delimiter and address, and has no checksum and no CR.
+/// has no such command. The index counts only the rows of kCommands that at least one built model has
+/// (model/built.hpp). `frame` begins with delimiter and address, and has no checksum and no CR.
 std::size_t find_command(const Model& model, Bytes frame);
 
-/// Judges the frame of `exchange` and writes its outcome and its reply, including the checksum, if it is in
+/// Judges the frame of `exchange` and writes the outcome and the reply, including the checksum, if it is in
 /// force, and CR. The module must carry out the outcome before it sends the reply. The reply is empty if the
 /// frame is `#**` or `~**`, or is for another address. Changes nothing but `exchange`.
 void answer(Exchange& exchange);

@@ -1,4 +1,4 @@
-// The commands of firmware/extensions.md: `~AAX` and `~AARD`.
+// The commands that firmware/extensions.md adds: `~AAX` and `~AARD`.
 #include "firmware/dcon/commands.hpp"
 #include "firmware/dcon/writing.hpp"
 #include "firmware/hex.hpp"
@@ -10,7 +10,7 @@ namespace {
 
 using modbus::WordRow;
 
-constexpr std::uint8_t kDelayKey = 'D';  // the second letter of `~AARD`
+constexpr std::uint8_t kDelayKey = 'D';  // the character after `~AAR`
 
 /// Returns the value of the four digits from `args[at]` on, or -1 if one of them is not an upper-case hex
 /// digit.
@@ -21,7 +21,8 @@ int hex_word(Bytes args, std::size_t at) {
   return high < 0 || low < 0 ? -1 : high * kByte + low;
 }
 
-/// Returns the row of the extension register at `address`, or null if the model has no such register.
+/// Returns the row of the extension register at `address`. Returns null if `address` is negative, or if the
+/// model has no such register.
 const WordRow* row_of(const Model& model, int address) {
   return address < 0 ? nullptr : modbus::find_extension(model, static_cast<unsigned>(address));
 }
@@ -37,7 +38,8 @@ Refusal read_extension(Exchange& exchange) {
   const unsigned index = static_cast<unsigned>(address) - row->first;
   const bool is_long = row->has(modbus::kLong);
   if (is_long && index % 2 != 0) {
-    return Refusal::OutOfRange;  // two separate reads could return words of two different values
+    // The low word cannot be read alone: two separate reads could return words of two different values.
+    return Refusal::OutOfRange;
   }
   put_valid(exchange);
   put_hex_word(exchange.reply, row->read(exchange, index));

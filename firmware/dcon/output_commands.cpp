@@ -10,8 +10,8 @@ namespace {
 constexpr std::uint16_t kLowGroup = 0x00FF;
 constexpr unsigned kHighGroupShift = 8;
 
-/// Records in the outcome which outputs to drive, and writes the reply. Refuses while the timeout status is
-/// set. The caller must have checked syntax and range.
+/// Records in the outcome which outputs to drive, and writes the reply. Refuses the command while the
+/// timeout status is set. The caller must have checked syntax and range.
 Refusal drive(Exchange& exchange, Drive drive) {
   if (exchange.state.outputs_blocked()) {
     return Refusal::OutputsBlocked;
@@ -21,9 +21,9 @@ Refusal drive(Exchange& exchange, Drive drive) {
   return Refusal::None;
 }
 
-/// Returns the outputs that `#AABBDD` selects with BB = 00, 0A or 0B, and their levels. The mask is 0 if BB
-/// has another value, if the model has no such group, or if `data` sets an output that the model does not
-/// have.
+/// Returns the outputs that `#AABBDD` selects with BB = 00, 0A or 0B, and their levels. `selector` is the
+/// second character of BB. The mask is 0 if BB has another value, if the model has no such group, or if
+/// `data` sets an output that the model does not have.
 Drive group(const Model& model, std::uint8_t selector, int data) {
   const bool high = selector == 'B';
   const unsigned channels = model.output_mask() & (high ? ~unsigned{kLowGroup} : unsigned{kLowGroup});
@@ -34,8 +34,9 @@ Drive group(const Model& model, std::uint8_t selector, int data) {
   return {static_cast<std::uint16_t>(channels), static_cast<std::uint16_t>(value)};
 }
 
-/// Returns the output that `#AABBDD` selects with BB = 1c, Ac or Bc, and its level. The mask is 0 if BB has
-/// another value, if the model has no such output, or if `data` is not 0 or 1.
+/// Returns the output that `#AABBDD` selects with BB = 1c, Ac or Bc, and its level. `selector` is the first
+/// character of BB. `channel` is the value of its second character, or -1 if that is not an upper-case hex
+/// digit. The mask is 0 if BB has another value, if the model has no such output, or if `data` is not 0 or 1.
 Drive single(const Model& model, std::uint8_t selector, int channel, int data) {
   const bool high = selector == 'B';
   if ((selector != '1' && selector != 'A' && !high) || channel < 0 || channel > 7 || data > 1) {
@@ -48,8 +49,8 @@ Drive single(const Model& model, std::uint8_t selector, int channel, int data) {
   return {static_cast<std::uint16_t>(bit), static_cast<std::uint16_t>(data == 1 ? bit : 0U)};
 }
 
-/// How many hex digits `@AA(Data)` accepts for all outputs of a model: in the full form, and in the shorter
-/// form of the manuals' examples (wire.md E4).
+/// The numbers of hex digits that `@AA(Data)` accepts on a model: in the full form, and in the shorter form
+/// of examples of the manuals (wire.md E4). They are equal if the model has no shorter form.
 struct Digits {
   std::size_t full;
   std::size_t shortened;

@@ -13,9 +13,10 @@ inline void put_hex_word(Reply& reply, std::uint16_t value) {
   reply.put_hex(value & 0xFFU);
 }
 
-/// Writes First and Second (manuals 1.10). On a model with more than 8 outputs or more than 8 inputs, First
-/// contains the high byte and Second the low byte. On other models with outputs, First contains the outputs
-/// and Second the inputs. On other models without outputs, First contains the inputs, and Second is 00.
+/// Writes First and Second, the two data bytes of a reply (manuals 1.10). On a model with more than 8 outputs
+/// or more than 8 inputs, First contains the high byte of these channels and Second the low byte. On other
+/// models with outputs, First contains the outputs and Second the inputs. On other models without outputs,
+/// First contains the inputs, and Second is 00.
 inline void put_data(const Model& model, std::uint16_t outputs, std::uint16_t inputs, Reply& reply) {
   constexpr unsigned kChannelsOfAByte = 8;
   if (model.outputs > kChannelsOfAByte || model.inputs > kChannelsOfAByte) {
@@ -33,7 +34,7 @@ inline void put_data(Exchange& exchange, std::uint16_t outputs, std::uint16_t in
   put_data(exchange.model(), outputs, inputs, exchange.reply);
 }
 
-/// Writes `!AA`, the beginning of most replies. AA is the address in force, 00 in INIT mode.
+/// Writes `!AA`, the beginning of most replies. AA is the address in force, which is 00 in INIT mode.
 inline void put_valid(Exchange& exchange) {
   exchange.reply.put('!');
   exchange.reply.put_hex(exchange.state.in_force.address);

@@ -36,13 +36,13 @@ class Crc16 {
   constexpr void add(std::uint8_t byte) {
     value_ = (value_ >> 8U) ^ detail::kCrc16Table[(value_ ^ byte) & 0xFFU];
   }
-  /// Returns the CRC, 16 bits.
+  /// Returns the CRC, a value of 16 bits.
   [[nodiscard]] constexpr std::uint32_t value() const { return value_; }
   [[nodiscard]] constexpr std::uint8_t low_byte() const { return static_cast<std::uint8_t>(value_); }
   [[nodiscard]] constexpr std::uint8_t high_byte() const { return static_cast<std::uint8_t>(value_ >> 8U); }
 
  private:
-  std::uint32_t value_ = 0xFFFF;  // 32 bits, because the processor calculates with words
+  std::uint32_t value_ = 0xFFFF;  // 32 bits, because the processor calculates with 32-bit words
 };
 
 constexpr Crc16 crc16(Bytes bytes) {

@@ -25,7 +25,7 @@ bool are_digits(const std::uint8_t* text, std::uint32_t digits) {
 
 Verdict DconAssembler::byte(FrameQueue& queue, std::uint8_t byte, ByteStatus status, Time now) {
   if (status != ByteStatus::Good) {
-    // The byte's value is unreliable, so the byte neither ends nor begins a frame.
+    // The byte's value is unreliable, or another byte was lost, so this byte neither ends nor begins a frame.
     if (state_ == State::InFrame) {
       state_ = State::Spoiled;
       loss_ = status == ByteStatus::Overrun ? Verdict::Overrun : Verdict::LineError;

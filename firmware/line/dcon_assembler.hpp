@@ -1,4 +1,4 @@
-// Assembles DCON (ASCII) frames from received bytes. Runs in the receive interrupt.
+// Assembles DCON (ASCII) frames from received bytes in interrupts.
 #pragma once
 
 #include <cstdint>
@@ -30,15 +30,15 @@ class DconAssembler {
   /// Returns whether the last frame with a correct check was a broadcast. Valid only if that frame was not
   /// Foreign. For interrupts.
   [[nodiscard]] bool last_was_broadcast() const { return broadcast_; }
-  /// Drops an incomplete frame. For interrupts.
+  /// Drops an incomplete frame, and ends the skipping of another module's reply. For interrupts.
   void forget() { state_ = State::Hunting; }
 
  private:
   enum class State : std::uint8_t {
     Hunting,   ///< between frames; ignores all characters except delimiters and `!`, `>`, `?` of a reply
-    InFrame,   ///< in a frame; every character except CR is content
+    InFrame,   ///< in a frame; a delimiter does not begin a new frame
     Spoiled,   ///< in a frame that is already lost; `loss_` is the reason
-    Skipping,  ///< in a reply of another module, which is ignored up to its CR
+    Skipping,  ///< in another module's reply; all characters up to its CR are ignored
   };
 
   void add(std::uint8_t* text, std::uint8_t byte);

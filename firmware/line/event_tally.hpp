@@ -8,7 +8,7 @@
 namespace ex9000 {
 
 /// Counts events in an interrupt and passes the count to the main loop. Each event is counted exactly once if
-/// the main loop collects at least once every 65535 events. Each variable is written by only one side.
+/// the main loop calls `collect` at least once every 65535 events.
 class EventTally {
  public:
   /// Counts `events` events. For the interrupt.

@@ -12,11 +12,11 @@
 
 namespace ex9000 {
 
-/// Length of the longest Modbus RTU frame in bytes (Modbus over Serial Line V1.02, 2.5.1). Without Modbus:
-/// length of the longest DCON frame that is accepted.
+/// Length of the longest Modbus RTU frame in bytes (Modbus over Serial Line V1.02, 2.5.1). If no built model
+/// speaks Modbus: length of the longest accepted DCON frame, without its CR.
 constexpr std::size_t kLongestFrame = kBuiltModbus ? 256 : 32;
 
-/// A frame that is being assembled, or a complete frame with a correct check for this module or all modules.
+/// A frame that is being assembled, or a complete frame that waits for the main loop.
 struct Frame {
   std::uint16_t offset = 0;  ///< index of the first byte; 1 after a turn-around byte
   std::uint16_t size = 0;    ///< number of bytes from `offset` on, without checksum, CRC and CR
@@ -27,8 +27,9 @@ struct Frame {
 };
 
 /// Two frame buffers that are used in turn: one frame waits for the main loop while the next one is
-/// assembled. While a command is executed or stored, the queue keeps one more frame. Further frames are lost,
-/// and `complete_in_interrupt` returns false for them.
+/// assembled. The main loop drops a frame before it executes or stores the command of this frame, so the
+/// queue keeps one more complete frame during this time. Further frames are lost, and `complete_in_interrupt`
+/// returns false for them.
 class FrameQueue {
  public:
   /// Returns the frame that is being assembled. For the interrupt.
@@ -51,13 +52,13 @@ class FrameQueue {
   /// if `has_frame()`.
   [[nodiscard]] const Frame& waiting() const { return frames_[dropped_.load() % kFrames]; }
 
-  /// Removes the waiting frame. For the main loop.
+  /// Removes the waiting frame. For the main loop; call this only if `has_frame()`.
   void drop_in_main_loop() { dropped_.store_in_main_loop(dropped_.load() + 1U); }
 
  private:
   static constexpr std::uint32_t kFrames = 2;
 
-  WrittenByInterrupt<std::uint32_t> completed_;  ///< number of completed frames; wraps
+  WrittenByInterrupt<std::uint32_t> completed_;  ///< number of frames that were queued; wraps
   WrittenByMainLoop<std::uint32_t> dropped_;     ///< number of frames that the main loop has dropped; wraps
   std::array<Frame, kFrames> frames_{};
 };

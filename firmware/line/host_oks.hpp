@@ -14,8 +14,9 @@ namespace ex9000 {
 /// that counts like a host OK (register 0x0251) is stored like one.
 class HostOks {
  public:
-  /// A host OK counts from its CR in ASCII. In Modbus it counts from the end of its silence, or from the end
-  /// of the module's own reply if this reply cut the silence off (wire.md D9).
+  /// In ASCII, a host OK counts from its CR. In Modbus, it counts from the end of its silence. Exception: if
+  /// the module's own reply begins and ends before the end of this silence, the host OK counts from the end
+  /// of the reply (wire.md D9).
   struct Times {
     Time first;
     Time last;
@@ -33,8 +34,9 @@ class HostOks {
   /// Returns whether there is a host OK that the main loop has not taken yet.
   [[nodiscard]] bool waiting() const { return received_.load() != taken_.load(); }
 
-  /// Takes all host OKs that are waiting. If another one arrives during the call, it is waiting afterwards,
-  /// and the next call returns the same first time again. For the main loop; call this only if `waiting()`.
+  /// Takes all host OKs that are waiting. A host OK that arrives during the call may still be waiting after
+  /// the call. The next call may then return the same first time again. For the main loop; call this only if
+  /// `waiting()`.
   Times take_in_main_loop() {
     const std::uint32_t received = received_.load();
     const Times times{Time(first_.load()), Time(last_.load())};

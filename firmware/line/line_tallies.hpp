@@ -1,5 +1,5 @@
-// The counters of the interrupts for Modbus function 08 (Modbus over Serial Line V1.02, appendix A) and for
-// registers 0x0308 to 0x030F (firmware/extensions.md).
+// The counters that interrupts increment for Modbus function 08 (Modbus over Serial Line V1.02, appendix A)
+// and for registers 0x0308 to 0x030F (firmware/extensions.md).
 #pragma once
 
 #include <array>
@@ -11,9 +11,9 @@
 
 namespace ex9000 {
 
-/// Counts frames by verdict, so that the interrupt increments at most one count for each frame. The main loop
-/// adds up the counts for each Modbus counter. The counts are 32-bit words, which take less time in the
-/// interrupt than the 16-bit count of an EventTally.
+/// Counts frames by verdict, so that the interrupt increments at most one count for each frame. To read a
+/// counter, the main loop adds up the counts of some verdicts. The counts are 32-bit words, which take less
+/// time in the interrupt than the 16-bit count of an EventTally.
 class LineTallies {
  public:
   /// Counts a frame. For interrupts.
@@ -27,8 +27,8 @@ class LineTallies {
     damaged_bytes_.store_in_interrupt(damaged_bytes_.load() + 1U);
   }
 
-  /// Returns the number of frames with a verdict from `first` to `last` since reset or `clear`, modulo 65536.
-  /// For the main loop.
+  /// Returns the number of frames with a verdict from `first` to `last` since reset or the last `clear`,
+  /// modulo 65536. For the main loop.
   [[nodiscard, gnu::noinline]] std::uint16_t count(Verdict first, Verdict last) const {
     unsigned sum = 0;
     for (auto each = static_cast<std::size_t>(first); each <= static_cast<std::size_t>(last); ++each) {

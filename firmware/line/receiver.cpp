@@ -23,7 +23,7 @@ Duration Receiver::on_silence() {
 
 void Receiver::on_own_driver_off(Time now) {
   if (modbus()) {
-    // The module's own reply ends the frame, even if the silence of the frame was not over.
+    // The module's own reply ends the frame, even if the silence after the frame is not over.
     const Verdict verdict = rtu_.cut_off(queue_);
     Deadline silence;
     silence.set(rtu_.silent_since());

@@ -1,4 +1,4 @@
-// The interrupt part of the line: turns received bytes into complete frames for this module.
+// Assembles received bytes into frames for this module or for all modules, in interrupts.
 #pragma once
 
 #include <cstdint>
@@ -31,19 +31,19 @@ class Receiver {
 
   // --- interrupts, which must not interrupt each other ---
 
-  /// Processes a received byte. `now` is the time at which the UART reports the byte; the timing takes into
+  /// Processes a received byte. `now` is the time at which the UART reports the byte; LineTiming takes into
   /// account the part of the stop bits that is left. Returns the time from `now` after which `on_silence`
-  /// must be called: restart the timer with this time. Do not change the timer if the result is 0. In Modbus,
-  /// the result is `rtu_silence` for each byte. In DCON, the result is the turn-around time for the CR of an
-  /// accepted frame, otherwise 0.
+  /// must be called: restart the silence timer with this time. Do not change the timer if the result is 0. In
+  /// Modbus, the result is `rtu_silence` for each byte. In DCON, the result is the turn-around time for the
+  /// CR of an accepted frame, otherwise 0.
   Duration on_byte(std::uint8_t byte, ByteStatus status, Time now);
 
-  /// Call this when the time that `on_byte` or `on_silence` returned has passed. The result has the same
-  /// meaning as that of `on_byte`.
+  /// Call this when the time that `on_byte` or `on_silence` returned has passed. Returns the time after which
+  /// `on_silence` must be called again; 0 if this is not necessary.
   Duration on_silence();
 
-  /// Call this when the module's own driver has been on until `now`; `on_byte` must not be called during that
-  /// time. Drops an incomplete frame, except an RTU frame that lacks only its silence (wire.md D9).
+  /// Call this at `now`, when the module's own driver is off again; `on_byte` must not be called while the
+  /// driver is on. Drops an incomplete frame, except an RTU frame that lacks only its silence (wire.md D9).
   void on_own_driver_off(Time now);
 
   // --- main loop ---
@@ -65,7 +65,8 @@ class Receiver {
 
  private:
   [[nodiscard]] bool modbus() const { return kBuiltModbus && protocol_ == Protocol::ModbusRtu; }
-  /// Counts `verdict`, unless it is Open. `over`: when the frame ended.
+  /// Counts `verdict`, unless it is Open. If the frame restarts the host watchdog, stores `over` as the time
+  /// of the restart.
   void note(Verdict verdict, Time over) {
     if (verdict != Verdict::Open) {
       count(verdict, over);

@@ -39,9 +39,10 @@ Verdict RtuAssembler::cut_off(FrameQueue& queue) {
   return verdict;
 }
 
-/// Judges the frame. If the CRC of the whole frame is wrong or its first byte is spoiled, ignores a leading
-/// turn-around byte 00. Returns Open if the CRC or the length is wrong or a byte is spoiled. Queues a frame
-/// that is a broadcast or has the address of this module, except a host OK.
+/// Judges the frame. If the CRC of the whole frame is wrong or the first byte is spoiled, ignores a leading
+/// turn-around byte 00. Returns Open if the CRC or the length of the rest is wrong, or if a byte that is not
+/// ignored is spoiled. Queues a frame that is a broadcast or has the address of this module, except a host
+/// OK. Returns NoRoom if another frame is already waiting.
 Verdict RtuAssembler::conclude(FrameQueue& queue) {
   Frame& frame = queue.assembling();
   unsigned offset = 0;

@@ -1,5 +1,4 @@
-// Assembles Modbus RTU frames from received bytes and silences. Runs in the receive interrupt and in the
-// timer interrupt.
+// Assembles Modbus RTU frames from received bytes and silences in interrupts.
 #pragma once
 
 #include <cstdint>
@@ -15,8 +14,8 @@ namespace ex9000 {
 
 /// Frame format: address, function, data, CRC, then a silence of T3.5 - wire.md section 7.
 ///
-/// A timer ends frames. Its interrupt must run before the interrupt of a byte that arrives later
-/// (hal/one_shot_timer.hpp).
+/// The silence timer detects the end of a silence. If the interrupt of this timer and the receive interrupt
+/// are both pending, the interrupt of the timer must run first (hal/one_shot_timer.hpp).
 class RtuAssembler {
  public:
   void use(const LineTiming& timing) { timing_ = timing; }
@@ -25,25 +24,26 @@ class RtuAssembler {
   /// this while bytes are received.
   void answer_to(std::uint8_t address) { own_address_.store_in_main_loop(address); }
 
-  /// Processes a byte that the UART reports at `now`. Restart the timer with T3.5 after this call. Returns
-  /// the verdict on the previous frame if this byte shows that the previous frame has ended, else Open. For
-  /// the receive interrupt.
+  /// Processes a byte that the UART reports at `now`. Restart the silence timer with `rtu_silence` after this
+  /// call. Returns the verdict on the previous frame if this byte shows that the previous frame has ended,
+  /// else Open. For the receive interrupt.
   Verdict byte(FrameQueue& queue, std::uint8_t byte, ByteStatus status, Time now);
 
-  /// Call this when the timer has expired. After this call, restart the timer with `next_wait()`, unless that
-  /// time is 0. Returns the verdict on the frame that has ended, or Open if none has ended. An accepted frame
-  /// contains address, function and data, but neither the CRC nor a leading turn-around byte 00. For the
-  /// timer interrupt.
+  /// Call this when the silence timer has expired. After this call, restart the timer with `next_wait()`,
+  /// unless that time is 0. Returns the verdict on the frame that has ended, or Open if none has ended. An
+  /// accepted frame contains address, function and data, but neither the CRC nor a leading turn-around byte
+  /// 00. For the interrupt of the silence timer.
   Verdict silence(FrameQueue& queue);
-  /// Returns the next time for the timer; 0 if none is necessary.
+  /// Returns the time after which `silence` must be called again; 0 if this is not necessary.
   [[nodiscard]] Duration next_wait() const;
 
-  /// Call this when the module's own driver has been on. A frame with a correct CRC is complete and is
-  /// judged; any other frame is dropped (wire.md D9). Returns the verdict, or Open if no frame was open or
-  /// the frame is dropped. For interrupts.
+  /// Call this when the module's own driver is off again. A frame that lacks only its silence is judged; any
+  /// other open frame is dropped (wire.md D9). Returns the verdict, or Open if no frame was open or the frame
+  /// is dropped. For interrupts.
   Verdict cut_off(FrameQueue& queue);
 
-  /// Returns whether the last frame with a correct check for this module was a broadcast. For interrupts.
+  /// Returns whether the last correct frame for this module or for all modules was a broadcast. For
+  /// interrupts.
   [[nodiscard]] bool last_was_broadcast() const { return broadcast_; }
   /// Returns the end of the silence after the last byte.
   [[nodiscard]] Time silent_since() const { return last_ + timing_.rtu_silence; }
@@ -52,7 +52,7 @@ class RtuAssembler {
   enum class State : std::uint8_t {
     Idle,         ///< no frame is open
     Receiving,    ///< a frame is open, and T3.5 is not over
-    GracePeriod,  ///< T3.5 is over without a valid frame; a byte that began earlier may still arrive
+    GracePeriod,  ///< T3.5 is over but the frame is not valid; a byte that began during T3.5 may still arrive
   };
 
   static constexpr std::uint8_t kTurnAround = 0x00;
@@ -73,10 +73,10 @@ class RtuAssembler {
   Crc16 whole_;                 ///< CRC of all bytes
   Crc16 crc_after_first_;       ///< CRC of all bytes except the first, if that is 00
   Time last_;                   ///< when the UART reported the last byte
-  bool broadcast_ = false;      ///< the last frame for this module was for all modules
+  bool broadcast_ = false;      ///< the value of `last_was_broadcast`
 };
 
-// `byte` and the functions that it calls are inline, because `byte` runs for each byte on the line, including
+// `byte`, `open`, `spoil` and `append` are inline, because `byte` runs for each byte on the line, including
 // bytes for other modules.
 
 inline Verdict RtuAssembler::byte(FrameQueue& queue, std::uint8_t byte, ByteStatus status, Time now) {

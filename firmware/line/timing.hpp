@@ -9,17 +9,17 @@
 namespace ex9000 {
 
 struct LineTiming {
-  /// Shortest time between the report of CR and the reply: the rest of its stop bits and one character,
+  /// Shortest time between the report of CR and the reply: the rest of the stop bits of CR and one character,
   /// rounded up.
   Duration dcon_turn_around;
   /// Time from the report of a byte to the end of the silence that ends a Modbus RTU frame and precedes a
   /// reply: the rest of the stop bits and T3.5. It is rounded up, so that a reply is never early.
   Duration rtu_silence;
   /// Time after `rtu_silence` within which the UART reports a byte that began before the end of T3.5: the
-  /// time from the beginning of a byte to its report. It is rounded down, so that a byte that begins after
-  /// exactly T3.5 begins a new frame.
+  /// time from the beginning of a byte to its report. It is rounded down, so that a byte that begins exactly
+  /// at the end of T3.5 begins a new frame.
   Duration rtu_grace;
-  /// The largest time between the reports of two bytes; a larger time makes the frame invalid.
+  /// The largest time between the reports of two bytes of a frame; a larger time makes the frame invalid.
   Duration rtu_slack;
   /// Time from the report of a byte to the end of its last stop bit, rounded up.
   Duration rest_of_stop_bit;
@@ -28,9 +28,9 @@ struct LineTiming {
   static constexpr Duration kAnyGap{0xFFFF'FFFFU};
 
   /// Returns the times for a UART that reports a byte at the end of its first stop bit. T3.5 is 3.5
-  /// characters of 11 bits in every format up to 19200 baud, and fixed above that (Modbus over Serial Line
-  /// V1.02, 2.5.1.1). Gaps within a frame are allowed, because USB adapters and gateways cause them. `baud`:
-  /// 50 to 4000000 bits per second.
+  /// characters of 11 bits in every format up to 19200 baud, and 1.75 ms above 19200 baud (Modbus over Serial
+  /// Line V1.02, 2.5.1.1). Gaps within a frame are allowed, because USB adapters and gateways cause them.
+  /// `baud`: 50 to 4000000 bits per second.
   static constexpr LineTiming at(std::uint32_t baud, LineFormat format) {
     const unsigned second_stop_bit = bits_of_character(format) - bits_received(format);
     const std::uint32_t until_report = microseconds(2 * bits_received(format), baud);
@@ -44,20 +44,20 @@ struct LineTiming {
     return timing;
   }
 
-  /// Returns the times of `at` for a UART that reports a byte in the middle of its first stop bit, half a bit
-  /// before the end. `baud` must be one of kBaudRates.
+  /// Returns the times that correspond to those of `at` for a UART that reports a byte in the middle of its
+  /// first stop bit. `baud` must be one of kBaudRates.
   static constexpr LineTiming reported_in_stop_bit(std::uint32_t baud, LineFormat format) {
     LineTiming timing = at(baud, format);
     const Duration half_bit(microseconds(1, baud) + 1U);
     timing.dcon_turn_around = timing.dcon_turn_around + half_bit;
     timing.rtu_silence = timing.rtu_silence + half_bit;
     timing.rest_of_stop_bit = timing.rest_of_stop_bit + half_bit;
-    timing.rtu_grace = timing.rtu_grace - half_bit;  // the UART reports the late byte half a bit early too
+    timing.rtu_grace = timing.rtu_grace - half_bit;  // a byte is reported half a bit earlier than in `at`
     return timing;
   }
 
-  /// Return the same times as the functions above, except that a gap of more than T1.5 makes the frame
-  /// invalid, as 2.5.1.1 requires.
+  /// Return the same times as `at` and `reported_in_stop_bit`, except that a gap of more than T1.5 makes the
+  /// frame invalid, as Modbus over Serial Line V1.02, 2.5.1.1, requires.
   static constexpr LineTiming strictly_at(std::uint32_t baud, LineFormat format) {
     return strictly(at(baud, format), baud, format);
   }
@@ -74,7 +74,8 @@ struct LineTiming {
 
   /// In microseconds: 1 for the rounding of the division, 1 for the resolution of the clock.
   static constexpr std::uint32_t kRoundUp = 2;
-  /// In microseconds: 1 more than kRoundUp, because rtu_silence is already rounded up by kRoundUp.
+  /// In microseconds: kRoundUp, because rtu_silence is already rounded up by kRoundUp, and 1 for the
+  /// resolution of the clock.
   static constexpr std::uint32_t kRoundDown = kRoundUp + 1;
 
   static constexpr std::uint32_t microseconds(std::uint32_t half_bits, std::uint32_t baud) {
@@ -88,8 +89,8 @@ struct LineTiming {
   }
 };
 
-/// A function that returns the times at a baud rate and format, for example `LineTiming::at`. A line on which
-/// bytes take no time uses another function.
+/// A function that returns the times at a baud rate and format, for example `LineTiming::at`. A simulated
+/// line on which bytes take almost no time uses another function.
 using TimingAt = LineTiming (*)(std::uint32_t baud, LineFormat format);
 
 }  // namespace ex9000

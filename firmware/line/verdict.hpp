@@ -8,10 +8,10 @@ namespace ex9000 {
 /// The status of a byte as the UART reports it.
 enum class ByteStatus : std::uint8_t { Good, FramingError, ParityError, Break, Overrun };
 
-/// The verdict on a frame that a byte or a silence has ended. Only Accepted frames reach the main loop, so
-/// the module replies to no other frame. LineTallies uses the order: frames with a correct check come first.
+/// The verdict on a frame that has ended. Only Accepted frames reach the main loop, so the module replies to
+/// no other frame. LineTallies requires this order of the values, because it counts ranges of them.
 enum class Verdict : std::uint8_t {
-  Open,       ///< no frame ended
+  Open,       ///< no frame has ended, or an incomplete frame is dropped
   Accepted,   ///< correct, and for this module or a broadcast; the frame is in the queue
   HostOk,     ///< a host OK; counted in the interrupt, so that it is never lost
   Ignored,    ///< ASCII: correct and a broadcast, but not a command

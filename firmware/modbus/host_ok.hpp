@@ -9,8 +9,9 @@ namespace ex9000::modbus {
 
 constexpr std::uint16_t kHostOkRegister = 0x3038;
 
-/// Returns whether `frame`, without its CRC, is a host OK: function 03 or 04, register 0x3038, quantity 0
-/// or 1. The interrupt that ends a frame calls this, so that no host OK is lost while a request is waiting.
+/// Returns whether `frame`, which does not contain the CRC, is a host OK: function 03 or 04, register 0x3038,
+/// quantity 0 or 1. The interrupt that ends a frame calls this, so that no host OK is lost while a request is
+/// waiting.
 constexpr bool is_host_ok(Bytes frame) {
   constexpr unsigned kSize = 6;
   return frame.size == kSize && (frame[1] == 0x03 || frame[1] == 0x04) && frame.word(2) == kHostOkRegister &&

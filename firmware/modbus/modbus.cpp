@@ -13,7 +13,7 @@ namespace {
 constexpr std::uint8_t kBroadcast = 0;
 constexpr std::uint8_t kExceptionFlag = 0x80;
 
-/// Modbus Application Protocol V1.1b3, 7.
+/// Exception codes: Modbus Application Protocol V1.1b3, 7.
 enum Exception : std::uint8_t {
   kIllegalFunction = 1,
   kIllegalDataAddress = 2,

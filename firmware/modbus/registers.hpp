@@ -26,8 +26,8 @@ constexpr Functions kWriteMultipleCoils = 1U << 0xFU;
 /// Functions 06 and 10 (hex) can always access the same rows, so they share one bit.
 constexpr Functions kWriteRegisters = kWriteSingleRegister;
 
-/// The number of coils or registers of a row: a fixed number, the number of channels of the model, or twice
-/// the number of its inputs.
+/// The number of coils, discrete inputs or registers of a row: a fixed number, the number of outputs or of
+/// inputs of the model, or twice the number of its inputs.
 enum class Width : std::uint8_t { One = 1, Two = 2, Eight = 8, PerOutput, PerInput, PairPerInput };
 
 constexpr unsigned width_of(Width width, const Model& model) {
@@ -63,7 +63,7 @@ struct BitRow {
   Needs needs = Needs::Nothing;
   Functions functions = 0;
   Rules rules = kPlain;
-  std::uint16_t (*read)(const State& state) = nullptr;  ///< returns the whole row; bit 0 is the first coil
+  std::uint16_t (*read)(const State& state) = nullptr;  ///< returns all bits of the row; bit 0 is the first
   Refusal (*write)(const State& state, BitWrite bits, Outcome& outcome) = nullptr;
 
   [[nodiscard]] constexpr bool has(Rules rule) const { return (rules & rule) != 0; }
@@ -137,7 +137,7 @@ std::uint16_t read_tally(const Exchange& exchange, unsigned index);
 
 /// A row with its documentation. The firmware never uses the texts, so an image does not contain them.
 struct BitRegister {
-  std::string_view id;  ///< stable, for coverage and cross-reference
+  std::string_view id;  ///< identifies the row in exports and test coverage; must not change
   std::string_view meaning;
   std::string_view range;  ///< values that may be written; empty if the row is read-only
   BitRow row;
@@ -329,7 +329,8 @@ const BitRow* find_bits(const Model& model, Functions function, unsigned address
 /// Returns the row that contains the register `address` and that `function` can access on this model, or
 /// null. `address` may be above 0xFFFF; the result is then null.
 const WordRow* find_word(const Model& model, Functions function, unsigned address);
-/// Returns the row of the extension register `address` (0 to 0xFFFF), or null if this model does not have it.
+/// Returns the row of the extension register `address` (0 to 0xFFFF), or null if this model has no extension
+/// register with this address.
 const WordRow* find_extension(const Model& model, unsigned address);
 
 }  // namespace ex9000::modbus

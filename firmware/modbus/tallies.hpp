@@ -20,7 +20,8 @@ enum class Tally : std::uint8_t {
   LostFrames,
 };
 
-/// Returns the count since reset or the last clearing; wraps. It includes the request of `exchange`.
+/// Returns the count since reset or the last clearing; wraps. The count includes the request of `exchange` if
+/// `tally` counts that request.
 inline std::uint16_t count_of(const Exchange& exchange, Tally tally) {
   const LineTallies& line = exchange.tallies;
   const Diagnostics& own = exchange.state.diagnostics;

@@ -1,4 +1,4 @@
-// The read and write functions of the registers.
+// The read and write functions of the registers, except the extension registers.
 #include "firmware/modbus/registers.hpp"
 
 namespace ex9000::modbus {

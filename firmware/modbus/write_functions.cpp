@@ -15,7 +15,8 @@ constexpr unsigned kMostRegisters = 123;
 constexpr std::uint16_t kCoilOn = 0xFF00;
 constexpr std::uint16_t kCoilOff = 0x0000;
 
-/// Writes the reply of all four functions: address and value, or address and quantity, of the request.
+/// Appends the data of the reply of functions 05, 06, 0F and 10: the address, and the value or the quantity,
+/// of the request.
 void put_echo(Exchange& exchange) { exchange.reply.put(exchange.frame.first(kSingleSize).from(2)); }
 
 Refusal write_bits(Exchange& exchange, const BitRow& row, BitWrite bits) {
@@ -33,7 +34,7 @@ Refusal write_bits(Exchange& exchange, const BitRow& row, BitWrite bits) {
   return Refusal::None;
 }
 
-/// Checks the value of the register `address` of `row`, and records in the outcome what it changes.
+/// Checks `value` for the register `address` of `row`, and records in the outcome what the write changes.
 Refusal write_word(Exchange& exchange, const WordRow& row, unsigned address, std::uint16_t value) {
   if (value < row.lowest || value > row.highest) {
     return Refusal::WrongValue;

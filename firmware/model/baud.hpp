@@ -1,4 +1,5 @@
-// Baud-rate codes CC: bits 5:0 the rate (manuals 1.10), bits 7:6 the line format (firmware/extensions.md).
+// Baud-rate codes CC: bits 5:0 are the rate (manuals 1.10), and bits 7:6 are the line format
+// (firmware/extensions.md).
 #pragma once
 
 #include <array>
@@ -33,7 +34,7 @@ constexpr std::uint32_t baud_rate(std::uint8_t code) {
 /// Returns the line format of `code`, which must be a baud-rate code.
 constexpr LineFormat line_format(std::uint8_t code) { return static_cast<LineFormat>(code >> kFormatShift); }
 
-/// Returns `code` with another line format.
+/// Returns `code` with its line format replaced by `format`.
 constexpr std::uint8_t with_line_format(std::uint8_t code, LineFormat format) {
   return static_cast<std::uint8_t>((code & kRateBits) | static_cast<unsigned>(format) << kFormatShift);
 }

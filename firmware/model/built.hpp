@@ -1,4 +1,5 @@
-// The models that are built into a program: all of them in the simulator, exactly one in a firmware image.
+// The models that are built into a program: exactly one if EX9000_MODEL is defined, as in a firmware image;
+// otherwise all of them, as in the simulator.
 #pragma once
 
 #include <array>
@@ -10,14 +11,14 @@
 
 namespace ex9000 {
 
-// kBuiltInputs: the largest number of inputs of all built models.
+// In both branches, `some_model_meets` returns whether a built model has the property `needs`.
 
 #ifdef EX9000_MODEL
 
 /// The model of this image. EX9000_MODEL is a designation, for example "EX9042D-M".
 inline constexpr Model kOnlyModel = *find_model(EX9000_MODEL);
 
-/// The model of a module. It stores nothing, because the model is a compile-time constant.
+/// The model of a module. This class stores nothing, because the model is a compile-time constant.
 class ChosenModel {
  public:
   explicit constexpr ChosenModel(const Model& /*model*/) {}
@@ -25,7 +26,6 @@ class ChosenModel {
 };
 
 constexpr bool some_model_meets(Needs needs) { return meets(kOnlyModel, needs); }
-constexpr unsigned kBuiltInputs = kOnlyModel.inputs;
 
 #else
 
@@ -40,11 +40,11 @@ class ChosenModel {
 };
 
 constexpr bool some_model_meets(Needs /*needs*/) { return true; }
-constexpr unsigned kBuiltInputs = kMaxInputs;
 
 #endif
 
-/// Returns whether `model` has what a row needs. Always true in an image, which contains only matching rows.
+/// Returns whether `model` meets the `needs` of a row of a table, for example of a command. Always true if
+/// EX9000_MODEL is defined, because the program then contains only the rows whose needs its model meets.
 constexpr bool has(const Model& model, Needs needs) {
 #ifdef EX9000_MODEL
   static_cast<void>(model);
@@ -55,10 +55,11 @@ constexpr bool has(const Model& model, Needs needs) {
 #endif
 }
 
-/// True if a built model can speak Modbus. If false, the program contains no code for Modbus RTU.
+/// True if a built model can speak Modbus. If false, the compiler removes the code that receives and answers
+/// Modbus RTU frames.
 constexpr bool kBuiltModbus = some_model_meets(Needs::Modbus);
 
-/// Returns the member `part` of each row of `table`, without the rows that no built model has.
+/// Returns the member `part` of each row of `table`, but omits the rows whose `needs` no built model meets.
 template <const auto& table, auto part>
 constexpr auto rows_of_built_models() {
   constexpr std::size_t kCount = [] {

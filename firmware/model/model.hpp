@@ -1,5 +1,5 @@
-// The models, one table row each. To add a model, add a row: the protocol code does not depend on model
-// names.
+// The models, one table row each. To add a model, add a row: the protocol code does not depend on
+// designations.
 #pragma once
 
 #include <cstdint>
@@ -9,21 +9,24 @@
 
 namespace ex9000 {
 
-/// The firmware version that `$AAF` and Modbus object 02 return, format `Dnn.nn` (manuals 2.8).
+/// The firmware version that `$AAF` and object 02 of Modbus function 2B return, format `Dnn.nn` (manuals
+/// 2.8). Register 0x0300 contains its four digits in BCD.
 constexpr std::string_view kFirmwareVersion = "D01.00";
 
-/// The status values of `~AA0`, which reads the host watchdog (manuals 2.16; 2.18 of the EX9052D).
+/// The values that `~AA0`, which reads the status of the host watchdog, can return (manuals 2.16; 2.18 of the
+/// EX9052D).
 enum class StatusStyle : std::uint8_t {
   TimeoutOnly,       ///< 00, 04
   EnableAndTimeout,  ///< 00, 80, 84
 };
 
-/// The switching elements of the outputs. This is documentation for users only.
+/// The switching elements of the outputs. The protocol code does not use them; the simulator uses them to
+/// label the terminals.
 enum class OutputKind : std::uint8_t { None, OpenCollector, Relay, PhotoMos };
 
-/// The place at which the user ties INIT* to GND. This is documentation for users only. Section 1.4 of the
-/// manuals: older modules have a terminal, newer modules have a slide switch at the rear. The first pages of
-/// two manuals name the models that have a switch.
+/// The place at which the user ties INIT* to GND. The protocol code does not use it; the simulator shows it
+/// to users. According to section 1.4 of the manuals, older modules have a terminal, and newer modules have a
+/// slide switch at the rear. The first pages of two manuals name the models that have a switch.
 enum class InitInput : std::uint8_t { Terminal, RearSwitch };
 
 struct Model {
@@ -34,14 +37,14 @@ struct Model {
   StatusStyle status_style;
   std::string_view factory_name;  ///< factory setting of the name, which `$AAM` returns
   std::uint8_t longest_name;      ///< longest name that `~AAO` accepts, in characters
-  std::string_view description;   ///< Modbus object 04; also shown to users
+  std::string_view description;   ///< object 04 of Modbus function 2B; also shown to users
   OutputKind output_kind;
   InitInput init_input = InitInput::Terminal;
 
   [[nodiscard]] constexpr bool speaks_modbus() const { return modbus_code != 0; }
   [[nodiscard]] constexpr bool has_inputs() const { return inputs != 0; }
   [[nodiscard]] constexpr bool has_outputs() const { return outputs != 0; }
-  /// Return a mask of the channels: bit n is set for each existing channel n.
+  /// Return a mask of the outputs or of the inputs: bit n is set for each existing channel n.
   [[nodiscard]] constexpr std::uint16_t output_mask() const {
     return static_cast<std::uint16_t>((1UL << outputs) - 1U);
   }
@@ -71,8 +74,9 @@ inline constexpr auto kModels = table<Model>({
     {"EX9068D-M", 0, 8, 0x9068, StatusStyle::TimeoutOnly, "9068D-M", 7, "8 relay outputs", OutputKind::Relay},
     {"EX9068AD-M", 0, 8, 0x9068, StatusStyle::TimeoutOnly, "9068D-M", 7, "8 PhotoMOS outputs",
      OutputKind::PhotoMos},
-    // Related models: outputs from the tables 2.3 and 2.11, inputs from the ICP DAS I-70xx with the same
-    // number. The Modbus map of the -M models follows from the rules of section 7 of wire.md.
+    // Other models. Their outputs are from the tables 2.3 and 2.11 of the manuals, and their inputs are
+    // those of the ICP DAS I-70xx modules with the same number. The Modbus maps of their -M models follow
+    // from the rules of section 7 of wire.md.
     {"EX9044D", 4, 8, 0, StatusStyle::TimeoutOnly, "9044", 6, "4 inputs, 8 open-collector outputs",
      OutputKind::OpenCollector},
     {"EX9044D-M", 4, 8, 0x9044, StatusStyle::TimeoutOnly, "9044M", 6, "4 inputs, 8 open-collector outputs",
@@ -95,7 +99,7 @@ inline constexpr auto kModels = table<Model>({
     {"EX9068D", 0, 8, 0, StatusStyle::TimeoutOnly, "9068", 6, "8 relay outputs", OutputKind::Relay},
 });
 
-/// Returns the row with this designation, or null.
+/// Returns the row with this designation; null if there is none.
 constexpr const Model* find_model(std::string_view designation) {
   for (const Model& model : kModels) {
     if (model.designation == designation) {
@@ -105,7 +109,8 @@ constexpr const Model* find_model(std::string_view designation) {
   return nullptr;
 }
 
-/// The property of a model that a command or register requires.
+/// The property of a model that a DCON command, a Modbus function, a coil, a discrete input or a register
+/// requires.
 enum class Needs : std::uint8_t { Nothing, Outputs, Inputs, Modbus };
 
 constexpr bool meets(const Model& model, Needs needs) {

@@ -5,7 +5,7 @@
 
 namespace ex9000 {
 
-/// Accepts a level when it has been stable for 10 ms (wire.md D13).
+/// Accepts a level when every sample for at least 10 ms has had this level (wire.md D13).
 class Debounce {
  public:
   /// Processes the present level of the switch. The main loop calls this at every tick and at `next_sample`.
@@ -30,8 +30,8 @@ class Debounce {
   [[nodiscard]] bool known() const { return known_; }
   /// Returns the last accepted level; false if none has been accepted since reset.
   [[nodiscard]] bool level() const { return level_; }
-  /// Returns when to sample the switch again, at most 1 ms after the last sample; disarmed if this level has
-  /// been accepted.
+  /// Returns when to sample the switch again, at most 1 ms after the last sample. Disarmed before the first
+  /// sample, and if the level of the last sample has been accepted.
   [[nodiscard]] Deadline next_sample() const { return next_sample_; }
 
  private:

@@ -1,4 +1,4 @@
-// The status LED's patterns.
+// The patterns of the status LED.
 #pragma once
 
 #include <array>
@@ -37,7 +37,7 @@ class StatusLed {
  private:
   static constexpr unsigned kPhases = 4;
 
-  /// Returns the duration of the present phase.
+  /// Returns the duration of the present phase. Call this only for a pattern that flashes.
   [[nodiscard]] Duration length() const {
     if (pattern_ == Pattern::HostTimeout) {
       return milliseconds(250);

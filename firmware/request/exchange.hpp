@@ -9,8 +9,9 @@
 
 namespace ex9000 {
 
-/// The argument of a handler. A handler reads the request and the module's state, writes the reply, and
-/// records in the outcome what the module must do. It changes nothing else.
+/// The argument of a handler, which is the function of a DCON command or a Modbus function. A handler reads
+/// the request, the module's state and the tallies, writes the reply, and records in the outcome what the
+/// module must do. It changes nothing else.
 struct Exchange {
   constexpr Exchange(const State& state_of_module, const LineTallies& tallies_of_line)
       : state(state_of_module), tallies(tallies_of_line) {}
@@ -18,9 +19,9 @@ struct Exchange {
   const State& state;
   const LineTallies& tallies;  ///< the counts already include this request
 
-  Bytes frame;       ///< the request as the assembler accepted it
-  Bytes args;        ///< the part of a DCON request after address and key; set before a DCON handler runs
-  bool broadcast{};  ///< a Modbus request to address 0; set for each Modbus request
+  Bytes frame;       ///< the request without checksum, CRC and CR; empty when it has been judged
+  Bytes args;        ///< the arguments of a DCON command (dcon/commands.hpp); set before a DCON handler runs
+  bool broadcast{};  ///< whether a Modbus request has address 0; set for each Modbus request
 
   Outcome outcome;
   Reply reply;

@@ -9,22 +9,23 @@
 
 namespace ex9000 {
 
-/// The reason why the module refuses a request. A refused request changes nothing.
+/// The reason why the module refuses a request. The module does not carry out any action of a refused
+/// request.
 enum class Refusal : std::uint8_t {
   None,
-  // ASCII: `?AA`, `?` for commands that set outputs
+  // ASCII: the reply is `?AA` or `?` (wire.md section 3)
   UnknownCommand,  ///< no command of this model has this syntax
-  OutOfRange,      ///< the syntax is correct, but a value is out of range
-  NotPermitted,    ///< the command requires INIT* (marked (I))
+  OutOfRange,      ///< an argument has a wrong form, is out of range, or contradicts a stored setting
+  NotPermitted,    ///< the configuration permission is missing (wire.md section 2)
   NoSample,        ///< `$AA4` before the first `#**`
   // Modbus exceptions; modbus.cpp maps these reasons to exception codes
   UnknownFunction,     ///< 01
   UnknownSubfunction,  ///< 01 for 08 and 2B, 02 for 46
-  WrongLength,         ///< 03; also if the byte count does not match
+  WrongLength,         ///< 03; also if the byte count does not match the quantity or the length
   WrongQuantity,       ///< 03
   WrongCoilValue,      ///< 03: function 05 with a value other than FF00 and 0000
   WrongAddress,        ///< 02
-  WrongValue,          ///< 03; also `?AA`, for `~AAX`
+  WrongValue,          ///< 03; in ASCII, `?AA` to `~AAX`
   UnknownObject,       ///< 02, in function 2B/0E
   // both protocols
   OutputsBlocked,  ///< ASCII `!`, Modbus 04: the timeout status is set
@@ -44,7 +45,7 @@ struct TimedDrive {
   std::array<std::uint16_t, kMaxOutputs> units{};
 };
 
-/// Actions of a request other than settings and outputs. The module carries them out last.
+/// Actions of a request other than changing settings and driving outputs. The module carries them out last.
 enum class Effect : std::uint8_t {
   RestartHostWatchdog,
   TakeAddress,       ///< use the stored address from now on
@@ -58,8 +59,8 @@ enum class Effect : std::uint8_t {
   ClearTimeoutCount,
 };
 
-/// Everything that the module must do before it sends the reply. The module first stores a change of
-/// settings and then does the rest. It processes no other request in between.
+/// The reason of a refusal, and everything that the module must do before it sends the reply. The module
+/// first stores a change of settings and then does the rest. It judges no other frame in between.
 class Outcome {
  public:
   void request(Effect effect) { effects_ = static_cast<std::uint16_t>(effects_ | bit(effect)); }

@@ -45,7 +45,8 @@ class Reply {
     put(static_cast<std::uint8_t>(value >> 8U));
     put(static_cast<std::uint8_t>(value));
   }
-  /// Overwrites the byte at index `at`. Ignores the call if that byte has not been written yet.
+  /// Overwrites the byte at index `at` with the low byte of `value`. Ignores the call if the byte at `at` has
+  /// not been written yet.
   void patch(std::size_t at, std::size_t value) {
     if (at < size_) {
       bytes_[at] = static_cast<std::uint8_t>(value);

@@ -17,7 +17,7 @@ const Outcome& RequestCycle::judge(Bytes frame) {
   exchange_.args = {};
   Outcome& outcome = exchange_.outcome;
   if (outcome.refusal != Refusal::None) {
-    outcome.clear();  // a refused request changes nothing
+    outcome.clear();  // no action of a refused request is carried out
   }
   if (outcome.changes_settings()) {
     phase_ = Phase::AwaitingStore;

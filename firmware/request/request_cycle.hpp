@@ -1,4 +1,4 @@
-// The processing of a request, from its evaluation to the end of its reply.
+// The processing of a request, from its judgement to the end of its reply.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +10,8 @@
 namespace ex9000 {
 
 /// Tracks one request at a time: the request is judged once, changed settings are stored, its actions are
-/// carried out, and then its reply is sent. The cycle tracks the phase; the module does the work. For the
-/// main loop only. No function blocks.
+/// carried out, and then its reply is sent. The cycle judges the request, tracks the phase and keeps the
+/// reply; Module does the rest. For the main loop only. No function blocks.
 class RequestCycle {
  public:
   enum class Phase : std::uint8_t {
@@ -26,34 +26,37 @@ class RequestCycle {
 
   [[nodiscard]] Phase phase() const { return phase_; }
 
-  /// Judges a complete frame. Call this only while Idle. It does not change the module's state or keep the
-  /// frame. If the outcome changes settings, the phase becomes AwaitingStore. Otherwise carry out the outcome
-  /// and then call `finish`.
+  /// Judges a complete frame and returns its outcome. Call this only while Idle. Does not change the module's
+  /// state, and does not keep the frame. If the outcome changes settings, the phase becomes AwaitingStore:
+  /// these settings must be stored before the outcome is carried out. Call `finish` when the outcome has been
+  /// carried out.
   const Outcome& judge(Bytes frame);
-  /// Sets the earliest time of the reply to the request that is being processed.
+  /// Sets the earliest time of the reply to the request that is being processed. Call this after `judge`.
   void hold_reply_until(Time earliest) { reply_hold_.set(earliest); }
   /// Returns the outcome of the request. After `finish` it contains only the reason of a refusal.
   [[nodiscard]] const Outcome& outcome() const { return exchange_.outcome; }
-  /// Call this while AwaitingStore, when the store has begun.
+  /// Changes the phase to Storing. Call this while AwaitingStore, when the store has begun.
   void store_begun() { phase_ = Phase::Storing; }
-  /// Call this when the host watchdog has expired. A request that is being stored must not clear the new
-  /// timeout status (wire.md D17).
+  /// Removes the change of the timeout status from a request that awaits its store or is being stored. Call
+  /// this when the host watchdog has expired, because such a request must not clear the new timeout status
+  /// (wire.md D17).
   void keep_timeout_status();
-  /// Call this while Storing, if the memory did not store the settings. It removes all actions of the request
-  /// and replaces the reply with an error reply. The empty reply to a broadcast stays empty.
+  /// Removes all actions of the request and replaces the reply with an error reply. The empty reply to a
+  /// broadcast stays empty. Call this while Storing, if the memory did not store the settings, and then call
+  /// `finish`.
   void refuse_store();
-  /// Call this when the outcome has been carried out. Returns true if a reply is ready to send; otherwise the
-  /// next request may be judged.
+  /// Ends the processing of the request. Returns true if there is a reply to send; otherwise the next request
+  /// may be judged. Call this when the outcome has been carried out, or after `refuse_store`.
   bool finish();
 
-  /// Returns the reply to send now; empty if there is no reply, or if the time to send it has not come. The
-  /// bytes are valid until `reply_sent`.
+  /// Returns the reply to send now, only once for each reply; empty if no reply is ready, or if the time to
+  /// send it has not come. The bytes are valid until `reply_sent`.
   Bytes take_reply(Time now);
-  /// Call this when the last stop bit has been sent and the driver is off. The next reply is sent `silence`
-  /// later at the earliest (wire.md D18).
+  /// Ends the reply. Call this when its last stop bit has been sent and the driver is off. The next reply
+  /// begins at the earliest `silence` after `now` (wire.md D18).
   void reply_sent(Time now, Duration silence);
-  /// Disarms the deadline of `reply_sent` if this deadline is reached. Call this at least every few minutes:
-  /// times wrap, so an old deadline would later appear to be in the future.
+  /// Ends the gap after a reply if the gap is over. Two calls must be at most 30 minutes apart: times wrap,
+  /// so an old deadline would later appear to be in the future.
   void end_reply_gap(Time now);
   /// Returns the time until `take_reply` returns the reply. Call this only while ReplyReady.
   [[nodiscard]] Duration until_reply(Time now) const;

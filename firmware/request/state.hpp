@@ -14,7 +14,7 @@ namespace ex9000 {
 
 /// Values that are taken from the settings or from INIT mode at reset and apply until the next reset.
 struct InForce {
-  std::uint8_t address = 0;  ///< exception: `%` changes it immediately, but not in INIT mode
+  std::uint8_t address = 0;  ///< exception: outside INIT mode, `%` changes it after the store
   std::uint8_t baud_code = kFactoryBaudCode;
   Protocol protocol = Protocol::Ascii;
   bool checksum = false;
@@ -32,7 +32,7 @@ struct Sample {
 /// The counts of the main loop for the line tallies (modbus/tallies.hpp). LineTallies contains the counts of
 /// the interrupts.
 struct Diagnostics {
-  std::uint16_t exceptions = 0;  ///< exceptions; in ASCII, replies that begin with `?`
+  std::uint16_t exceptions = 0;  ///< exception replies; in ASCII, replies that begin with `?`
   std::uint16_t no_responses = 0;
 };
 
@@ -55,7 +55,7 @@ struct State {
   [[nodiscard]] bool speaks_modbus() const {
     return kBuiltModbus && in_force.protocol == Protocol::ModbusRtu;
   }
-  /// Returns whether commands marked (I) are permitted (wire.md section 2).
+  /// Returns whether the module has configuration permission (wire.md section 2).
   [[nodiscard]] bool configuration_permitted() const { return in_force.init_mode || init_asserted; }
   /// Returns whether output commands are refused (wire.md section 6).
   [[nodiscard]] bool outputs_blocked() const { return settings.timeout_status; }

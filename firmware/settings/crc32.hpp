@@ -1,4 +1,4 @@
-// The CRC-32 of the stored settings.
+// The CRC-32 of the stored settings and of the entries in a flash (hal/flash/entry.hpp).
 #pragma once
 
 #include <array>

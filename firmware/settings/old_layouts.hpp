@@ -35,8 +35,9 @@ constexpr std::size_t kOldCopySize = 28;
 constexpr std::size_t kOldInvalidatedFrom = 20;
 constexpr std::size_t kOldInvalidatedSize = kOldCopySize - kOldInvalidatedFrom;
 
-/// Returns the settings if `page`, at least kOldCopySize bytes, is a good copy of either layout: its check is
-/// correct, and the model could have stored these settings. Otherwise returns nothing.
+/// Returns the settings and their edition if `page`, which must have at least kOldCopySize bytes, begins with
+/// a good copy of either layout: the layout number and the check are correct, and the model could have stored
+/// these settings. Otherwise returns nothing.
 std::optional<StoredSettings> read_old_layout(const Model& model, Bytes page);
 
 }  // namespace ex9000

@@ -21,14 +21,15 @@ constexpr std::size_t known_settings_size() {
   return size;
 }
 constexpr std::size_t kKnownSettings = known_settings_size();
-/// The size of the settings up to `safe_value`, which this firmware writes into every record.
+/// The size in bytes of the settings up to `safe_value`. This firmware writes these settings into every
+/// record.
 constexpr std::size_t kFirstSettings = 19;
 static_assert(sizeof(bool) == 1 && sizeof(Protocol) == 1 && sizeof(Name) == kMaxNameLength + 1 &&
                   sizeof(InputFilters) == std::size_t{2} * kMaxInputs,
-              "a setting takes as many bytes in a record as in the microcontroller");
+              "the size of a type differs from its size in a record");
 static_assert(kKnownSettings <= kRoomForSettings, "the settings do not fit in a record");
 
-/// Writes settings into a record, one after the other.
+/// Writes values into a record, one after the other.
 class Encoder {
  public:
   explicit Encoder(std::uint8_t* to) : to_(to) {}
@@ -63,8 +64,8 @@ class Encoder {
   std::uint8_t* to_;
 };
 
-/// Reads settings from a record, in the same order. If the record ends before a setting, the setting keeps
-/// its value.
+/// Reads settings from a record, one after the other. If the record ends before the end of a setting, this
+/// setting and all later ones keep their values.
 class Decoder {
  public:
   explicit Decoder(Bytes from) : from_(from) {}
@@ -79,7 +80,7 @@ class Decoder {
     from_.data += sizeof value;
     from_.size -= sizeof value;
   }
-  /// Returns false if a byte had a value that its type does not allow.
+  /// Returns false if a flag or the protocol had a value that its type does not allow.
   [[nodiscard]] bool valid() const { return valid_; }
 
  private:
@@ -114,8 +115,8 @@ class Decoder {
 };
 
 /// Returns how many bytes of settings a record requires: up to the last setting that differs from its factory
-/// value, but at least kFirstSettings. A module that uses none of the newer settings therefore writes one
-/// page, as older firmware does.
+/// value, but at least kFirstSettings. If all settings after `safe_value` have their factory values, a record
+/// therefore takes one page, like a copy of older firmware.
 std::size_t required_size(const Model& model, const Settings& settings) {
   const Settings factory = Settings::factory(model);
   std::size_t size = 0;
@@ -144,7 +145,7 @@ std::uint32_t settings_check(const Model& model, Bytes bytes) {
 }
 
 void write_record(const Model& model, const Settings& settings, std::uint16_t sequence, RecordBytes& record) {
-  if (record[kLengthAt] <= kKnownSettings) {  // otherwise the record keeps the bytes of newer firmware
+  if (record[kLengthAt] <= kKnownSettings) {  // otherwise the record ends with settings of newer firmware
     record[kLayoutAt] = kLayout;
     record[kLengthAt] = static_cast<std::uint8_t>(required_size(model, settings));
   }

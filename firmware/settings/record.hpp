@@ -17,8 +17,9 @@ struct Edition {
   std::uint8_t layout = 0;
   std::uint16_t sequence = 0;
 
-  /// Returns whether this copy is newer than `other`. A newer layout is always newer. In the same layout, the
-  /// later sequence number is newer. Sequence numbers wrap: the later one is less than half the range ahead.
+  /// Returns whether this copy is newer than `other`. A copy with a higher layout number is always newer. In
+  /// the same layout, the copy with the later sequence number is newer. Sequence numbers wrap: the later one
+  /// is less than half the range ahead.
   [[nodiscard]] constexpr bool is_newer_than(const Edition& other) const {
     constexpr std::uint16_t kHalfRange = 0x8000;
     const auto ahead = static_cast<std::uint16_t>(sequence - other.sequence);
@@ -48,28 +49,30 @@ constexpr std::size_t kRecordRoom = 128;
 ///                 padded with 0, and its length
 ///     then        CRC-32 over the model's designation and all bytes before it, low byte first
 ///
-/// New settings are only appended. A record ends after the last setting that differs from its factory value,
-/// but not before the end of `safe_value`. The settings that are missing in a record have their factory
-/// values, as in a record of older firmware. A record of newer firmware may be longer; `write_record` keeps
-/// the additional bytes.
+/// New settings are only appended. A new record ends after the last setting that differs from its factory
+/// value, but not before the end of `safe_value`. The settings that a record does not contain have their
+/// factory values, also if older firmware wrote the record. A record of newer firmware may be longer;
+/// `write_record` keeps the additional bytes.
 ///
 /// The CRC includes the designation, so that settings of another model are never used: their power-on value
 /// is intended for other outputs. The CRC detects every error burst of up to 32 bits and every error of two
 /// or three bits. It misses any other error, for example a record with only some new pages, with a
-/// probability of 2^-32.
+/// probability of about 2^-32.
 constexpr std::uint8_t kLayout = 3;
 using RecordBytes = std::array<std::uint8_t, kRecordRoom>;
 
-/// Writes `settings`, `sequence` and the CRC into `record`, which must be a good record or contain only
-/// zeros. Settings of newer firmware, which follow the known settings, stay the same.
+/// Writes a complete record with `settings` and `sequence` into `record`. Before the call, `record` must be a
+/// good record or contain only zeros. Settings of newer firmware, which follow the known settings, stay the
+/// same.
 void write_record(const Model& model, const Settings& settings, std::uint16_t sequence, RecordBytes& record);
 
-/// Returns the size in bytes of the record that begins with `beginning`, which must have at least four bytes;
-/// 0 if it is not the beginning of a record.
+/// Returns the size in bytes of the record that begins with `beginning`, which must have at least two bytes;
+/// 0 if `beginning` is not the beginning of a record.
 std::size_t record_size(Bytes beginning);
 
-/// Returns the settings if `record` begins with a complete and good record: layout, length and check are
-/// correct, and the model could have stored these settings. Otherwise returns nothing.
+/// Returns the settings and their edition if `record`, which must have at least two bytes, begins with a
+/// complete and good record: layout, length and check are correct, and the model could have stored these
+/// settings. Otherwise returns nothing.
 std::optional<StoredSettings> read_record(const Model& model, Bytes record);
 
 }  // namespace ex9000

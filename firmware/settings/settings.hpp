@@ -25,7 +25,8 @@ constexpr bool is_modbus_address(unsigned address) {
   return address >= kFirstModbusAddress && address <= kLastModbusAddress;
 }
 
-/// The module's name: 1 to 7 characters from 0x20 to 0x7E.
+/// Text of at most 7 characters for the module's name. The constructors ignore all further characters. Not
+/// every text is a possible name; see `is_possible`.
 class Name {
  public:
   constexpr Name() = default;
@@ -43,7 +44,7 @@ class Name {
   static constexpr bool is_name_character(std::uint8_t byte) { return byte >= 0x20 && byte <= 0x7E; }
 
   [[nodiscard]] constexpr Bytes bytes() const { return {characters_.data(), length_}; }
-  /// Returns whether the name has 1 to `longest` characters and all of them are allowed.
+  /// Returns whether the name has 1 to `longest` characters and each of them is from 0x20 to 0x7E.
   [[nodiscard]] bool is_possible(unsigned longest) const;
 
   friend constexpr bool operator==(const Name& a, const Name& b) {
@@ -75,7 +76,7 @@ class InputFilters {
   constexpr void set(unsigned channel, std::uint16_t milliseconds) { milliseconds_[channel] = milliseconds; }
   /// Returns whether any channel has a filter.
   [[nodiscard]] bool any() const;
-  /// Returns whether only the first `channels` channels have a filter and no time is too long.
+  /// Returns whether no filter time exceeds kLongest, and only channels below `channels` have a filter.
   [[nodiscard]] bool are_possible(unsigned channels) const;
 
   friend constexpr bool operator==(const InputFilters& a, const InputFilters& b) {
@@ -95,12 +96,12 @@ constexpr std::uint8_t kLongestResponseDelay = 30;  // in ms
 constexpr std::uint8_t kFactoryAddress = 1;
 constexpr std::uint8_t kFactoryWatchdogTimeout = 0xFF;
 
-/// Declares each setting once: SETTING(type, name, factory value, whether `value` is possible). The last two
-/// may use `model`, and the last one may use `value`. This list defines the members of Settings and of
-/// SettingsChange and the layout of a record (record.hpp), in the same order. Append new settings. Never
-/// remove or move a setting or change its type, because memories in the field contain them. Never change the
-/// factory value of a setting after `safe_value`, because a record may omit a setting that has its factory
-/// value.
+/// Lists each setting once: SETTING(type, name, factory value, whether `value` is possible). The last two
+/// arguments may use `model`, and the last one may use `value`. This list defines the members of Settings and
+/// of SettingsChange and the layout of a record (record.hpp), in the same order. Append new settings. Never
+/// remove or move a setting or change its type, because the memories of existing modules contain records in
+/// this layout. Never change the factory value of a setting after `safe_value`, because a record may omit
+/// such a setting if it has its factory value.
 ///
 ///     address           the module's address
 ///     baud_code         CC (model/baud.hpp)
@@ -108,11 +109,11 @@ constexpr std::uint8_t kFactoryWatchdogTimeout = 0xFF;
 ///     protocol          protocol from the next reset on
 ///     watchdog_timeout  timeout of the host watchdog, VV, in units of 0.1 s
 ///     watchdog_enabled  the host watchdog is running
-///     timeout_status    the host watchdog has expired and no command has cleared the status
+///     timeout_status    the host watchdog has expired, and no command has cleared this status since
 ///     name              the module's name
 ///     power_on_value    outputs from reset on if the timeout status is clear; bit n is output channel n
 ///     safe_value        outputs while the timeout status is set
-///     input_filters     register 0x0240 + n
+///     input_filters     register 0x0240 + n: filter time of input channel n in ms
 ///     inverted_inputs   register 0x0250; bit n is input channel n
 ///     fed_by_requests   register 0x0251: every request for this module restarts the host watchdog
 ///     response_delay    register 0x0252, in ms

@@ -1,4 +1,4 @@
-// Keeps the stored settings equal to the settings in force, even if accesses to the memory fail.
+// Stores the current settings of the module, and retries after a failed access to the memory.
 #pragma once
 
 #include "firmware/model/model.hpp"
@@ -8,39 +8,39 @@
 
 namespace ex9000 {
 
-/// Loads the settings at reset and stores the settings of a command. In addition, it does the following
-/// without a command:
-/// - It stores a watchdog timeout, which changes the settings in force immediately.
-/// - It repeats the first save after a firmware update if the power failed during that save.
+/// Loads the settings at reset and stores the settings of a command. The settings in force are the current
+/// settings of the module (State::settings). In addition, the keeper does the following without a command:
+/// - It stores the settings in force after a timeout of the host watchdog has changed them.
+/// - It repeats the first save after a firmware update if that save was not finished (see
+///   SettingsStore::update_unfinished).
 /// - It invalidates copies that must not be used.
 ///
-/// It repeats that first save only once. It retries the other two actions every second until they succeed
-/// (wire.md D15). For the main loop only. No function blocks.
+/// It repeats that first save only once. It retries the other two actions every second until they succeed or
+/// are no longer necessary (wire.md D15). For the main loop only. No function blocks.
 class SettingsKeeper {
  public:
   explicit constexpr SettingsKeeper(const Model& model) : store_(model) {}
 
-  /// Returns whether the memory is still being read. Afterwards `stored()` and `unreadable()` are valid.
+  /// Returns whether the settings are still being loaded. Afterwards `stored()`, `unreadable()`, `source()`
+  /// and `certain()` are valid.
   [[nodiscard]] bool loading() const { return store_.loading(); }
   /// Returns the settings that a reset now would load, if `certain()`.
   [[nodiscard]] const Settings& stored() const { return store_.stored(); }
-  /// Returns whether the settings could not be read at reset, and no settings have been stored since: the
-  /// memory did not answer, or it contained something other than settings of this model. False if the memory
-  /// was blank.
+  /// Returns whether the settings could not be read at reset, and no settings have been stored since. The
+  /// memory contained no good copy for this model, and at least one place was not blank or could not be read.
   [[nodiscard]] bool unreadable() const { return store_.found() == SettingsStore::Found::Unreadable; }
 
   /// See SettingsStore::source and SettingsStore::saves.
   [[nodiscard]] SettingsStore::Source source() const { return store_.source(); }
   [[nodiscard]] std::uint16_t saves() const { return store_.saves(); }
 
-  /// Returns whether a reset now would certainly load `stored()`. True for a blank memory. False if the
-  /// memory is `unreadable()` or contains a copy that must not be used, or if the first save after a firmware
-  /// update was interrupted and has not been repeated.
+  /// Returns whether a reset now would certainly load `stored()`. This is not certain while `unreadable()`,
+  /// SettingsStore::needs_invalidation or SettingsStore::update_unfinished returns true.
   [[nodiscard]] bool certain() const {
     return !unreadable() && !store_.needs_invalidation() && !store_.update_unfinished();
   }
 
-  /// Returns whether a memory access is necessary or running.
+  /// Returns whether a memory access, `job()`, is waiting or running.
   [[nodiscard]] bool busy() const { return store_.busy(); }
   /// Starts to store the settings of a command. Call this only while not `busy()`. `saved()` is valid as soon
   /// as `busy()` is false again.
@@ -55,11 +55,11 @@ class SettingsKeeper {
   }
   [[nodiscard]] bool saved() const { return store_.saved(); }
 
-  /// Call this when the settings in force have changed, so that the next `poll` compares them with the stored
-  /// settings.
+  /// Call this when the settings in force have changed without a command, so that `poll` compares them with
+  /// the stored settings.
   void settings_changed() { may_differ_ = true; }
   /// Starts to store `in_force` or to invalidate a copy, if necessary. Call this in every pass of the main
-  /// loop.
+  /// loop when loading has ended.
   void poll(const Settings& in_force, Time now);
   /// Returns whether an action without a command has ended and `poll` has not processed its result yet.
   [[nodiscard]] bool has_work() const { return own_save_ && !busy(); }

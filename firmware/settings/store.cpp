@@ -6,8 +6,8 @@ namespace ex9000 {
 
 // --- jobs ---
 
-/// Returns the number of bytes that the next job reads or writes, except a job that invalidates a copy: up to
-/// the end of the page or of the copy.
+/// Returns the number of bytes that the next job reads or writes: up to the end of the page or of the copy.
+/// This is not the size of a job that invalidates a copy.
 std::size_t SettingsStore::page_size() const {
   const std::size_t left = copy_size_ - done_;
   return left < kMemoryPage ? left : kMemoryPage;
@@ -234,7 +234,8 @@ void SettingsStore::begin_invalidating() {
   invalidate_from(0);
 }
 
-/// Begins to invalidate the first copy that must not be used, from `place` on. Becomes idle if there is none.
+/// Begins to invalidate the first copy at `place` or later that must not be used. Becomes idle if there is
+/// none.
 void SettingsStore::invalidate_from(std::size_t place) {
   while (place < kPlaces.size() && (copies_to_invalidate_ & bit(place)) == 0) {
     ++place;

@@ -23,36 +23,37 @@ struct MemoryJob {
   MutableBytes bytes;         ///< buffer for the bytes to read or write
 };
 
-/// Keeps two copies of the settings, each in its own place (places.hpp). A save overwrites the older or
-/// broken copy, page by page, and reads back each page. The new copy becomes valid only with the check at its
-/// end, and the other copy does not change. After a power failure, the memory therefore contains either the
-/// old or the new settings.
+/// Keeps up to two copies of the settings, each in its own place (places.hpp). A save does not change the
+/// current copy: it writes a new copy to the other place, page by page, and reads back each page. The new
+/// copy becomes valid only when the check at its end is written. After a power failure, the memory therefore
+/// contains either the old or the new settings.
 ///
-/// The first save after a firmware update does not overwrite the copies of older layouts. When the save is
-/// verified, the store invalidates these copies: they must not be used again, even if both newer copies fail
-/// later.
+/// If the memory contains copies of older layouts after a firmware update, the first save does not overwrite
+/// them. When the save is verified, the store invalidates these copies: they must not be used again, even if
+/// both copies of the new layout fail later.
 ///
 /// The store does not access the memory. The owner of the memory carries out `job()` and then calls `done()`.
 class SettingsStore {
  public:
+  /// The result of loading. A successful save changes it to Settings.
   enum class Found : std::uint8_t {
     Settings,    ///< the memory contains a good copy
-    Blank,       ///< the memory was never written; factory settings are used
-    Unreadable,  ///< no good copy, or no answer; factory settings are used but not stored
+    Blank,       ///< all places are blank; factory settings are used
+    Unreadable,  ///< no good copy, and a place is not blank or does not answer; factory settings are used
   };
 
   /// The origin of the settings that were loaded at reset: register 0x0306 (firmware/extensions.md).
   enum class Source : std::uint8_t {
-    Good,         ///< a good copy; the other one is good or blank
-    OneCopyBad,   ///< a good copy; the other one is not good and not blank
-    NoneGood,     ///< no good copy: factory settings
+    Good,         ///< a good copy; the other place of this layout has a good copy or is blank
+    OneCopyBad,   ///< a good copy; the other place of this layout has no good copy and is not blank
+    NoneGood,     ///< no good copy, and not all places are blank: factory settings
     OlderLayout,  ///< a copy of an older layout
-    Blank,        ///< the memory was never written: factory settings
+    Blank,        ///< all places are blank: factory settings
   };
 
-  /// Begins to load: reads all places, each up to three times. If the memory did not answer at a place and
-  /// does not answer the first read at the next place either, the store does not repeat that read. `found()`
-  /// and `stored()` are valid when loading has ended.
+  /// Begins to load: reads all places, each up to three times. If the memory did not answer the last read at
+  /// a place, the store does not repeat a read that gets no answer at the next place. `found()` and
+  /// `stored()` are valid when loading has ended.
   explicit constexpr SettingsStore(const Model& model) : model_(model) {}
   [[nodiscard]] bool loading() const { return step_ == Step::Load; }
   [[nodiscard]] Found found() const { return found_; }
@@ -65,8 +66,8 @@ class SettingsStore {
   /// Call this only while not `busy()`. `saved()` and `stored()` are valid when the save has ended.
   ///
   /// If `found()` is Unreadable, the store first reads all places again. If the memory does not answer, the
-  /// save fails. If a copy is readable now, the new copy gets a later sequence number, so that the old copy
-  /// is not used after the next reset.
+  /// save fails. If a copy is readable now, the new copy gets a later sequence number, so that the next reset
+  /// loads the new copy.
   void begin_saving(const Settings& settings);
   [[nodiscard]] bool busy() const { return step_ != Step::Idle; }
   /// Makes the running save fail at its next failed attempt to write or verify. Has no effect unless the
@@ -79,15 +80,16 @@ class SettingsStore {
   /// Returns whether the last save succeeded. Also true after `begin_invalidating`, which saves nothing.
   [[nodiscard]] bool saved() const { return saved_; }
 
-  /// Returns whether the power failed during the first save after a firmware update, when the new copy was
-  /// already complete. The new copy is then used, but copies of an older layout are still valid. One
-  /// successful read does not prove that the new copy will stay readable, so the old copies stay until the
-  /// settings have been saved again. If that save fails, the old copies are invalidated nevertheless.
+  /// Returns whether the current copy has this layout, but copies of an older layout are still valid. This
+  /// happens, for example, if the power fails during the first save after a firmware update, when the new
+  /// copy is already complete. One successful read does not prove that the new copy will stay readable, so
+  /// the old copies stay valid until the settings have been saved again. If that save fails, the old copies
+  /// are invalidated nevertheless.
   [[nodiscard]] bool update_unfinished() const {
     return found_ == Found::Settings && old_copies_ != 0 && !kPlaces[current_place_].old;
   }
 
-  /// Returns whether a reset now could load a copy that must not be used: a copy of refused settings, or a
+  /// Returns whether a reset now could load a copy that must not be used: the copy of a failed save, or a
   /// copy of an older layout.
   [[nodiscard]] bool needs_invalidation() const { return copies_to_invalidate_ != 0; }
   /// Begins to invalidate such copies. Call this only while not `busy()`. If this fails,
@@ -131,19 +133,19 @@ class SettingsStore {
   bool saved_ = false;
   std::uint16_t saves_ = 0;
 
-  std::size_t place_ = 0;                ///< place of the copy that is being read or written
+  std::size_t place_ = 0;                ///< place of the copy that is being read, written or invalidated
   std::size_t done_ = 0;                 ///< bytes of that copy that have been processed
   std::size_t copy_size_ = kMemoryPage;  ///< size of that copy in bytes
   std::uint8_t attempt_ = 0;             ///< failed attempts at that copy
-  bool silent_ = false;                  ///< the memory did not answer at the last place
+  bool silent_ = false;                  ///< the memory did not answer the last read at the place before
   std::uint8_t blank_places_ = 0;
   bool bad_copy_ = false;                 ///< a place of this layout is not blank and has no good copy
-  std::size_t current_place_ = kNoPlace;  ///< place of the current copy, which a reset would load
+  std::size_t current_place_ = kNoPlace;  ///< place of the current copy, the newest good one; or kNoPlace
   unsigned old_copies_ = 0;               ///< bit n: place n holds a good copy of an older layout
   unsigned copies_to_invalidate_ = 0;     ///< bit n: the copy at place n must be invalidated
 
   Edition edition_;          ///< edition of the current copy
-  Settings stored_;          ///< settings in the current copy
+  Settings stored_;          ///< result of `stored()`
   Settings saving_;          ///< settings that are being saved
   RecordBytes record_{};     ///< the current record, or that of the last save; zeros if there is none
   RecordBytes read_back_{};  ///< bytes read from the memory, or zeros to write

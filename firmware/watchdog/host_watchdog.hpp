@@ -1,5 +1,4 @@
-// The host watchdog, which sets the outputs to the safe value if the host stops sending host OKs - wire.md
-// section 6.
+// The host watchdog - wire.md section 6. When it expires, the module drives its outputs to the safe value.
 #pragma once
 
 #include "firmware/settings/settings.hpp"
@@ -10,11 +9,13 @@ namespace ex9000 {
 /// Keeps only the time of the last restart. The enable flag and the timeout are settings.
 class HostWatchdog {
  public:
-  /// Call this at reset, when a request enables the watchdog or writes the timeout of the enabled watchdog,
-  /// at every host OK, and at every request that restarts it like one (register 0x0251).
+  /// Restarts the watchdog. Call this after a reset, when a request enables the watchdog or writes the
+  /// timeout of the enabled watchdog, for a host OK, and for a request that counts like a host OK (register
+  /// 0x0251). `now` is the time of this event.
   constexpr void restart(Time now) { started_ = now; }
 
-  /// Returns whether the watchdog is enabled and at least VV x 0.1 s have passed since the last restart.
+  /// Returns whether the watchdog is enabled and its timeout, VV x 0.1 s, has certainly passed since the last
+  /// restart.
   [[nodiscard]] constexpr bool expired(const Settings& settings, Time now) const {
     // A deadline is necessary because the restart may be newer than `now`; `now.since()` would then wrap.
     return expiry(settings).reached(now);

@@ -14,8 +14,8 @@ class ModuleWatchdog {
   /// Records that the tick interrupt runs. The tick interrupt calls this.
   void tick_alive() { ticks_.store_in_interrupt(ticks_.load() + 1U); }
 
-  /// Returns whether the hardware watchdog must be fed now. The main loop calls this at every tick; the call
-  /// itself shows that the main loop runs.
+  /// Returns whether the hardware watchdog must be fed now. The main loop calls this at least once a tick;
+  /// the call itself shows that the main loop runs.
   bool main_loop_alive() {
     const std::uint32_t ticks = ticks_.load();
     const bool both = ticks != ticks_at_feed_;

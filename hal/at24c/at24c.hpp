@@ -59,8 +59,8 @@ class At24c {
 
   static constexpr std::uint8_t kDevice = 0x50;  // A2, A1 and A0 are connected to GND
   static constexpr std::size_t kPage = 32;
-  /// The timeout. Programming a page takes at most 10 ms. The first read after a reset may also have to wait
-  /// until a page has been programmed.
+  /// How long the driver waits for an acknowledgement. Programming a page takes at most 10 ms. The first read
+  /// after a reset may also have to wait until a page has been programmed.
   static constexpr Duration kAnswerTimeout = milliseconds(12);
 
   void begin(Step step, std::uint16_t address, Time now) {
@@ -77,8 +77,8 @@ class At24c {
   }
 
   void transfer(Time now) {
-    // After a write, the driver polls with one byte of the address, which writes nothing. When the EEPROM
-    // acknowledges this byte, the write has ended.
+    // After a write, the driver polls: it sends the device address and the first byte of the memory address.
+    // This writes nothing. When the EEPROM acknowledges both, the write has ended.
     transfer_.device = kDevice;
     transfer_.header = {header_.data(), step_ == Step::Programming ? 1U : step_ == Step::Reading ? 0U : 2U};
     transfer_.source = step_ == Step::Writing ? rest_.first(chunk()) : Bytes();

@@ -1,5 +1,5 @@
-// The interrupt controller of a Cortex-M, and sleep until an interrupt. Sources: ARMv7-M Architecture
-// Reference Manual, B3.2 and B3.4; ARMv6-M Architecture Reference Manual, B3.2 and B3.4.
+// Enables the interrupts of a Cortex-M, sleeps until an interrupt, and resets the microcontroller. Sources:
+// ARMv7-M Architecture Reference Manual, B3.2 and B3.4; ARMv6-M Architecture Reference Manual, B3.2 and B3.4.
 #pragma once
 
 #include <cstdint>
@@ -11,13 +11,15 @@ namespace ex9000::hal::cortex_m {
 
 class Interrupts {
  public:
-  /// Enables interrupts. `numbers` is a mask; bit n is interrupt n, 0 to 31.
+  /// Enables interrupts. `numbers` is a mask; bit n is interrupt n, 0 to 31. `last` is the number of one of
+  /// these interrupts.
   ///
-  /// An interrupt cannot interrupt another interrupt. The stack therefore needs room for only one interrupt,
-  /// and interrupts can share data without protection. Priorities only define the order of pending
-  /// interrupts: SysTick, then the others by number, then `last`. The board passes the UART as `last`, so
-  /// that the end of a silence is processed before the byte that follows it. Do not call this overload on a
-  /// Cortex-M0+, on which each priority can interrupt a lower one.
+  /// After this call, an interrupt cannot interrupt another interrupt. The stack therefore needs room for
+  /// only one interrupt at a time, and interrupts can share data without protection. Priorities only define
+  /// the order of pending interrupts: SysTick, then the others by number, then `last`. The board passes the
+  /// UART as `last`, so that the end of a silence is processed before the byte that follows the silence. Do
+  /// not call this overload on a Cortex-M0+, because there an interrupt can interrupt one of a lower
+  /// priority.
   static void enable(std::uint32_t numbers, std::uint32_t last) {
     constexpr std::uint32_t kLowest = 0xFF;
     constexpr std::uint32_t kInterruptsAWord = 4;
@@ -28,13 +30,14 @@ class Interrupts {
     enable(numbers);
   }
 
-  /// Enables interrupts with the equal priorities that they have after a reset. An interrupt cannot interrupt
-  /// another interrupt. Pending ones run in this order: SysTick, then the others by number.
+  /// Enables interrupts without a change of their priorities. `numbers` is a mask as above. After a reset,
+  /// all priorities are equal, so an interrupt cannot interrupt another interrupt, and pending interrupts run
+  /// in this order: SysTick, then the others by number.
   static void enable(std::uint32_t numbers) { kSetEnable.write(Bits<SetEnable>(numbers)); }
 
-  /// Sleeps until `has_work()` returns true. Interrupts run meanwhile. They are disabled only from just
-  /// before each call of `has_work` to the end of the sleep that may follow, so that no event is missed. A
-  /// pending interrupt ends the sleep even while interrupts are disabled. For the main loop.
+  /// Sleeps until `has_work()` returns true. Interrupts are disabled during each call of `has_work` and
+  /// during the sleep that may follow the call, so that no event is missed. A pending interrupt ends the
+  /// sleep even if interrupts are disabled. It runs immediately after the sleep. For the main loop.
   template <class HasWork>
   static void sleep_until(HasWork has_work) {
     processor::disable_interrupts();

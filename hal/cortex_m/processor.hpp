@@ -10,7 +10,8 @@ inline void disable_interrupts() { __asm volatile("cpsid i" ::: "memory"); }
 /// them again.
 inline void enable_interrupts() { __asm volatile("cpsie i\n\tisb" ::: "memory"); }
 
-/// Sleeps until an interrupt is pending, even if interrupts are disabled. For the main loop.
+/// Sleeps until an interrupt is pending. A pending interrupt ends the sleep even if interrupts are disabled.
+/// For the main loop.
 inline void wait_for_interrupt() { __asm volatile("wfi" ::: "memory"); }
 
 }  // namespace ex9000::hal::cortex_m::processor

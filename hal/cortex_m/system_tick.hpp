@@ -12,7 +12,7 @@ namespace ex9000::hal::cortex_m {
 template <std::uint32_t cycles_per_microsecond>
 class SystemTick {
  public:
-  /// The period in clocks of the processor.
+  /// The period in clock cycles of the processor.
   static constexpr std::uint32_t kPeriod = kTickPeriod.microseconds() * cycles_per_microsecond;
   static_assert(kPeriod <= 1U << 24U, "the counter has 24 bits");
 

@@ -31,8 +31,8 @@ class SystemTimer {
     std::uint32_t counted = counted_.load();
     std::uint32_t left = kCurrent.read().value();
     if (kInterruptControl.read().has(kPending)) {
-      // The counter has restarted, but the tick interrupt has not run yet. It is unknown whether `left` was
-      // read before or after the restart, so it is read again.
+      // The counter has restarted, but the tick interrupt has not run yet. `left` may be a value from before
+      // the restart, so the counter is read again.
       left = kCurrent.read().value();
       counted += kTickMicroseconds;
     }

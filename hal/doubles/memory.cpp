@@ -13,7 +13,9 @@ void Memory::begin(bool writing, std::uint16_t address, std::size_t size) {
     throw std::logic_error(
         "memory: a job goes beyond the end of the memory, or a write beyond the end of its page");
   }
-  constexpr std::int64_t kAddressing = 4;  // bytes of a read: device address twice, word address of two bytes
+  // The bytes that a read needs besides the data: the device address twice, and a word address of two bytes.
+  // A write really needs only three, but also counts as four here.
+  constexpr std::int64_t kAddressing = 4;
   writing_ = writing;
   address_ = address;
   began_ = clock_.virtual_now();

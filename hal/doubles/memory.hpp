@@ -11,8 +11,8 @@
 
 namespace ex9000::hal::doubles {
 
-/// Simulates an AT24C64 of 8 KiB on a 100 kHz bus. At first, all bytes are FF. The AT24C64 takes 5 ms to
-/// program a page. `cut` simulates a power failure or a reset during a job.
+/// Simulates an AT24C64 of 8 KiB on a 100 kHz bus. At first, all bytes are FF. This double takes 5 ms to
+/// program a page; a real AT24C64 may take up to 10 ms.
 class Memory {
  public:
   static constexpr std::size_t kSize = 8192;
@@ -32,22 +32,24 @@ class Memory {
   [[nodiscard]] VirtualTime next() const { return ends_; }
   void run();
 
-  /// Simulates a power failure or a reset of the MCU, and ends the job. If bytes are being programmed, the
-  /// first ones are new, in proportion to the time since programming began. The next byte is partly erased:
-  /// its old value OR A5h. The rest are old.
+  /// Ends the job as a power failure does. The simulator also calls this at a reset of the MCU, although a
+  /// real EEPROM would then continue to program. If bytes are being programmed, the first ones are new, in
+  /// proportion to the time since programming began. The next byte is partly erased: its old value OR A5h.
+  /// The other bytes are old.
   void cut();
 
-  /// A function that saves each programmed range outside this object. It is called at the end of a write; if
-  /// it returns false, the write fails. If `cut` ends a write, it also calls this function, for the range
-  /// that may have changed, and ignores the result. After `fail(true)`, `cut` does not call it.
+  /// A function that saves each programmed range outside this object. `run` calls this function at the end of
+  /// a write; if the result is false, the write fails. If `cut` ends a write, `cut` calls this function for
+  /// the range that may have changed, and ignores the result. If jobs are set to fail (see `fail`), neither
+  /// of the two calls this function.
   using Keep = std::function<bool(std::uint16_t address, Bytes bytes)>;
   void keep(Keep keep) { keep_ = std::move(keep); }
 
   /// Sets a function that is called after each successful write, before the device gets the result.
   void on_write(std::function<void()> written) { written_ = std::move(written); }
 
-  /// After `fail(true)`, each job that ends fails and changes nothing, until `fail(false)`. `cut` then
-  /// changes nothing either.
+  /// Sets whether jobs fail. If `on` is true, each job that ends fails and changes no byte, and `cut` changes
+  /// no byte either.
   void fail(bool on) { failing_ = on; }
 
   [[nodiscard]] const std::vector<std::uint8_t>& contents() const { return contents_; }

@@ -12,7 +12,8 @@ class OneShotTimer {
   void restart(Duration after) { fires_ = clock_.when(after); }
 
   [[nodiscard]] VirtualTime next() const { return fires_; }
-  /// Returns whether the timer fires now. If it does, the caller must call its interrupt.
+  /// Returns whether the timer fires now. If it does, the caller must call the function of `Device` that
+  /// belongs to the timer: `on_silence` or `on_wake_timer`.
   bool fire() {
     if (fires_ > clock_.virtual_now()) {
       return false;

@@ -12,7 +12,7 @@ namespace ex9000::hal::doubles {
 /// A two-wire line to which a UART's driver is connected, for example the virtual bus.
 class Wire {
  public:
-  /// Turns the driver of this end on or off.
+  /// Turns the UART's driver on or off.
   virtual void drive(bool on) = 0;
   /// Begins to send `byte`: its start bit begins now. Call this only while the driver is on.
   virtual void put(std::uint8_t byte, SerialMode mode) = 0;
@@ -23,11 +23,12 @@ class Wire {
   ~Wire() = default;
 };
 
-/// A UART that sends exactly at its baud rate. The owner of the wire passes received bytes to the device.
+/// A UART that sends exactly at its baud rate. It does not receive: the simulated module passes received
+/// bytes directly to the device.
 class SerialLine {
  public:
-  /// How long the driver is on before the first start bit and after the last stop bit: about as long as one
-  /// or two register writes take. `release_late` extends the time after the last stop bit.
+  /// How long the driver is on before the first start bit and after the last stop bit. `release_late` extends
+  /// the time after the last stop bit.
   static constexpr VirtualTime kDriverLead = std::chrono::microseconds(2);
   static constexpr VirtualTime kDriverTail = std::chrono::microseconds(2);
 
@@ -42,7 +43,7 @@ class SerialLine {
   /// Makes the driver stay on longer after each reply. `by`: the additional time. This also applies to a
   /// reply that is being sent.
   void release_late(VirtualTime by);
-  /// Returns the time at which `run` must be called next.
+  /// Returns the time at which `run` must be called next; kNever if no reply is being sent.
   [[nodiscard]] VirtualTime next() const { return next_; }
   void run();
   /// Turns the driver off immediately, even during a byte, as a power failure or a reset does.

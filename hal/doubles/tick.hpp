@@ -13,7 +13,7 @@ class Tick {
   void start() { next_ = clock_.virtual_now() + period_; }
 
   [[nodiscard]] VirtualTime next() const { return next_; }
-  /// Returns whether the tick fires now. If it does, the caller must call its interrupt.
+  /// Returns whether the tick fires now. If it does, the caller must call `Device::on_tick`.
   bool fire() {
     if (next_ > clock_.virtual_now()) {
       return false;

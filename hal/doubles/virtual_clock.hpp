@@ -29,7 +29,7 @@ class VirtualClock {
 
  private:
   VirtualTime now_{0};
-  std::chrono::microseconds microseconds_{0};  ///< `now_`, rounded down; many modules read it at each event
+  std::chrono::microseconds microseconds_{0};  ///< `now_` rounded down; stored for speed
 };
 static_assert(kIsClock<VirtualClock>);
 

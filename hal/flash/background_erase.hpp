@@ -12,7 +12,7 @@ namespace ex9000::hal::flash {
 template <class Flash>
 class BackgroundErase {
  public:
-  /// An erase runs at least this long before it is suspended again, so that it always makes progress. A
+  /// An erase runs at least this long before `suspend` suspends it, so that it always makes progress. A
   /// W25Q16JV requires 20 us; chips of other manufacturers require up to 1 ms.
   static constexpr Duration kShortestRun = milliseconds(1);
 
@@ -67,7 +67,7 @@ class BackgroundErase {
   enum class State : std::uint8_t {
     None,
     Running,
-    Suspended,  ///< suspended; or the erase ended before the flash could suspend it
+    Suspended,  ///< suspended; or the erase had ended before that; or `suspend_unknown` found no erase
   };
 
   void run(Time now) {

@@ -17,13 +17,13 @@ inline constexpr std::size_t kPages = 12;
 
 /// The bytes of an entry:
 ///
-///     0-3    sequence, low byte first: a later entry of the same page replaces an earlier one
+///     0-3    sequence, low byte first: an entry replaces entries of the same page with a lower sequence
 ///     4      page, 0 to 11
 ///     5-36   content of the page
 ///     37-40  CRC-32 over bytes 0 to 36, low byte first
 ///
 /// If the power fails while the flash programs an entry, the entry may be incomplete. Its CRC is then wrong,
-/// except with a probability of 2^-32.
+/// except with a probability of about 2^-32.
 inline constexpr std::size_t kPageAt = 4;
 inline constexpr std::size_t kContentAt = 5;
 inline constexpr std::size_t kCheckAt = kContentAt + kPage;

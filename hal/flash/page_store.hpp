@@ -27,18 +27,19 @@ namespace ex9000::hal::flash {
 /// The store never erases a sector that holds an entry in force. Therefore an erase cannot lose a page, and
 /// the store need not copy entries before an erase. There is always a sector without an entry in force
 /// (slot.hpp). The store writes only to a sector that had a mark (mark.hpp). After a reset, the first write
-/// begins a new sector, because a power failure may have interrupted the programming of the last slot, even
-/// if that slot reads FF.
+/// begins a new sector, because a power failure may have interrupted the programming of a slot that
+/// nevertheless reads FF.
 ///
-/// While no job is running, `poll` erases all free sectors in advance. A job suspends the erase. A write
-/// waits for the end of an erase only if it needs another sector and no erased sector is left. This occurs in
-/// two cases:
+/// While no job is running, `poll` erases all free sectors in advance. A free sector has neither a mark nor
+/// an entry in force, has not failed (sectors.hpp), and is not the sector that is being written. A job
+/// suspends the erase, except in one case: a write that needs another sector waits for the end of an erase if
+/// no erased sector is left. This occurs in two cases:
 ///
 /// - On the first start with this flash, until the first erase has ended, after 45 ms typically and 400 ms at
 ///   most.
-/// - If pages are written faster than sectors are erased. With the longest times of the data sheet, writes
-///   that are at least 12 ms apart never wait. If writes are closer together, each sector that has been
-///   erased in advance has room for 79 of them.
+/// - If the store uses sectors faster than it erases them. With the longest times of the data sheet, and
+///   without resets or failures in between, writes that are at least 12 ms apart never wait. If writes are
+///   closer together, each sector that has been erased in advance has room for 79 of them.
 ///
 /// With the longest times of the data sheet and a poll every millisecond, a read takes at most 5 ms, and a
 /// write takes at most 14 ms if it does not wait for the end of an erase. Typical times are 0 ms and 1 ms. A
@@ -107,8 +108,8 @@ class PageStore {
 
   static constexpr std::uint32_t address_of(Slot slot) { return kBegin + offset_of(slot); }
 
-  /// Begins a job, or makes it fail immediately if it is not `possible`. A read is possible if the store has
-  /// these bytes. For a write, they must also be in one page.
+  /// Begins a job, or makes it fail immediately if it is not `possible`. A read is possible if all its bytes
+  /// are in the store. A write is possible if all its bytes are in one page of the store.
   void begin(Job job, std::uint16_t address, bool possible, Time deadline) {
     job_ = job;
     address_ = address;
@@ -123,7 +124,8 @@ class PageStore {
     deadline_.disarm();
   }
 
-  // --- the steps; they return true if `poll` must be called again immediately ---
+  // --- the steps ---
+  // `wait`, `proceed` and `begin_job` return true if `poll` must be called again immediately.
 
   /// Runs a step while the flash is busy.
   bool wait(Time now) {
@@ -166,8 +168,8 @@ class PageStore {
     return false;
   }
 
-  /// Returns whether the next operation of the job can begin. A write must wait for an erase if it needs
-  /// another sector and no erased sector is left.
+  /// Returns whether a job is running and its next operation can begin. A write must wait for an erase if it
+  /// needs another sector and no erased sector is left.
   [[nodiscard]] bool can_begin_job() const {
     return job_ == Job::Read ||
            (job_ == Job::Write && (next_ != kNoSlot || sectors_.next_to_open() != Sectors::kNone));
@@ -194,8 +196,9 @@ class PageStore {
 
   // --- start ---
 
-  /// Ends an operation that was in progress when the MCU was reset without loss of power. If the flash is
-  /// still busy after the longest program operation, it is erasing, and this function suspends the erase.
+  /// Waits for the end of an operation that was in progress when the MCU was reset without loss of power. If
+  /// the flash is still busy after kLongestProgram, it is erasing. This function then suspends the erase and
+  /// returns true.
   bool end_earlier_operation(Time now) {
     if (!program_end_.armed()) {
       program_end_.set(now + kLongestProgram);
@@ -208,7 +211,7 @@ class PageStore {
     return true;
   }
 
-  /// Scans the slots in one page of the flash, or skips a sector that has its mark.
+  /// Scans the slots in one page of the flash, or records that a sector has its mark and skips the sector.
   void scan() {
     const Slot end = static_cast<Slot>(scanned_ + kSlotsOfAFlashPage);
     for (; scanned_ < end; ++scanned_) {
@@ -240,7 +243,7 @@ class PageStore {
 
   // --- reading ---
 
-  /// Reads the slot into `entry_`. Returns whether it contains a good entry.
+  /// Reads the slot into `entry_`. Returns whether the slot contains a good entry.
   bool read_entry(Slot slot) {
     flash_.read(address_of(slot), {entry_.data(), entry_.size()});
     return is_good(entry_);
@@ -252,7 +255,8 @@ class PageStore {
     return mark == kMark;
   }
 
-  /// Reads a page into `entry_`. Returns false if its entry is damaged.
+  /// Reads the newest entry of a page into `entry_`. If the page has no entry, or if the entry is damaged,
+  /// fills `entry_` with FF. Returns false only if the entry is damaged.
   bool load_page(std::size_t page) {
     const Slot slot = map_.newest(page);
     if (slot != kNoSlot && read_entry(slot)) {

@@ -9,8 +9,8 @@
 
 namespace ex9000::hal::flash {
 
-/// The sectors form a ring, and the store uses them in this order, so that they wear out evenly. It skips
-/// sectors that hold an entry in force.
+/// The sectors form a ring: sector 0 follows the last sector. The store uses the sectors in the order of the
+/// ring, so that they wear out evenly. It skips sectors that hold an entry in force or have failed.
 class Sectors {
  public:
   static constexpr unsigned kNone = kSectors;
@@ -23,12 +23,12 @@ class Sectors {
 
   void set(unsigned sector, State state) { states_[sector] = state; }
 
-  /// Returns the sector to write when the current one is full; kNone if none is erased.
+  /// Returns the erased sector to write next; kNone if no sector is erased.
   [[nodiscard]] unsigned next_to_open() const {
     return first([this](unsigned sector) { return states_[sector] == State::Erased; });
   }
-  /// Returns the sector to erase; kNone if there is none. Skips `current`, the sector that is being written,
-  /// and the sectors that `map` uses.
+  /// Returns the sector to erase next; kNone if there is none. Skips `current`, which is the sector that is
+  /// being written or kNone, and the sectors that hold an entry in force according to `map`.
   [[nodiscard]] unsigned next_to_erase(const SlotMap& map, unsigned current) const {
     return first([&](unsigned sector) {
       return states_[sector] == State::Used && sector != current && !map.uses(sector);
@@ -40,7 +40,8 @@ class Sectors {
     set(sector, State::Used);
     begin_after(sector);
   }
-  /// Sets the sector that was opened last. The selection begins with the sector after it.
+  /// Sets the sector that was opened last. `next_to_open` and `next_to_erase` search from the sector after
+  /// it.
   void begin_after(unsigned sector) { last_ = sector; }
 
  private:

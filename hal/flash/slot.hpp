@@ -9,19 +9,20 @@
 namespace ex9000::hal::flash {
 
 /// The number of sectors that the store uses. Each page has at most one entry in force, so the entries in
-/// force are in at most 12 sectors. At least two sectors hold none: the store writes to one of them and
-/// erases the other one in advance.
+/// force are in at most 12 sectors. At least two sectors hold none, so the store can begin to write to one of
+/// them and erase another one in advance.
 inline constexpr unsigned kSectors = 14;
 static_assert(kSectors >= kPages + 2);
 
-/// A slot has room for an entry. A page of the flash has five slots, so that no entry crosses its end.
+/// A slot has room for an entry. Each page of the flash has five slots, so that no entry crosses the end of a
+/// page.
 inline constexpr unsigned kSlotsOfAFlashPage = 5;
 inline constexpr unsigned kSlotSize = 48;
 inline constexpr unsigned kSlotsOfASector = kFlashSector / kFlashPage * kSlotsOfAFlashPage;
 inline constexpr unsigned kSlots = kSectors * kSlotsOfASector;
 static_assert(kEntrySize <= kSlotSize && kSlotsOfAFlashPage * kSlotSize <= kFlashPage);
 
-/// The number of a slot, 0 to kSlots - 1. The first slot of each sector is for its mark.
+/// The number of a slot, 0 to kSlots - 1. The first slot of each sector is for the mark of the sector.
 using Slot = std::uint16_t;
 /// No slot. Slot 0 is for a mark, so it never holds an entry.
 inline constexpr Slot kNoSlot = 0;

@@ -1,4 +1,4 @@
-// Maps each page to the slot of its newest entry.
+// Maps each page to the slot of its newest entry: the entry with the highest sequence.
 #pragma once
 
 #include <array>
@@ -12,10 +12,11 @@ namespace ex9000::hal::flash {
 
 class SlotMap {
  public:
-  /// Returns the slot of the newest entry; kNoSlot if no entry of the page is recorded.
+  /// Returns the slot of the newest entry of `page`; kNoSlot if no entry of `page` is recorded.
   [[nodiscard]] Slot newest(std::size_t page) const { return slots_[page]; }
 
-  /// Records a good entry. Has no effect if a newer entry of this page is already recorded.
+  /// Records the slot of an entry that `is_good`. Has no effect if an entry of `page` with the same or a
+  /// higher sequence is already recorded.
   void add(std::size_t page, std::uint32_t sequence, Slot slot) {
     if (slots_[page] == kNoSlot || sequence > sequences_[page]) {
       slots_[page] = slot;
@@ -23,7 +24,7 @@ class SlotMap {
     }
   }
 
-  /// Returns whether the newest entry of a page is in this sector.
+  /// Returns whether `sector` contains the newest entry of any page.
   [[nodiscard]] bool uses(unsigned sector) const {
     for (const Slot slot : slots_) {
       if (slot != kNoSlot && sector_of(slot) == sector) {

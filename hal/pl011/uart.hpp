@@ -16,12 +16,13 @@ namespace ex9000::hal::pl011 {
 
 /// `base`: address of the registers; `clock`: clock of the UART in Hz; `DriverEnable`: the RS-485 driver,
 /// with the functions `start()`, which turns it off, and `drive(bool on)`; `EndTimer`: a one-shot timer for
-/// this UART only, whose interrupt calls `on_end_timer`.
+/// this UART only. The interrupt of this timer calls `on_end_timer`.
 ///
 /// The FIFOs stay off, so that each byte causes an interrupt when it arrives and the silence after it can be
 /// measured. The disadvantage is an overrun if an interrupt is delayed by more than a character time.
 ///
-/// The main loop writes `begun_` and the interrupts write `ended_`. The driver is on while the two differ.
+/// The main loop writes `begun_` and the interrupts write `ended_`. The driver is on while their values
+/// differ.
 template <std::uint32_t base, std::uint32_t clock, class DriverEnable, class EndTimer>
 class Uart {
   static_assert(largest_baud_error(clock) < kTolerableBaudError, "this clock cannot generate all baud rates");
@@ -30,7 +31,7 @@ class Uart {
   /// Turns the driver off. Call this once, before `open`.
   static void start() { DriverEnable::start(); }
 
-  // --- main loop; see hal/serial_line.hpp ---
+  // --- the functions of hal/serial_line.hpp ---
 
   void open(std::uint32_t baud, LineFormat format) {
     constexpr std::uint32_t kMicroseconds = 1'000'000;
@@ -62,7 +63,8 @@ class Uart {
   void on_interrupt(Deliver deliver) {
     const Bits<MaskedInterrupts> why = kMaskedInterrupts.read();
     if (why.has(kWasReceived)) {
-      // There is only one byte, and reading it clears the flag. Other events cause another interrupt.
+      // The receiver contains only one byte, and reading it clears the flag. If the transmit flag is set too,
+      // it causes another interrupt.
       const Bits<Data> data = kData.read();
       deliver(static_cast<std::uint8_t>(data.value()), status_of(data));
     } else if (why.has(kWasTransmitted)) {
@@ -74,7 +76,8 @@ class Uart {
 
   /// Turns the driver off and returns true if the last byte has been sent; else restarts the end timer and
   /// returns false. A PL011 has no interrupt for the end of a transmission, so this function checks the busy
-  /// flag. For the interrupt of the end timer, which expires after the time of the last byte.
+  /// flag. For the interrupt of the end timer. This timer first expires about one character time after the
+  /// last byte has begun.
   bool on_end_timer() {
     if (kFlags.read().has(kBusy)) {
       EndTimer::restart(bit_);
@@ -82,7 +85,7 @@ class Uart {
     }
     take_echo();
     kInterruptMask.write(kReceived | kTransmitted);
-    DriverEnable::drive(false);  // after the mask: a master may send now
+    DriverEnable::drive(false);  // must follow the write of the mask, because a master may send now
     ended_.store_in_interrupt(begun_.load());
     return true;
   }
@@ -155,15 +158,16 @@ class Uart {
     return data.has(kFramingError) ? ByteStatus::FramingError : ByteStatus::ParityError;
   }
 
-  /// Discards the echo of a sent byte, if the receiver gets it, so that the receiver is empty for the next
-  /// byte.
+  /// Discards the echo of a sent byte, if the UART has received it, so that the receiver is empty for the
+  /// next byte.
   static void take_echo() {
     if (!kFlags.read().has(kReceiverEmpty)) {
       static_cast<void>(kData.read());
     }
   }
 
-  /// Sends the next byte, after the previous one has moved from the holding register to the shift register.
+  /// Sends the next byte, or starts the end timer if all bytes have been written. Call this when the previous
+  /// byte has moved from the transmit holding register to the shift register.
   void send_next() {
     Bytes& rest = rest_.in_interrupt();
     if (rest.size != 0) {
@@ -174,9 +178,11 @@ class Uart {
     }
   }
 
-  Duration bit_;                   ///< duration of a bit, rounded up
-  Duration character_;             ///< duration of a character, rounded up
-  HandedToInterrupt<Bytes> rest_;  ///< `begun_` hands it to the interrupts, `ended_` returns it
+  Duration bit_;        ///< duration of a bit, rounded up
+  Duration character_;  ///< duration of a character, rounded up
+  /// The bytes that have not been written to the UART. A store to `begun_` hands this value to the
+  /// interrupts. A store to `ended_` returns it to the main loop.
+  HandedToInterrupt<Bytes> rest_;
   WrittenByMainLoop<std::uint32_t> begun_;
   WrittenByInterrupt<std::uint32_t> ended_;
 };

@@ -21,7 +21,7 @@ constexpr std::uint32_t baud_error(std::uint32_t clock, std::uint32_t baud) {
   return static_cast<std::uint32_t>((made > wanted ? made - wanted : wanted - made) * 1'000'000U / wanted);
 }
 
-/// Returns the largest error of all baud rates of a module, in millionths.
+/// Returns the largest `baud_error` of all baud rates of a module.
 constexpr std::uint32_t largest_baud_error(std::uint32_t clock) {
   std::uint32_t largest = 0;
   for (const std::uint32_t baud : kBaudRates) {
@@ -31,9 +31,9 @@ constexpr std::uint32_t largest_baud_error(std::uint32_t clock) {
   return largest;
 }
 
-/// The largest allowed error of the module, in millionths. With parity, a receiver samples the stop bit 10.5
-/// bits after the edge of the start bit, so the errors of both ends together must be below 1/21. The module
-/// may use about a fifth of that.
+/// The limit for the baud-rate error of the module, in millionths: the error must be smaller. With parity, a
+/// receiver samples the stop bit 10.5 bits after the edge of the start bit, so the errors of the sender and
+/// the receiver together must be below 1/21. The module may use about a fifth of that.
 constexpr std::uint32_t kTolerableBaudError = 10'000;
 
 }  // namespace ex9000::hal::pl011

@@ -1,5 +1,5 @@
-// Types for registers and their bits. The compiler rejects code that writes the bits of one register to
-// another register.
+// Types for registers and their bits. A register accepts only bits of its own type, so the compiler rejects
+// code that writes the bits of an unrelated register to it.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,8 @@
 
 namespace ex9000::hal {
 
-/// The contents of a register. `Name` is a type that identifies the register.
+/// The contents of a register. `Name` is a type that identifies the register. Registers with the same bits
+/// may share a `Name`.
 template <class Name>
 class Bits {
  public:

@@ -10,13 +10,14 @@
 
 namespace ex9000::hal::rp2040 {
 
-/// For the second stage of the boot sequence only. All functions are inlined, because the image with all
-/// other functions is not in RAM yet.
+/// For the second stage of the boot sequence only. All functions are inlined, because the image, which
+/// contains the functions that are not inlined, is not in RAM yet.
 class Boot {
  public:
   /// Switches the processor and the flash to the crystal, because the ring oscillator may run at less than 2
-  /// MHz. Blocks for about 5 ms. If the crystal is not stable after `kMostReads` reads, this function returns
-  /// without the switch, and the image waits for the crystal after it has started the watchdog.
+  /// MHz. Blocks for about 5 ms if the crystal starts. If the crystal is not stable after `kMostReads` reads,
+  /// this function returns without the switch. The image then waits for the crystal after it has started the
+  /// watchdog.
   [[gnu::always_inline]] static void use_crystal() {
     constexpr unsigned kMostReads = 20'000;  // a read takes at least 0.5 us
     Crystal::start();
@@ -28,13 +29,13 @@ class Boot {
     }
   }
 
-  /// Copies `words` words, at most 65,536, from `address` of the flash to `destination`. A word takes 64
-  /// clocks of the processor: 5.3 us on a crystal of 12 MHz. The boot ROM reads the second stage with the
-  /// same command, Read Data (03h), so the command works on this chip without a configuration.
+  /// Copies `words` words, 1 to 65,536, from `address` of the flash to `destination`. A word takes 64 clocks
+  /// of the processor: 5.3 us with a crystal of 12 MHz. The boot ROM reads the second stage with the same
+  /// command, Read Data (03h), so the command works on the flash without configuration.
   [[gnu::always_inline]] static void copy(std::uint32_t address, std::uint32_t* destination,
                                           std::uint32_t words) {
     constexpr std::uint32_t kReadData = 0x03;
-    constexpr Bits<Control> kWordsAfterCommand(31U << 16U | 0x3U << 8U);  // "EEPROM read"
+    constexpr Bits<Control> kWordsAfterCommand(31U << 16U | 0x3U << 8U);  // mode "EEPROM read"
     constexpr Bits<Status> kReceived(1U << 3U);
     kSelectControl.write({});  // the SSI controls chip select
     kEnable.write({});

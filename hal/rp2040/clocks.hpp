@@ -10,9 +10,10 @@
 
 namespace ex9000::hal::rp2040 {
 
-/// The clocks of a board: a crystal, and a PLL that multiplies its frequency and divides it twice.
+/// The clocks of a board: a crystal, and a PLL that multiplies the frequency of the crystal and divides the
+/// product by two values.
 struct ClockTree {
-  std::uint32_t crystal;     ///< Hz, 1 MHz to 15 MHz
+  std::uint32_t crystal;     ///< Hz, a whole number of MHz, 5 MHz to 15 MHz
   std::uint32_t multiplier;  ///< 16 to 320
   std::uint32_t divider_1;   ///< 1 to 7, not less than `divider_2`
   std::uint32_t divider_2;   ///< 1 to 7
@@ -26,7 +27,7 @@ class Clocks {
  public:
   /// Switches the reference clock to the crystal, and the processor and the peripherals to the PLL. The
   /// second stage has already started the crystal. Call this once after reset, when the watchdog is running.
-  /// If the crystal is already stable, it blocks for less than 1 ms. If the crystal never becomes stable or
+  /// If the crystal is already stable, this blocks for less than 1 ms. If the crystal never becomes stable or
   /// the PLL never locks, the watchdog resets the MCU.
   template <const ClockTree& clock>
   static void use() {
@@ -39,10 +40,10 @@ class Clocks {
     while (!Crystal::is_reference()) {
     }
     start_pll(clock);
-    kSystemControl.write(kFromPll);  // after the reset, the auxiliary source is the system PLL
+    kSystemControl.write(kFromPll);  // after a reset, the auxiliary source is the system PLL
     while (!kSystemSelected.read().has(kAuxiliarySelected)) {
     }
-    kPeripheralControl.write(kPeripheralEnable);  // its source is the system clock
+    kPeripheralControl.write(kPeripheralEnable);  // the source of this clock is the system clock
   }
 
  private:

@@ -10,8 +10,8 @@ namespace ex9000::hal::rp2040 {
 /// is in RAM. None of them blocks.
 class Crystal {
  public:
-  /// Starts the oscillator. It is `stable` after the start-up delay of 50,176 periods, the value after a
-  /// reset: 4.2 ms at 12 MHz.
+  /// Starts the oscillator. It is `stable` after a start-up delay of 50,176 periods: 4.2 ms at 12 MHz. This
+  /// is the delay that a reset of the MCU sets.
   [[gnu::always_inline]] static void start() {
     constexpr Bits<Control> kRange(0xAA0);
     constexpr Bits<Control> kEnable(0xFABU << 12U);
@@ -23,8 +23,8 @@ class Crystal {
   }
 
   /// Makes the crystal the source of the reference clock, in place of the ring oscillator. The processor and
-  /// the flash run on the reference clock until they get another clock. Call this only while the crystal is
-  /// `stable`.
+  /// the flash interface run on the reference clock until `Clocks::use` switches them to the PLL. Call this
+  /// only while the crystal is `stable`.
   [[gnu::always_inline]] static void make_reference() {
     constexpr Bits<ReferenceControl> kFromCrystal(0x2);
     kReferenceControl.write(kFromCrystal);

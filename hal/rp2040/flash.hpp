@@ -12,19 +12,19 @@
 
 namespace ex9000::hal::rp2040 {
 
-/// Erases, programs and reads the flash with single-bit commands while the image runs from RAM. For the
-/// functions without a description, see hal/flash.hpp. Interrupts stay enabled: the driver controls chip
-/// select itself, so a delay between two bytes is harmless. The flash is not mapped into memory after
-/// `start`.
+/// Erases, programs and reads the flash with standard SPI commands (one data line in each direction) while
+/// the image runs from RAM. For the functions without a description, see hal/flash.hpp. Interrupts stay
+/// enabled: the driver controls chip select itself, so a delay between two bytes is harmless. The flash is
+/// not mapped into memory after `start`.
 ///
-/// All functions are for the main loop. Reading a data byte takes 0.3 us; any other byte takes up to
+/// All functions are for the main loop. A byte that `read` returns takes 0.3 us. Any other byte takes up to
 /// 0.6 us. A command and its address have four bytes.
 class Flash {
  public:
   /// Starts the SSI. Call this once, before the other functions. A reset of the MCU does not end an operation
   /// of the flash. This function continues a suspended operation, so the flash may be busy afterwards.
   static void start() {
-    constexpr std::uint32_t kDivider = 4;  // even; 31.25 MHz. Read Data allows 50 MHz
+    constexpr std::uint32_t kDivider = 4;  // must be even; 125 MHz / 4 = 31.25 MHz; Read Data allows 50 MHz
     constexpr Bits<Control> kBytesBothWays(7U << 16U);
     select(false);
     kEnable.write({});
@@ -105,7 +105,7 @@ class Flash {
     constexpr Bits<SelectControl> kLow(0x2U << 8U);
     constexpr Bits<SelectControl> kHigh(0x3U << 8U);
     kSelectControl.write(on ? kLow : kHigh);
-    (void)kSelectControl.read();  // completes the write before the next access of the SSI
+    (void)kSelectControl.read();  // completes the write before the next access to the SSI
   }
 
   /// Sends a byte and returns the byte that is received at the same time.
@@ -114,7 +114,7 @@ class Flash {
     return take();
   }
 
-  /// Waits for a received byte and takes it from the queue.
+  /// Waits for a received byte, takes it from the queue and returns it.
   static std::uint8_t take() {
     constexpr Bits<Status> kReceived(1U << 3U);
     while (!kStatus.read().has(kReceived)) {

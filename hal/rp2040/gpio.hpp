@@ -8,14 +8,14 @@
 
 namespace ex9000::hal::rp2040 {
 
-/// A pin by the number in its name: GPIO0 to GPIO29.
+/// A pin. `number` is the number in its name, GPIO0 to GPIO29.
 struct Pin {
   std::uint8_t number;
 
   [[nodiscard]] constexpr std::uint32_t mask() const { return 1U << number; }
 };
 
-/// Adjacent pins for adjacent channels.
+/// Adjacent pins: `count` pins from `first_pin` on.
 struct PinGroup {
   std::uint8_t first_pin;
   std::uint8_t count;
@@ -25,8 +25,9 @@ struct PinGroup {
 
 enum class Function : std::uint8_t { Uart = 2, I2c = 3, Software = 5 };
 
-/// All pins are in one register. `pins` is a mask; bit n is GPIOn. Each function changes only the bits of
-/// `pins`. Only the main loop and interrupts that do not interrupt each other may call these functions.
+/// `pins` is a mask; bit n is GPIOn. Each function changes only these pins. All functions are for interrupts
+/// and the main loop. `write` first reads the levels, so no interrupt may change the same pins during a
+/// `write`.
 class Gpio {
  public:
   [[nodiscard]] static std::uint32_t read(std::uint32_t pins) { return kLevels.read().value() & pins; }
@@ -38,16 +39,16 @@ class Gpio {
   static void set(std::uint32_t pins) { kOutSet.write(Bits<Out>(pins)); }
   static void clear(std::uint32_t pins) { kOutClear.write(Bits<Out>(pins)); }
 
-  /// Makes `pins` inputs. Enables the weak pull-up if `pull_up` is true, else the weak pull-down. Select the
-  /// inactive level, so that an open pin reads as inactive.
+  /// Makes `pins` inputs. Enables the weak pull-up if `pull_up` is true, else the weak pull-down. Choose
+  /// `pull_up` so that an open pin reads as inactive.
   static void make_input(std::uint32_t pins, bool pull_up) {
     kDriveClear.write(Bits<Drive>(pins));
     make(pins, Function::Software, pull_up ? kInputPulledUp : kInputPulledDown);
   }
 
-  /// Makes `pins` outputs of 8 mA with the initial `levels`, without a glitch: a pin drives nothing until its
-  /// function is software control (SIO). Until then, its weak pull-down and the connected circuit hold it
-  /// low.
+  /// Makes `pins` outputs of 8 mA with the initial `levels`. Call this once for a pin after a reset. There is
+  /// no glitch, because a pin drives nothing until its function is software control (SIO). Until then, the
+  /// weak pull-down holds the pin low, unless the connected circuit pulls it high.
   static void make_output(std::uint32_t pins, std::uint32_t levels) {
     write(pins, levels);
     kDriveSet.write(Bits<Drive>(pins));
@@ -65,7 +66,7 @@ class Gpio {
     kDriveSet.write(Bits<Drive>(outputs));
   }
 
-  // --- edges; a register has four bits for each of eight pins ---
+  // --- edges of GPIO0 to GPIO23; a register has four bits for each of eight pins ---
 
   /// Enables interrupts for both edges of `pins`. Edges that are already flagged cause an interrupt too.
   static void watch_edges(std::uint32_t pins) {
@@ -73,7 +74,7 @@ class Gpio {
       edge_enable(word).set(Bits<EdgeEnable>(spread(pins >> (kPinsAWord * word))));
     }
   }
-  /// Returns the watched pins that have had an edge since `clear_edges`.
+  /// Returns the watched pins that have had an edge since their last `clear_edges`.
   [[nodiscard]] static std::uint32_t edges() {
     std::uint32_t pins = 0;
     for (std::uint32_t word = 0; word < kEdgeWords; ++word) {
@@ -121,7 +122,6 @@ class Gpio {
     return Register<EdgeStatus>(0x4001'4120U + 4U * word);
   }
 
-  // Bits of a pad: output disable, input enable, drive strength, pull-up, pull-down, Schmitt trigger.
   static constexpr Bits<Pad> kOutputDisable{1U << 7U};
   static constexpr Bits<Pad> kInputEnable{1U << 6U};
   static constexpr Bits<Pad> kDrive8Ma{0x2U << 4U};
@@ -156,7 +156,7 @@ class Gpio {
     bits = (bits | bits << 3U) & 0x1111'1111U;
     return bits * kBothEdges;
   }
-  /// Returns the pins that have an edge bit in `bits`. This is the inverse of `spread`.
+  /// Returns, in the lowest eight bits, the pins that have an edge bit in `bits`.
   static std::uint32_t gather(std::uint32_t bits) {
     bits = (bits >> 2U | bits >> 3U) & 0x1111'1111U;
     bits = (bits | bits >> 3U) & 0x0303'0303U;

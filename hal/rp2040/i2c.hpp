@@ -12,13 +12,13 @@
 
 namespace ex9000::hal::rp2040 {
 
-/// A single master at 100 kHz. `lines`: the pins of data and clock; `clock`: system clock in Hz. The main
-/// loop fills the queue of commands and empties the queue of received bytes. An interrupt only wakes the main
-/// loop. For the functions of a master, see I2cTransfer.
+/// A single master at 100 kHz. `lines`: the pins of data and clock, in this order; `clock`: system clock in
+/// Hz. The main loop fills the queue of commands and empties the queue of received bytes. An interrupt only
+/// disables itself and wakes the main loop. For the functions of a master, see I2cTransfer.
 template <const PinGroup& lines, std::uint32_t clock>
 class I2c {
  public:
-  /// Begins to free the bus. Call this once. Transfers wait until this has ended.
+  /// Begins the recovery of the bus. Call this once. Transfers wait until the recovery has ended.
   void start() { begin_freeing(); }
 
   void begin(const I2cTransfer& transfer, Time now) {
@@ -91,11 +91,12 @@ class I2c {
   static constexpr Bits<Status> kRoom{1U << 1U};
   static constexpr Bits<Status> kReceived{1U << 3U};
   static constexpr Bits<Enable> kOn{1U << 0U};
-  static constexpr Bits<AbortSource> kNoAcknowledge{1U << 0U | 1U << 3U};  // of the address, of data
+  static constexpr Bits<AbortSource> kNoAcknowledge{1U << 0U | 1U << 3U};  // of the address; of a data byte
 
-  /// The queues have 16 entries.
+  /// The number of entries of each queue.
   static constexpr std::size_t kQueue = 16;
-  /// The bytes of a full queue take 1.5 ms. The rest is the time for which the main loop may sleep.
+  /// The timeout, which restarts when the main loop queues a command or takes a received byte. The bytes of a
+  /// full queue take 1.5 ms. The rest is a reserve for delays of the main loop.
   static constexpr Duration kTimeout = milliseconds(5);
 
   // --- freeing the bus ---
@@ -120,13 +121,13 @@ class I2c {
     freeing_ = true;
   }
 
-  /// Sets up the master and connects the pins to it.
+  /// Sets up the master, connects the pins to it, and begins a transfer that is waiting.
   void hand_over(Time now) {
     constexpr std::uint32_t kBitRate = 100'000;
     constexpr std::uint32_t kPeriod = clock / kBitRate;
-    constexpr std::uint32_t kLow = kPeriod * 3U / 5U;            // at least 4.7 us
-    constexpr std::uint32_t kSpike = clock / 20'000'000 + 1U;    // 50 ns
-    constexpr std::uint32_t kHold = clock / 3'333'333 + 1U;      // 300 ns
+    constexpr std::uint32_t kLow = kPeriod * 3U / 5U;            // 6 us; the minimum is 4.7 us
+    constexpr std::uint32_t kSpike = clock / 20'000'000 + 1U;    // at least 50 ns
+    constexpr std::uint32_t kHold = clock / 3'333'333 + 1U;      // at least 300 ns
     constexpr Bits<Configuration> kMaster(1U << 0U | 1U << 6U);  // and not a slave
     constexpr Bits<Configuration> kStandardMode(1U << 1U);
     constexpr Bits<Configuration> kRestart(1U << 5U);
@@ -147,10 +148,11 @@ class I2c {
   // --- a transfer ---
 
   void begin_queue(Time now) {
-    kEnable.write({});  // the target can be changed only while the master is off; this empties the queues too
+    // The target can be changed only while the master is off. This write also empties the queues.
+    kEnable.write({});
     kTarget.write(Bits<Target>(transfer_->device));
     kEnable.write(kOn);
-    (void)kClearAll.read();  // a read clears all interrupts
+    (void)kClearAll.read();  // a read clears all flags that software can clear
     deadline_.set(now + kTimeout);
     fill(now);
   }
@@ -180,7 +182,8 @@ class I2c {
     }
   }
 
-  /// Queues as many commands as there is room for, and enables the interrupts for the next event.
+  /// Queues the commands of the rest of the transfer, as far as there is room, and enables the interrupts for
+  /// the next event. Queues nothing after an abort.
   void fill(Time now) {
     const std::size_t size = transfer_->size();
     while (!aborted_ && queued_ < size && has_room()) {
@@ -209,8 +212,8 @@ class I2c {
   bool busy_ = false;
   bool aborted_ = false;
   I2cResult result_ = {};
-  std::size_t queued_ = 0;    ///< number of queued commands
-  std::size_t received_ = 0;  ///< number of received bytes
+  std::size_t queued_ = 0;    ///< number of commands that have been queued
+  std::size_t received_ = 0;  ///< number of bytes that have been received
   Deadline deadline_;
   I2cBusRecovery<Wires> recovery_;
   const I2cTransfer* transfer_ = nullptr;

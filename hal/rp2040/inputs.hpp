@@ -9,13 +9,11 @@
 namespace ex9000::hal::rp2040 {
 
 /// `groups` is an array of PinGroup that contains the pins of the channels in order, from channel 0 on.
-/// `active_high`: a high pin is logic 1.
+/// `active_high`: whether a high pin is logic 1.
 template <const auto& groups, unsigned channels, bool active_high>
 class InputPins {
  public:
-  /// Enables edge interrupts and returns the levels; bit n is channel n. Each later edge is flagged. An edge
-  /// during the read would count as two edges, so this function reads again until no edge occurs during the
-  /// read.
+  /// Enables edge interrupts and returns the levels; bit n is channel n. Each later edge is flagged.
   static std::uint16_t start() {
     Gpio::make_input(kPins, !active_high);
     Gpio::watch_edges(kPins);
@@ -65,8 +63,8 @@ class InputPins {
   static constexpr std::uint32_t kPins = mask();
 
   struct Settled {
-    std::uint32_t flagged;
-    std::uint32_t levels;  ///< 1: logic 1
+    std::uint32_t flagged;  ///< bit n is GPIOn
+    std::uint32_t levels;   ///< bit n is GPIOn; 1 = logic 1
   };
 
   /// Clears the flags of `flagged` and those of new edges, and reads the levels after the last of these

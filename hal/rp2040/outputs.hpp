@@ -8,7 +8,7 @@
 namespace ex9000::hal::rp2040 {
 
 /// `groups` is an array of PinGroup that contains the pins of the channels in order, from channel 0 on. The
-/// groups of a model's channels must be adjacent. `active_high`: a high pin energises its channel.
+/// channels of a model must have adjacent pins. `active_high`: whether a high pin energises its channel.
 template <const auto& groups, unsigned channels, bool active_high>
 class OutputPins {
  public:

@@ -8,7 +8,7 @@
 
 namespace ex9000::hal::rp2040 {
 
-/// The peripherals that an image uses and that stay in reset after a reset of the MCU. Each has one bit.
+/// The peripherals that images use and that stay in reset after a reset of the MCU. Each has one bit.
 enum class Block : std::uint32_t {
   I2c0 = 1U << 3U,
   Pins = 1U << 5U,

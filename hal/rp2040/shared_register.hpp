@@ -1,4 +1,5 @@
-// Registers whose bits can be changed one by one. Source: RP2040 data sheet, 2.1.2 (atomic register access).
+// Registers in which one write can set or clear single bits. Source: RP2040 data sheet, 2.1.2 (atomic
+// register access).
 #pragma once
 
 #include <cstdint>
@@ -8,10 +9,10 @@
 
 namespace ex9000::hal::rp2040 {
 
-/// A register of a peripheral on the APB or AHB-Lite bus. It has more addresses. At one of them, a write sets
-/// only the given bits. At another one, a write clears only the given bits. `set` and `clear` therefore do
-/// not read the register first, so no interrupt can change it between a read and a write. The registers of
-/// SIO and of the SSI do not have these addresses.
+/// A register of a peripheral on the APB or AHB-Lite bus. Such a register has several addresses. At one of
+/// them, a write sets only the given bits. At another one, a write clears only the given bits. `set` and
+/// `clear` therefore do not read the register first, so no interrupt can change it between a read and a
+/// write. The registers of SIO and of the SSI do not have these addresses.
 template <class Name>
 class SharedRegister {
  public:

@@ -1,5 +1,5 @@
-// The microsecond timer: the clock of a board, and its alarms as one-shot timers. Source: RP2040 data sheet,
-// 4.6; the tick that drives it, 4.7.2.
+// The microsecond timer as the clock of a board, and the alarms of this timer as one-shot timers. Source:
+// RP2040 data sheet, 4.6 (timer) and 4.7.2 (the tick that drives the timer).
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@ class Clock {
   static constexpr Register<Microseconds> kTime{0x4005'4028};
 };
 
-/// `number`: 0 to 3.
+/// `number`: the number of the alarm, 0 to 3. For `restart`, see hal/one_shot_timer.hpp.
 template <unsigned number>
 class OneShotTimer {
  public:
@@ -32,20 +32,20 @@ class OneShotTimer {
     kArmed.write(Bits<Armed>(kThis));  // a write disarms
     kForce.clear(Bits<Force>(kThis));
     kRaw.write(Bits<Raw>(kThis));  // a write clears
-    // The current microsecond has partly passed, so the alarm is one microsecond later.
+    // A part of the current microsecond has passed, so the alarm would be early without one more microsecond.
     const Time begin = Clock::now();
     const Duration to_alarm = after + Duration(1);
     kAlarm.write(Bits<Alarm>((begin + to_alarm).microseconds()));
     // The alarm fires only when the time equals its value. An interrupt may have delayed the write until
-    // after this time.
+    // after this time. In this case, the following lines force the interrupt.
     if (!(Clock::now().since(begin) < to_alarm) && kArmed.read().has(Bits<Armed>(kThis))) {
       kArmed.write(Bits<Armed>(kThis));
       kForce.set(Bits<Force>(kThis));
     }
   }
 
-  /// Returns whether the timer has expired, and clears its flag. Its interrupt must call this first: the
-  /// timer has not expired if it was restarted while its interrupt was pending.
+  /// Returns whether the timer has expired, and clears its flag. The interrupt of the timer must call this
+  /// first, because the timer has not expired if it was restarted while the interrupt was pending.
   static bool take_expiry() {
     if (!kStatus.read().has(Bits<Status>(kThis))) {
       return false;

@@ -12,7 +12,8 @@ namespace ex9000::hal::rp2040 {
 
 class WatchdogRegisters {
  public:
-  /// Resets the MCU immediately and does not return. Interrupts, faults and the main loop may call this.
+  /// Resets the MCU, except its oscillators, immediately and does not return. Interrupts, faults and the main
+  /// loop may call this.
   [[noreturn]] static void reset_chip() {
     kResetBy.write(kAllButOscillators);
     kControl.set(kTrigger);
@@ -28,12 +29,14 @@ class WatchdogRegisters {
     constexpr Bits<ChipReset> kRunPin(1U << 16U);
     const Bits<Reason> reason = kReason.read();
     if (reason.has(kRequest | kTimeout)) {
-      // The boot ROM also resets the chip with the watchdog, after it has copied an image to the flash.
+      // Only images write the mark. The boot ROM also resets the chip with the watchdog, after it has copied
+      // an image to the flash.
       return kMark.read().value() != kOfAnImage.value() ? ResetReason::Software
-             : reason.has(kRequest)                     ? ResetReason::Fault  // images request no other reset
+             : reason.has(kRequest)                     ? ResetReason::Fault  // only a fault requests a reset
                                                         : ResetReason::ModuleWatchdog;
     }
-    // A reset by the watchdog does not change the bits of the last chip-level reset.
+    // A reset by the watchdog does not change the bits of the last chip-level reset, so these bits are valid
+    // only if the watchdog has not reset the chip.
     const Bits<ChipReset> chip_reset = kChipReset.read();
     return chip_reset.has(kSupply)   ? ResetReason::PowerOn
            : chip_reset.has(kRunPin) ? ResetReason::ResetPin
@@ -51,8 +54,8 @@ class WatchdogRegisters {
   static constexpr SharedRegister<Control> kControl{0x4005'8000};
   static constexpr SharedRegister<Load> kLoad{0x4005'8004};
   static constexpr SharedRegister<Reason> kReason{0x4005'8008};
-  /// The first scratch register. A chip-level reset clears it, and a reset by the watchdog does not. The boot
-  /// sequence (2.8.1) uses only the last four.
+  /// The first of eight scratch registers. A chip-level reset clears it, and a reset by the watchdog does
+  /// not. The boot sequence (2.8.1) uses only the last four scratch registers.
   static constexpr SharedRegister<Mark> kMark{0x4005'800C};
   static constexpr SharedRegister<Tick> kTick{0x4005'802C};
   static constexpr SharedRegister<ResetBy> kResetBy{0x4001'0008};
@@ -61,17 +64,18 @@ class WatchdogRegisters {
   static constexpr Bits<Control> kTrigger{1U << 31U};
   static constexpr Bits<Tick> kTickEnable{1U << 9U};
   static constexpr Bits<Mark> kOfAnImage{0x4558'9000};  ///< any value that other software does not write
-  /// Without these bits, a reset would leave the peripherals as they are. The oscillators need no reset.
+  /// Without these bits, a reset by the watchdog would leave the peripherals as they are. The oscillators
+  /// need no reset.
   static constexpr Bits<ResetBy> kAllButOscillators{0x1'FFFC};
 };
 
-/// `reference`: frequency of the reference clock in MHz after the start of the crystal.
+/// `reference`: frequency in MHz of the reference clock when the crystal is its source.
 template <std::uint32_t reference>
 class HardwareWatchdog : public WatchdogRegisters {
  public:
   /// Starts the tick of the watchdog and the timer, and then the watchdog. The watchdog runs until the next
   /// reset. While the ring oscillator is the reference clock, the tick and the countdown are up to twelve
-  /// times longer.
+  /// times longer than with a crystal of 12 MHz.
   static void start() {
     kMark.write(kOfAnImage);
     kTick.write(Bits<Tick>(reference) | kTickEnable);

@@ -13,12 +13,12 @@
 
 namespace ex9000::hal::stellaris {
 
-/// A single master at 100 kHz. The interrupt counts each byte and wakes the main loop, which continues the
-/// transfer. For the functions of a master, see I2cTransfer.
+/// The only master of its bus, at 100 kHz at most. The I2C interrupt counts each byte and wakes the main
+/// loop, which continues the transfer. For the functions of a master, see I2cTransfer.
 template <Family family, std::uint32_t clock>
 class I2c {
  public:
-  /// Begins to free the bus. Call this once. Transfers wait until this has ended.
+  /// Begins to free the bus. Call this once. Transfers wait until this recovery has ended.
   void start() { begin_freeing(); }
 
   void begin(const I2cTransfer& transfer, Time now) {
@@ -56,7 +56,7 @@ class I2c {
   [[nodiscard]] bool busy() const { return busy_; }
   [[nodiscard]] I2cResult result() const { return result_; }
 
-  /// Counts a byte that has ended, with or without an error. For the I2C interrupt.
+  /// Counts a byte whose transfer has ended, with or without an error. For the I2C interrupt.
   void on_interrupt() {
     kInterruptClear.write(Bits<InterruptClear>(1));
     completed_.store_in_interrupt(completed_.load() + 1U);
@@ -105,7 +105,7 @@ class I2c {
   static constexpr std::uint32_t kBoth = kClock | kDataPin;
   static constexpr std::uint32_t kPortControlFunction = 3;
 
-  /// A byte takes 90 us. The rest is the time for which the main loop may sleep.
+  /// A byte takes about 90 us, and the address before the first byte takes as long. The rest is a reserve.
   static constexpr Duration kByteTimeout = milliseconds(3);
 
   // --- freeing the bus ---
@@ -132,7 +132,7 @@ class I2c {
     step_ = Step::Freeing;
   }
 
-  /// Connects the pins to the peripheral and starts it.
+  /// Connects the pins to the peripheral and starts it. If a transfer is waiting, begins it.
   void hand_over(Time now) {
     constexpr std::uint32_t kBitRate = 100'000;
     constexpr std::uint32_t kClocksAStep = 2U * (6U + 4U);  // low and high time of SCL

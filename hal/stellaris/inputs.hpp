@@ -9,13 +9,13 @@
 namespace ex9000::hal::stellaris {
 
 /// `groups` is an array of PinGroup that contains the pins of the channels in order, from channel 0 on.
-/// `active_high`: a high pin is logic 1.
+/// `active_high`: whether a high pin is logic 1.
 template <const auto& groups, unsigned channels, bool active_high>
 class InputPins {
  public:
-  /// Enables edge interrupts and returns the levels; bit n is channel n. Each later edge is flagged. An edge
-  /// during the read would count as two edges, so this function reads again until no edge occurs during the
-  /// read.
+  /// Enables edge interrupts and returns the levels; bit n is channel n, 1 = logic 1. Each later edge is
+  /// flagged. An edge during the read would count as two edges, so this function reads again until no edge
+  /// occurs during the read.
   static std::uint16_t start() {
     unsigned first = 0;
     unsigned levels = 0;
@@ -44,8 +44,8 @@ class InputPins {
     return false;
   }
 
-  /// Calls `deliver(channel, level)` for each channel that has had an edge. The level is read after the flag
-  /// has been cleared, so that an edge in between is flagged again. For the port's interrupt.
+  /// Calls `deliver(channel, level)` for each channel on `port` that has had an edge. The level is read after
+  /// the flag has been cleared, so that an edge in between is flagged again. For the port's interrupt.
   template <Port port, class Deliver>
   static void take_edges(Deliver deliver) {
     static constexpr std::array<std::uint8_t, 8> kChannels = channels_of(port);
@@ -53,11 +53,11 @@ class InputPins {
   }
 
  private:
-  /// Clears the flags of `flagged` and those of new edges of `pins`, and reads the levels after the last of
-  /// these edges. Repeats this if a new edge is flagged, because an edge between the clearing of the flags
-  /// and the read of the levels would count twice: now because of its level, and later because of its flag.
-  /// Other pins keep their flags, because their levels are not used. Returns the cleared flags in bits 0 to 7
-  /// and the levels of all pins in bits 8 to 15.
+  /// Clears the flags of `flagged` and then reads the levels. Repeats both steps for `pins` with a new edge,
+  /// because an edge between the clearing of the flags and the read of the levels would count twice: now
+  /// because of its level, and later because of its flag. Pins that are neither in `pins` nor in `flagged`
+  /// keep their flags. Returns the cleared flags in bits 0 to 7 and the levels of all pins of the port in
+  /// bits 8 to 15; 1 = logic 1.
   [[gnu::noinline]] static std::uint32_t settle(Gpio gpio, std::uint32_t pins, std::uint32_t flagged) {
     std::uint32_t cleared = 0;
     std::uint32_t levels = 0;
@@ -86,8 +86,8 @@ class InputPins {
 
   static std::uint32_t logic(std::uint32_t levels) { return active_high ? levels : ~levels; }
 
-  /// Returns the channel of each pin of a port. Pins that are in no group are not watched, so their value is
-  /// not used.
+  /// Returns the channel of each pin of a port. Pins that are in no group are not watched, so their elements
+  /// are not used.
   static constexpr std::array<std::uint8_t, 8> channels_of(Port port) {
     std::array<std::uint8_t, 8> result{};
     unsigned channel = 0;

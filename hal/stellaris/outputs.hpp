@@ -10,7 +10,7 @@
 namespace ex9000::hal::stellaris {
 
 /// `groups` is an array of PinGroup that contains the pins of the channels in order, from channel 0 on.
-/// `active_high`: a high pin energises its channel.
+/// `active_high`: whether a high pin energises its channel.
 template <const auto& groups, unsigned channels, bool active_high>
 class OutputPins {
  public:
@@ -22,7 +22,7 @@ class OutputPins {
     });
   }
 
-  /// Writes one register for each group, a few processor clocks apart.
+  /// Writes one register for each group that has a channel. The writes are a few processor clocks apart.
   static void drive(std::uint16_t energised) {
     each_group(energised,
                [](const Gpio& gpio, std::uint32_t pins, std::uint32_t levels) { gpio.write(pins, levels); });

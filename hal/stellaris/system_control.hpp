@@ -1,6 +1,7 @@
 // Clock tree, clock gates and the reason of a reset. Sources: LM3S6965 data sheet, 6.4 and 6.5 (system
 // control); TM4C123GH6PM data sheet, 5.3 and 5.5. The legacy RCC and RCGCn registers of the TM4C have the
-// same addresses and the same meaning.
+// same addresses as on the LM3S6965. The bits that this file uses have the same meaning, unless a comment
+// says otherwise.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +15,7 @@ namespace ex9000::hal::stellaris {
 /// divider.
 struct ClockTree {
   std::uint32_t crystal_code;  ///< RCC field XTAL
-  std::uint32_t divider;       ///< divides the PLL's 200 MHz, 4 to 16
+  std::uint32_t divider;       ///< divides 200 MHz; 4 to 16
 
   /// Returns the frequency in Hz.
   [[nodiscard]] constexpr std::uint32_t frequency() const { return 200'000'000U / divider; }
@@ -29,7 +30,7 @@ struct ClockGates {
 
 namespace clock_gate {
 constexpr std::uint32_t kWatchdog = 1U << 3U;  // RCGC0
-constexpr std::uint32_t kUart0 = 1U << 0U;     // RCGC1
+constexpr std::uint32_t kUart0 = 1U << 0U;     // RCGC1, like the bits below
 constexpr std::uint32_t kUart1 = 1U << 1U;
 constexpr std::uint32_t kI2c0 = 1U << 12U;
 constexpr std::uint32_t kTimer0 = 1U << 16U;
@@ -72,15 +73,15 @@ class SystemControl {
     kRcgc1.write(Bits<Rcgc1>(gates.rcgc1));  // after reset, these clocks are off
     kRcgc2.write(Bits<Rcgc2>(gates.rcgc2));
     // A peripheral must not be accessed for 3 clocks (LM3S) or 5 clocks (TM4C) after its clock has been
-    // enabled. Each of these reads takes at least 2 clocks.
+    // enabled. Each of the following reads takes at least 2 clocks.
     for (int i = 0; i < 3; ++i) {
       (void)kRcgc2.read();
     }
   }
 
   /// Returns the reason of the last reset, and clears it. Call this once after each reset, as early as
-  /// possible: the bits of RESC (data sheets, "Reset Cause") stay set after most other resets, so another
-  /// reset before this call may add its bit to them.
+  /// possible: most resets do not clear the bits of RESC (data sheets, "Reset Cause"), so another reset
+  /// before this call may add its bit to them.
   static ResetReason take_reset_reason() {
     constexpr Bits<ResetCause> kPin(1U << 0U);
     constexpr Bits<ResetCause> kPowerOn(1U << 1U);
@@ -90,7 +91,7 @@ class SystemControl {
     const Bits<ResetCause> causes = kResetCause.read();
     kResetCause.write({});
     // The supply is checked first, because the pin may be low for longer than the power-on reset. An image
-    // resets itself only after a fault or an unexpected interrupt.
+    // requests a software reset only after a fault or an unexpected interrupt.
     return causes.has(kPowerOn | kBrownOut) ? ResetReason::PowerOn
            : causes.has(kPin)               ? ResetReason::ResetPin
            : causes.has(kWatchdog)          ? ResetReason::ModuleWatchdog

@@ -1,5 +1,5 @@
-// The UARTs of this family and their RS-485 driver. Sources: LM3S6965 data sheet, 12.4; TM4C123GH6PM data
-// sheet, 14.4.
+// The UARTs of the LM3S6965 and the TM4C123GH6PM, with an RS-485 driver. Sources: LM3S6965 data sheet, 12.4;
+// TM4C123GH6PM data sheet, 14.4.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Durations as people write them: 12.5s, 50ms, 300us, 2min, 24h.
+// Durations as people write them (12.5s, 50ms, 300us, 2min, 24h), and times in logs.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 namespace ex9000::sim {
 
 /// Parses a number with a unit: us, ms, s, min or h. Throws std::invalid_argument with a one-line message if
-/// `text` is anything else, is negative, or is longer than a year.
+/// `text` is anything else, is negative, or is longer than 365 days.
 hal::doubles::VirtualTime parse_time(const std::string& text);
 
 /// Returns the time in us, ms or s, in the format that parse_time reads.
@@ -17,7 +17,7 @@ std::string time_text(hal::doubles::VirtualTime time);
 /// Returns the time in seconds, exact to the nanosecond, without a unit: 1.25, 0.000104166.
 std::string seconds_text(hal::doubles::VirtualTime time);
 
-/// Returns the prefix of log lines: seconds with six decimals, right-aligned in 12 columns.
+/// Returns the prefix of log lines: seconds with six decimals, right-aligned in at least 12 columns.
 std::string stamp_text(hal::doubles::VirtualTime time);
 /// Returns the log line of a note.
 std::string note_text(hal::doubles::VirtualTime time, const std::string& text);

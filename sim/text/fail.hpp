@@ -1,4 +1,5 @@
-// Errors in user input: one line, `WHERE: what is wrong; what would be right`.
+// Errors in user input. A message has one line: where the error is, what is wrong and, in most cases, what
+// would be right.
 #pragma once
 
 #include <stdexcept>
@@ -8,8 +9,8 @@ namespace ex9000::sim {
 
 [[noreturn]] inline void fail(const std::string& what) { throw std::invalid_argument(what); }
 
-/// Runs `action` and adds the prefix `where` to the messages of its exceptions, for example `--pty ` or
-/// `bus.json:4: lines[0].pty: `.
+/// Runs `action` and returns its result. Adds the prefix `where` to the message of a std::invalid_argument or
+/// std::runtime_error that `action` throws. The prefix is, for example, `--pty: `.
 template <class Action>
 decltype(auto) with_place(const std::string& where, Action action) {
   try {

@@ -7,7 +7,7 @@
 
 namespace ex9000::sim {
 
-/// Returns the text for errno. Call this directly after the system call, because the next one may change
+/// Returns the text for errno. Call this directly after the system call, because another call may change
 /// errno.
 inline std::string reason() { return std::strerror(errno); }
 

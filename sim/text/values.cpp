@@ -16,7 +16,8 @@ namespace {
 /// In the order of LineFormat.
 constexpr std::array<std::string_view, 4> kLineFormats{"8N1", "8N2", "8E1", "8O1"};
 
-/// Parses the whole text as a number; returns nullopt for any other text and for numbers that are too large.
+/// Parses the whole text as a number; returns nullopt for any other text and for numbers that `Number` cannot
+/// represent.
 template <class Number, class... Format>
 std::optional<Number> number(const std::string& text, Format... format) {
   Number value{};
@@ -29,7 +30,7 @@ std::optional<Number> number(const std::string& text, Format... format) {
   fail("'" + text + "': expected " + expected);
 }
 
-/// Returns nullopt unless the text is 1 to `most` hex digits.
+/// Returns the value of 1 to `most` hex digits; nullopt for any other text.
 std::optional<unsigned> hex_number(const std::string& text, std::size_t most) {
   constexpr int kHex = 16;
   const bool digits = text.find_first_not_of("0123456789ABCDEFabcdef") == std::string::npos;

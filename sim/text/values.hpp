@@ -12,15 +12,17 @@
 
 namespace ex9000::sim {
 
-// Each parser requires that the whole text is a value. The functions whose names begin with `parse` throw
-// std::invalid_argument with a one-line message otherwise, for example `'maybe': expected on or off`.
+// Each parser requires that the whole text is a value of the described form. For any other text, the
+// functions whose names begin with `parse` throw std::invalid_argument with a one-line message, for example
+// `'maybe': expected on or off`.
 
 bool parse_on_off(const std::string& text);
 /// Parses one of two words; returns true for `yes`.
 bool parse_choice(const std::string& text, std::string_view yes, std::string_view no);
 /// Parses decimal digits; the value must be from `least` to `most`.
 std::uint64_t parse_whole_number(const std::string& text, std::uint64_t least, std::uint64_t most);
-/// Parses a decimal number, with or without a fraction, from `least` to `most`; nullopt for any other text.
+/// Parses a decimal number from `least` to `most`, with or without a fraction and an exponent; returns
+/// nullopt for any other text.
 std::optional<double> decimal_number(const std::string& text, double least, double most);
 /// Parses a number above 0 and up to 1.
 double parse_probability(const std::string& text);
@@ -36,18 +38,17 @@ std::uint32_t parse_baud_rate(const std::string& text);
 std::uint8_t parse_hex_byte(const std::string& text);
 /// Parses one to four hex digits, in upper or lower case.
 std::uint16_t parse_hex_word(const std::string& text);
-/// Parses pairs of hex digits, in upper or lower case, with or without blanks between them; at least one
-/// pair.
+/// Parses one or more pairs of hex digits, in upper or lower case. Ignores blanks and tabs.
 std::vector<std::uint8_t> parse_hex_bytes(const std::string& text);
 
-/// Parses a word that is a decimal number from 0 to `most`; returns nullopt for any other text.
+/// Parses decimal digits with a value from 0 to `most`; returns nullopt for any other text.
 std::optional<std::uint64_t> whole_number(const std::string& text, std::uint64_t most);
 
 /// Returns the lowest 8 bits as two upper-case hex digits.
 std::string hex_byte_text(unsigned value);
 /// Returns the lowest 16 bits as four upper-case hex digits.
 std::string hex_word_text(unsigned value);
-/// Returns each byte as two upper-case hex digits.
+/// Returns each byte as two upper-case hex digits, with `separator` between the bytes.
 std::string hex_text(const std::vector<std::uint8_t>& bytes, std::string_view separator = "");
 
 }  // namespace ex9000::sim

@@ -10,7 +10,7 @@ namespace ex9000::sim {
 
 using Words = std::vector<std::string>;
 
-/// Returns the words between blanks.
+/// Returns the words of `text`, which are separated by white space.
 inline Words words_of(const std::string& text) {
   std::istringstream stream(text);
   Words words;

@@ -1,5 +1,6 @@
-// Measures the processor time that the core requires from the first byte of a request to its reply. The
-// result includes the receive interrupts, but not the time that the bytes take on a serial line.
+// Measures the processor time that the firmware core requires from the first byte of a request to the end of
+// the reply. The result includes the work of the interrupts in the core. It does not include the time that
+// the bytes take on a serial line.
 #include <benchmark/benchmark.h>
 
 #include <string>
@@ -12,7 +13,8 @@
 namespace ex9000::bench {
 namespace {
 
-/// A module whose memory completes each job immediately and whose clock the benchmark advances.
+/// A module whose clock advances only during its start and in `ask`. Its memory is accessed only during the
+/// start, because no request in this file stores settings.
 class BareModule {
  public:
   explicit BareModule(const Model& model, bool ascii) : module_(model), memory_(8192, 0xFF) {
@@ -29,7 +31,7 @@ class BareModule {
     }
   }
 
-  /// Returns the size of the reply in bytes.
+  /// Sends a request. Returns the size of the reply in bytes, or 0 if the module does not reply.
   std::size_t ask(const std::vector<std::uint8_t>& request) {
     for (const std::uint8_t byte : request) {
       now_ = now_ + Duration(1042);

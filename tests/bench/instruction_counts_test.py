@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Tests how tests/bench/instructions evaluates an execution log and computes results from instruction counts."""
+"""Tests how tests/bench/instructions evaluates an execution log and computes results from instruction counts. Also
+tests the requests of that tool."""
 
 import sys
 import unittest
@@ -8,7 +9,7 @@ sys.dont_write_bytecode = True  # do not leave byte code in the source tree
 
 from instruction_counts import capacity, counter, execution, requests  # noqa: E402
 
-SLEEP = 0x100  # WFI; after it the main loop continues at 0x102
+SLEEP = 0x100  # address of WFI, after which the main loop continues at 0x102
 TICKS_OWN = 0x300
 NUMBERS = execution.LM3S6965
 HANDLERS = {execution.TICK: 0x1000, NUMBERS.line: 0x2000, NUMBERS.silence: 0x3000, NUMBERS.line_end: 0x4000}
@@ -21,7 +22,7 @@ def executed(*addresses):
 
 
 def interrupt(number, *lines):
-    """Returns the log of an interrupt. `lines` are addresses, or log lines of other events."""
+    """Returns the log of an interrupt. `lines` are addresses of executed instructions, or log lines of other events."""
     log = [f"nvic_acknowledge_irq NVIC acknowledge IRQ: {number} now active (prio 0)\n".encode()]
     for line in lines:
         log += executed(line) if isinstance(line, int) else [line]
@@ -60,7 +61,7 @@ def count(log):
 class Passes(unittest.TestCase):
     BYTE = interrupt(NUMBERS.line, 0x2000, received(1), 0x2002)
 
-    def test_a_pass_is_all_interrupts_and_all_turns_that_they_start(self):
+    def test_the_interrupts_turns_and_single_bytes_of_an_answered_request_are_counted(self):
         log = ASLEEP + turn(self.BYTE) + turn(interrupt(NUMBERS.silence, 0x3000), *TURN)
         log += turn(interrupt(NUMBERS.line, 0x2000, SENT)) + turn(interrupt(NUMBERS.line_end, 0x4000), 0x500)
         its, found = count(log)
@@ -68,7 +69,7 @@ class Passes(unittest.TestCase):
         self.assertEqual((its.received_byte.count, its.sent_byte.count), (2, 1))
         self.assertTrue(its.answered)
 
-    def test_a_pass_excludes_the_tick_and_the_turn_that_the_tick_starts(self):
+    def test_a_pass_excludes_the_tick_and_its_turn_which_is_counted_separately(self):
         its, found = count(ASLEEP + turn(self.BYTE) + turn(TICK, *TURN) + turn(self.BYTE))
         self.assertEqual(found, 2 * (2 + 2))
         self.assertEqual(its.ticks_turn.count, 2 + 32)
@@ -94,7 +95,7 @@ class Passes(unittest.TestCase):
         self.assertTrue(count(ASLEEP + turn(self.BYTE) + turn(TICK))[0].at_rest)
         self.assertFalse(count(ASLEEP + executed(0x102) + self.BYTE)[0].at_rest)
 
-    def test_a_request_is_answered_when_the_driver_enable_is_switched_off(self):
+    def test_a_request_is_not_answered_until_the_driver_enable_is_switched_off(self):
         self.assertFalse(count(ASLEEP + turn(interrupt(NUMBERS.line, 0x2000, SENT)))[0].answered)
 
     def test_an_interrupt_with_two_bytes_does_not_count_as_one_byte(self):

@@ -1,5 +1,6 @@
-// Runs the benchmarks. Fails only if a benchmark reports an error, for example a wrong reply. Durations
-// cannot make the program fail. Reports each `figure` that is below its `at_least` or above its `at_most`.
+// Runs the benchmarks. Fails if a benchmark reports an error, for example a missing reply, or if an argument
+// is unknown. Durations cannot make the program fail. A benchmark can set the counters `figure`, `at_least`
+// and `at_most`. The program reports each `figure` that is below `at_least` or above `at_most`.
 #include <benchmark/benchmark.h>
 
 #include <iostream>

@@ -1,4 +1,4 @@
-// Measures how close a master on the program's pseudo-terminal comes to the maximum rate of the line, in
+// Measures how close a master on the simulator's pseudo-terminal comes to the maximum rate of the line, in
 // percent.
 #include <benchmark/benchmark.h>
 #include <modbus/modbus.h>
@@ -40,8 +40,8 @@ void paced_line(benchmark::State& state) {
     state.SkipWithError("cannot connect");
     return;
   }
-  // The host can preempt the process at any time, which can only lower the result. Therefore the best round
-  // counts.
+  // The host can preempt this process or the simulator at any time, which can only lower the result.
+  // Therefore the best round counts.
   double best = 0;
   for ([[maybe_unused]] auto _ : state) {
     best = 0;

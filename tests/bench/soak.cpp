@@ -1,7 +1,7 @@
-// Polls two simulators with 32 modules each without pauses. Fails if a reply is wrong, or if the memory of a
-// simulator grows by more than 256 KiB.
+// Sends requests without pauses to two simulators with 32 modules each. Fails if a reply is missing or wrong,
+// or if the memory of a simulator grows by more than 256 KiB after its first transactions.
 //
-//     soak [SECONDS]
+//     soak [SECONDS]    default: 600
 #include <array>
 #include <atomic>
 #include <chrono>
@@ -27,9 +27,10 @@ constexpr int kModules = 32;
 constexpr int kBaud = 115200;
 constexpr int kOutputs = 13;
 constexpr int kInputs = 8;
-/// The first transactions allocate memory that is used again. The master sends this many in about a second.
+/// The first transactions allocate memory that later transactions use again. A master completes this number
+/// of transactions in about a second.
 constexpr long kFirstTransactions = 200;
-/// Permitted memory growth of a process after its first transactions, in KiB.
+/// The permitted growth of the memory of a simulator after its first transactions, in KiB.
 constexpr long kGrowth = 256;
 
 bool has_outputs(int address) { return address % 2 == 1; }
@@ -46,7 +47,7 @@ std::vector<std::string> modules() {
   return arguments;
 }
 
-/// One line, its master, and the expected state of its modules.
+/// A simulator with one line, the master of this line, and the expected state of the modules.
 class Bus {
  public:
   void poll_until(Clock::time_point end) {
@@ -64,7 +65,7 @@ class Bus {
 
   [[nodiscard]] long transactions() const { return transactions_; }
   [[nodiscard]] long wrong() const { return wrong_; }
-  /// Returns the resident memory of the simulator, in KiB.
+  /// Returns the resident memory of the simulator, in KiB. Returns 0 if the system does not report it.
   [[nodiscard]] long memory() const {
     std::ifstream status("/proc/" + std::to_string(simulator_.pid()) + "/status");
     for (std::string line; std::getline(status, line);) {

@@ -33,8 +33,9 @@ std::vector<std::uint8_t> frame(const std::vector<std::uint8_t>& bytes) { return
 
 double seconds(VirtualTime time) { return std::chrono::duration<double>(time).count(); }
 
-/// Measures a line on which the master sends no request except a host OK every 20 s. The host watchdogs of
-/// all modules but one are enabled. The host watchdog of that module has expired, so its LED flashes.
+/// Measures a line on which the master sends no request except a host OK every 20 s. The host watchdog of one
+/// module has expired, so the LED of this module flashes. The host watchdogs of all other modules are
+/// enabled.
 void idle_line(benchmark::State& state) {
   Line line(a_line_of_modules(), sim::kPaced, [](std::uint8_t, ByteStatus) {});
   const auto tell = [&line](const std::vector<std::uint8_t>& bytes, VirtualTime then) {
@@ -63,8 +64,8 @@ void idle_line(benchmark::State& state) {
 }
 BENCHMARK(idle_line)->Name("32 modules idle, watchdogs armed: x real time");
 
-/// Measures a line whose master polls the modules in turn. The master sends each request when the silence
-/// after the previous reply ends.
+/// Measures a line whose master polls the modules in turn. The master sends each request shortly after the
+/// silence that follows the previous reply.
 void loaded_line(benchmark::State& state) {
   bool heard = false;
   Line line(a_line_of_modules(), sim::kPaced, [&heard](std::uint8_t, ByteStatus) { heard = true; });
@@ -80,7 +81,8 @@ void loaded_line(benchmark::State& state) {
     heard = false;
     line.master().send(requests[next].data(), requests[next].size());
     next = (next + 1) % requests.size();
-    // 8 and 13 characters, two silences of 1.75 ms, and a margin for rounding.
+    // A request of 8 characters, a reply of 13 characters, two silences of 1.75 ms, and a margin for
+    // rounding.
     line.bus().run_for(std::chrono::microseconds(21 * 10 * 1'000'000 / 115200 + 2 * 1752 + 10));
     if (!heard) {
       state.SkipWithError("no reply");

@@ -1,5 +1,6 @@
-// Tests images on simulated boards: faults of the EEPROM and of the line, turn-around times, pulses at the
-// inputs, resets, the INIT* switch, the status LED and a long uptime.
+// Tests images on simulated boards, for example with faults of the EEPROM and of the line, and with short
+// pulses at the inputs. Also tests turn-around times, resets, the INIT* switch, the status LED and a long
+// uptime.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -35,7 +36,7 @@ class OnBoard : public testing::TestWithParam<ImageName> {
   UartPort& uart() { return bench.image.uart == 0 ? bench.mcu->uart0 : bench.mcu->uart1; }
   bool listens() { return uart().enabled(); }
   /// Switches the supply on, with the EEPROM and its bus in their present state. Checks that the module
-  /// starts in time and replies.
+  /// receives after kComesUpWithin, replies with its factory name, and causes no reset.
   void expect_comes_up() {
     power_up();
     EXPECT_TRUE(listens());
@@ -43,8 +44,8 @@ class OnBoard : public testing::TestWithParam<ImageName> {
     EXPECT_EQ(bench.ask("$01M"), "!019055");
   }
   /// Sends the command that stores a name. Switches the supply off at the time `after` from the start of the
-  /// command, and on again 50 ms later. Returns whether the master had received a character of the reply
-  /// before the cut.
+  /// command, and on again 50 ms later. Sets cut_a_page_. Returns whether the master had received a character
+  /// of the reply before the cut.
   bool cut_while_it_stores(const std::string& name, Instant after) {
     const std::string command = "~01O" + name + "\r";
     bench.line.heard.clear();
@@ -73,7 +74,7 @@ class OnBoard : public testing::TestWithParam<ImageName> {
       expect_comes_up();
       EXPECT_EQ(bench.ask("~01OPUMP"), "?01");
       line->drive(End::Fault, Drive::Nothing);
-      bench.run_for(seconds(3));  // meanwhile the module repeats the failed store
+      bench.run_for(seconds(3));  // meanwhile the module invalidates the copy of the refused store
       EXPECT_EQ(bench.ask("~01O9055"), "!01");
       line->drive(End::Fault, Drive::Low);
       EXPECT_EQ(bench.ask("~01OPUMP"), "?01");
@@ -85,11 +86,11 @@ class OnBoard : public testing::TestWithParam<ImageName> {
   }
 
   BoardBench bench;
-  bool cut_a_page_ = false;
+  bool cut_a_page_ = false;  ///< the EEPROM was programming a page at the last cut
 };
 
-/// A board whose I2C controller never reports that a START has failed; the data sheets do not define this
-/// case.
+/// A board whose I2C controller waits for a reset if a START finds the bus busy, and raises an interrupt
+/// after a STOP without a byte. The data sheets do not define these cases.
 class OnBoardWhoseI2cWaits : public OnBoard {
  protected:
   OnBoardWhoseI2cWaits() : OnBoard({true, false, true}) {}
@@ -137,8 +138,7 @@ TEST_P(OnBoard, ComesUpWithin100msAfterAResetAtAnyTimeWhileItReadsItsSettings) {
 }
 
 TEST_P(OnBoard, HasOldOrNewSettingsAfterAPowerCutAndNewOnesIfItHasReplied) {
-  // The command takes at most 9.4 ms and its turn-around 1 ms. Storing takes another 10 ms, or 20 ms if an
-  // earlier cut has left a copy that must be repaired first.
+  // The command takes at most 9.4 ms and its turn-around 1 ms. After that, the store takes about 10 ms.
   constexpr microseconds kCommandIsSent{10'300};
   constexpr microseconds kInBetween{5000};
   power_up();
@@ -252,7 +252,7 @@ TEST_P(OnBoard, DropsARequestThatHasACharacterWithoutAStopBit) {
   bench.line.send_one({'\r', false, 0});  // a character with a wrong stop bit may have been any character
   bench.run_for(milliseconds(100));
   EXPECT_TRUE(bench.line.heard.empty());
-  EXPECT_EQ(bench.ask(""), "") << "still the same request";
+  EXPECT_EQ(bench.ask(""), "") << "the request contains a damaged character, so the module must drop it";
   EXPECT_EQ(bench.ask("$01M"), "!019055");
 }
 
@@ -269,7 +269,7 @@ TEST_P(OnBoard, DropsARequestThatLostACharacterToAnOverrun) {
   EXPECT_EQ(bench.ask("$01M"), "!019055");
 }
 
-TEST_P(OnBoard, AcceptsTwoHostOksWithoutAPauseBetweenThem) {
+TEST_P(OnBoard, AcceptsAHostOkThatAnotherOneFollowsWithoutAPause) {
   const Model& model = *find_model(bench.image.model);
   Settings settings = Settings::factory(model);
   settings.baud_code = 0x0A;  // at 115200 baud a host OK takes 0.35 ms
@@ -282,7 +282,8 @@ TEST_P(OnBoard, AcceptsTwoHostOksWithoutAPauseBetweenThem) {
   for (int phase = 0; phase < 20; ++phase) {
     bench.line.send(host_ok);
     bench.run_for(takes);
-    // The host watchdog would expire between the ends of the next two host OKs.
+    // If the module lost the first of the next two host OKs, the host watchdog would expire before the end of
+    // the second one.
     bench.run_for(milliseconds(100) - 2 * takes + takes / 2);
     bench.line.send(host_ok);
     bench.line.send(host_ok);
@@ -307,7 +308,7 @@ TEST_P(OnBoard, CountsShortPulsesOnEveryInputDespiteInterruptLatency) {
   }
 }
 
-TEST_P(OnBoard, CountsNoEdgesAtStartAtAnyInputLevels) {
+TEST_P(OnBoard, CountsAndLatchesNoEdgesAtStartIfInputsAreHighOrLow) {
   for (unsigned channel = 0; channel < bench.image.inputs; ++channel) {
     bench.set_input(channel, channel % 3 != 0);
   }
@@ -315,7 +316,7 @@ TEST_P(OnBoard, CountsNoEdgesAtStartAtAnyInputLevels) {
   for (unsigned channel = 0; channel < bench.image.inputs; ++channel) {
     EXPECT_EQ(bench.ask("#01" + std::to_string(channel)), "!0100000") << channel;
   }
-  EXPECT_EQ(bench.ask("$01L1"), bench.ask("$01L0")) << "no latch, high or low";
+  EXPECT_EQ(bench.ask("$01L1"), bench.ask("$01L0")) << "a latch is set";
 }
 
 TEST_P(OnBoard, IsResetByTheWatchdogWithin1600msIfTheTickStops) {
@@ -341,7 +342,7 @@ TEST_P(OnBoard, ReportsTheReasonOfTheLastReset) {
     bench.run_for(kLongestWatchdogPeriod + kComesUpWithin);
     EXPECT_EQ(bench.watchdog_resets, 1U + static_cast<unsigned>(pass));
     EXPECT_EQ(bench.ask(ask_reason), "!010002");
-    // An unexpected interrupt is a fault.
+    // An unexpected interrupt has the same reason, 5, as a fault.
     bench.mcu->core.write(Core::kSetEnable, 1U << kUnserved);
     bench.mcu->core.stick(kUnserved);
     bench.run_for(kComesUpWithin);

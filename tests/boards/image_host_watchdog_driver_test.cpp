@@ -1,5 +1,5 @@
-// Tests the host watchdog of an image: when it expires, and what the outputs do then, during commands, stores
-// and power cuts: wire.md section 6.
+// Tests the host watchdog of an image (wire.md section 6): when it expires, and what the outputs do after
+// that, also during commands and stores, and after power cuts.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -26,14 +26,15 @@ using std::chrono::seconds;
 /// microseconds. The module rounds up the end of a byte and the end of the silence after the byte, so that
 /// the host watchdog does not expire too early.
 constexpr microseconds kRounding{3};
-/// The longest permitted time from the interrupt at the expiry until the main loop has set the last of
-/// sixteen pins. The pins change one after the other. The measured time is 2.5 us.
+/// The longest permitted time from the first interrupt after the expiry until the main loop has set the last
+/// of sixteen pins. The pins change one after the other. The measured time is 2.5 us.
 constexpr microseconds kTurn{5};
 constexpr milliseconds kExpiresWithin{1};
 
 class HostWatchdogOnBoard : public WatchedImage {
  protected:
-  /// Arms the host watchdog, and drives the outputs to a value that only a command can set.
+  /// Clears the timeout status, drives the outputs to kDriven, and enables the host watchdog with `timeout`,
+  /// in units of 0.1 s.
   static void arm(WatchedModule& module, unsigned timeout) {
     module.ask("~013001", {1, 0x05, 0x01, 0x04, 0, 0});
     module.ask("~011", {1, 0x05, 0x01, 0x0D, 0xFF, 0});
@@ -95,9 +96,9 @@ TEST_P(ExpiryOnBoard, IsAtMostOneTickLateIfTheWakeTimerFails) {
                        [](BoardBench& bench) { bench.mcu->timer2.write(TimerBlock::kMask, 0); });
 }
 
-/// Sends commands that end at any time around the expiry: a command that only drives outputs, a command that
-/// stores a power-on value, which in Modbus it also drives, and a command that drives outputs while the
-/// command before it is being stored.
+/// Sends commands that end at different times before and after the expiry: a command that only drives
+/// outputs, a command that stores a power-on value (in Modbus, it also drives the outputs), and a command
+/// that drives outputs while the command before it is being stored.
 TEST_P(HostWatchdogOnBoard, NoCommandDrivesOutputsAfterTheExpiry) {
   constexpr unsigned kVv = 5;
   constexpr std::uint16_t kCommanded = 0x3C96;
@@ -122,7 +123,7 @@ TEST_P(HostWatchdogOnBoard, NoCommandDrivesOutputsAfterTheExpiry) {
         bench.run_for(microseconds(50));
       }
       if (!second.empty()) {
-        bench.run_for(milliseconds(6));  // the first one is being stored
+        bench.run_for(milliseconds(6));  // the first command is being stored
         bench.line.send(second);
       }
       bench.run_until(std::max(bench.timeline.now(), over + kExpiresWithin));
@@ -173,11 +174,11 @@ TEST_P(HostWatchdogOnBoard, ATimedOutputDoesNotChangeTheOutputsAfterTheExpiry) {
   constexpr unsigned kVv = 5;
   WatchedModule module(image(), set_up(*find_model(image().model), protocol()));
   BoardBench& bench = module.bench;
-  for (unsigned units = 1; units <= 8; ++units) {  // 0.1 s each; some end before the expiry, and one at it
+  for (unsigned units = 1; units <= 8; ++units) {  // units of 0.1 s; the times 1 to 4 end before the expiry
     SCOPED_TRACE(units);
     arm(module, kVv);
     const Instant over = module.host_ok() + kVv * milliseconds(100);
-    bench.run_for(milliseconds(5));  // the silence that ends the host OK
+    bench.run_for(milliseconds(5));  // includes the silence that ends the host OK in Modbus
     const auto digit = static_cast<std::uint8_t>(units);
     const Bytes reply = module.ask("~01X0280000" + std::to_string(units), {1, 0x06, 0x02, 0x80, 0, digit});
     ASSERT_EQ(reply, module.framed("!01", {1, 0x06, 0x02, 0x80, 0, digit}));
@@ -240,7 +241,8 @@ TEST_P(HostWatchdogOnBoard, ASafeValueThatIsBeingStoredAtTheExpiryIsDrivenWhenIt
       if (change.at < over) {
         continue;
       }
-      // The pins change one after the other. Pins that are equal in both safe values do not change.
+      // The pins change one after the other. A pin that has the same level in both safe values does not
+      // change.
       const bool is_new = change.outputs == new_value;
       expired = expired || change.outputs == kSafeValue;
       ASSERT_TRUE(!expired || ((change.outputs ^ kSafeValue) & ~(kSafeValue ^ new_value)) == 0);
@@ -274,7 +276,8 @@ TEST_P(HostWatchdogOnBoard, ASafeValueThatIsBeingStoredAtTheExpiryIsDrivenWhenIt
               stored_before, stored_behind, too_late);
 }
 
-/// The progress of a command that is being stored when the host watchdog expires.
+/// The state of the EEPROM when the host watchdog expires: no command is being stored, the module transfers a
+/// command's settings on the EEPROM's bus, or the EEPROM programs them.
 enum class Storing : std::uint8_t { Nothing, OnTheBus, Programming };
 
 TEST_P(HostWatchdogOnBoard, NoCommandedValueReturnsAfterTheExpiryAndAPowerCut) {
@@ -287,8 +290,8 @@ TEST_P(HostWatchdogOnBoard, NoCommandedValueReturnsAfterTheExpiryAndAPowerCut) {
   unsigned unstored = 0;
   unsigned cuts = 0;
   unsigned done = 0;
-  // The test stores a name in ASCII and a power-on value in Modbus. These variables contain the last values
-  // that the test has read.
+  // The test stores a name in ASCII and a power-on value in Modbus. In ASCII, `name` contains the last reply
+  // with the name. `power_on_value` contains the stored power-on value.
   Bytes name = module.ask("$01M", {1, 0x11});
   std::uint16_t power_on_value = kPowerOnValue;
   for (const Storing storing : {Storing::Nothing, Storing::OnTheBus, Storing::Programming}) {
@@ -344,8 +347,8 @@ TEST_P(HostWatchdogOnBoard, NoCommandedValueReturnsAfterTheExpiryAndAPowerCut) {
       const std::uint16_t from_reset = stored ? kSafeValue : power_on_value;
       EXPECT_EQ(outputs, from_reset);
       for (const WatchedModule::Change& change : module.changes) {
-        // Until the supply is switched on again, only outputs of the safe value are on. After that, only
-        // outputs of the value after a reset are on.
+        // Until the supply is switched on again, only outputs that are on in the safe value are on. After
+        // that, only outputs that are on in the value after a reset are on.
         EXPECT_EQ(change.at < bench.began ? change.outputs & ~kSafeValue : change.outputs & ~from_reset, 0);
       }
       unstored += stored ? 0U : 1U;

@@ -1,5 +1,5 @@
-// Tests unmodified third-party masters with the images of a module, on each emulated board. The expected
-// values come from firmware/wire.md 7.
+// Tests unmodified third-party masters with the image of the EX9042D-M on an emulated board. CMake builds one
+// test program for each emulated board. The expected values come from firmware/wire.md section 7.
 #include <gtest/gtest.h>
 #include <modbus/modbus.h>
 
@@ -52,7 +52,7 @@ TEST_F(ImageAndMaster, MbpollWritesCoilsAndReadsThemBack) {
       std::string::npos);
 }
 
-TEST_F(ImageAndMaster, MbpollReadsAndWritesRegisters) {
+TEST_F(ImageAndMaster, MbpollWritesARegisterAndReadsItBack) {
   EXPECT_NE(mbpoll({"-t", "4", "-r", "0x1E8"}, {"100"}).find("Written 1 references."), std::string::npos);
   EXPECT_NE(mbpoll({"-t", "4", "-r", "0x1E8"}).find("\t100\n"), std::string::npos);
 }

@@ -1,5 +1,6 @@
-// Tests that the module watchdog of an image resets the module if the image hangs during any of its
-// activities: wire.md section 6. Also tests that a stuck EEPROM bus causes no reset.
+// Tests the module watchdog of an image (wire.md section 6). It must reset the module during any activity if
+// the image hangs, if the tick stops, or if an interrupt occurs continuously. Also tests that a stuck EEPROM
+// bus causes no reset.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -89,7 +90,9 @@ TEST_P(FaultOnBoard, AHungInterruptHandlerCausesAReset) {
 TEST_P(FaultOnBoard, AStoppedTickCausesAReset) {
   expect_reset("the tick stops", [](BoardBench& bench) {
     bench.mcu->core.write(Core::kTickControl, 4);
-    bench.mcu->set_clocks_an_access(1000);  // the module's clock stops, so the wake timer expires repeatedly
+    // The module's clock stops, so the wake timer expires repeatedly. Long accesses make this cheap to
+    // simulate.
+    bench.mcu->set_clocks_an_access(1000);
   });
 }
 
@@ -101,7 +104,7 @@ TEST_P(FaultOnBoard, AnInterruptStormCausesAReset) {
     if ((enabled >> interrupt & 1U) != 0) {
       expect_reset("interrupt " + std::to_string(interrupt) + " storms", [interrupt](BoardBench& stormy) {
         stormy.mcu->core.stick(interrupt);
-        stormy.mcu->set_clocks_an_access(1000);  // so that the storm does not take millions of accesses
+        stormy.mcu->set_clocks_an_access(1000);  // a storm would otherwise take millions of accesses
       });
     }
   }
@@ -126,7 +129,7 @@ TEST_P(FaultOnBoard, AStuckEepromBusCausesRefusedStoresButNoReset) {
       module.changes.clear();
       bench.run_for(seconds(2));
       if (doing == Doing::OnTheEepromsBus || doing == Doing::Programming) {
-        // The module refuses the command, because a value that cannot be read back is not stored.
+        // The module refuses the command, because it cannot read back the value.
         ASSERT_GE(bench.line.heard.size(), 3U);
         EXPECT_TRUE(module.ascii() ? bench.line.heard[0].byte == '?' : bench.line.heard[1].byte == 0x86U);
       }

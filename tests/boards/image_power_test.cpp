@@ -1,9 +1,8 @@
 // Tests power cuts, and the first start after an update of the firmware. After a power cut, a new emulator
 // uses the EEPROM file of the previous one.
 //
-// The emulated EEPROM stores a page immediately when STOP arrives. Therefore this test checks only in which
-// order the image writes, reads back and replies, and that it starts after a cut. power_cuts_test checks the
-// contents of a page after a cut.
+// The emulated EEPROM stores a page immediately when STOP arrives. Therefore no cut in this test leaves a
+// page that is only partly stored. power_cuts_test checks such pages.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -47,7 +46,7 @@ TEST(ImageWithoutPower, KeepsItsSettings) {
   EXPECT_EQ(ask(module, "$025"), "!021");
 }
 
-/// Returns settings that `command` changes.
+/// Returns the settings before `command`, which changes them.
 Settings settings_before(const Model& model, const StoringCommand& command) {
   Settings settings = Settings::factory(model);
   if (command.init != Init::SinceReset) {
@@ -63,15 +62,16 @@ Settings settings_before(const Model& model, const StoringCommand& command) {
 /// host watchdog, and 2 ms for each store at which the module stops.
 constexpr milliseconds kStoresWithin{3000};
 
-/// A module whose emulator is killed after a number of stores to the registers of the I2C master.
+/// A module whose emulator is killed at a selected store to the registers of the I2C master.
 class CutModule {
  public:
   CutModule(const Model& model, const StoringCommand& command)
       : command_(command), before_(settings_before(model, command)), module_(model) {}
 
-  /// Starts the module, sends the command or waits for the timeout of the host watchdog, and makes the power
-  /// fail after `stores` stores to the registers of the I2C master. Returns false if the command caused fewer
-  /// stores.
+  /// Starts the module, and sends the command or waits for the timeout of the host watchdog. Makes the power
+  /// fail immediately before store number `stores` (from 1) to the registers of the I2C master. If `stores`
+  /// is 0, the power fails when the command has been sent, or before the wait. Returns false if fewer stores
+  /// occurred within kStoresWithin.
   bool cut_behind(unsigned stores) {
     constexpr std::uint32_t kI2c = 0x4002'0000;
     constexpr std::uint32_t kRegisters = 0x24;
@@ -112,8 +112,8 @@ class CutModule {
     module_.set_init(false);
     power_up(false);
     const std::uint16_t outputs = module_.outputs();
-    // The replies depend only on the contents of the EEPROM, so the test reads the settings once for each
-    // contents.
+    // The replies depend only on the contents of the EEPROM. Therefore the test reads the settings only once
+    // if several cuts leave the same contents.
     std::optional<Settings>& found = known_[module_.memory()];
     for (const Settings* guess : {&done_, &before_}) {
       if (!found && is_used(guess->baud_code)) {

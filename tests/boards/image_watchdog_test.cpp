@@ -1,6 +1,7 @@
-// Tests that the hardware watchdog resets an image that hangs. The image itself is not changed. The code that
-// makes it hang is in RAM that the image does not use. The vector table points to that code, and a reset
-// restores the table.
+// Tests that the hardware watchdog resets an image if it hangs, if the tick stops, or during an interrupt
+// storm. The image itself is not changed. The code that causes a fault is in RAM that the image does not use.
+// A copy of the vector table in RAM points to this code. After a reset, the copy points to the image's own
+// handlers again.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -17,7 +18,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-/// The longest period of the module's watchdog: wire.md 6.
+/// The longest period of the module's watchdog: wire.md section 6.
 constexpr milliseconds kWatchdogPeriod{1600};
 
 constexpr std::uint32_t kSysTickControl = 0xE000'E010;
@@ -28,12 +29,12 @@ constexpr std::uint32_t kSetPending = 0xE000'E200;
 constexpr std::uint32_t kSysTickVector = 15;
 constexpr std::uint32_t kI2c0 = 8;
 constexpr std::uint32_t kI2c0Vector = 16 + kI2c0;
-/// The address of the code that hangs. It is above the RAM that the image and the test bench use, and below
-/// the image's stack at the top of RAM.
+/// The address of the code that causes a fault. It is above the RAM that the image and the test bench use,
+/// and below the image's stack at the top of RAM.
 constexpr std::uint32_t kCode = 0x2000'C000;
 constexpr std::uint32_t kThumb = 1;
 
-/// The activity of an image when it is made to hang.
+/// The activity of an image when a fault begins.
 enum class Doing : std::uint8_t { Nothing, Receiving, Answering, Storing };
 constexpr Doing kEverything[] = {Doing::Nothing, Doing::Receiving, Doing::Answering, Doing::Storing};
 
@@ -172,9 +173,9 @@ class FaultyImage : public testing::TestWithParam<Protocol>, protected EitherPro
     module_.run_to_reset("WATCHDOG", kWatchdogPeriod);
   }
 
-  /// Returns whether the test runs this case without EX9000_CUTS=all. In ASCII, it runs each value of the
-  /// timeout status with half of the activities. In Modbus, it runs only Storing with a clear timeout status.
-  /// The test runs only one storm, because the emulator requires seconds for a storm.
+  /// Returns whether the test runs this case without EX9000_CUTS=all. In ASCII, the test runs each value of
+  /// the timeout status with half of the activities. In Modbus, the test runs only Storing with a clear
+  /// timeout status. The test runs only one storm, because the emulator requires seconds for a storm.
   [[nodiscard]] bool belongs_to_short_form(Doing doing, bool status, Fault fault) const {
     const bool first_half = doing == Doing::Nothing || doing == Doing::Storing;
     if (fault == &FaultyImage::storm) {
@@ -249,7 +250,7 @@ TEST_P(FaultyImage, RunsWithABlockedEepromBusAndStoresWhenItIsFree) {
     EXPECT_FALSE(timeout_status());
     EXPECT_FALSE(was_reset());
     bus().write(entry, own);
-    module_.run_for(std::chrono::seconds(2));  // until pending repairs are complete
+    module_.run_for(std::chrono::seconds(2));  // the module invalidates refused copies
     EXPECT_TRUE(stores());
     ASSERT_FALSE(HasFailure());
   }

@@ -44,8 +44,8 @@ class ImageInFormat : public testing::TestWithParam<ImageAndFormat> {
   [[nodiscard]] Protocol protocol() const {
     return find_model(bench.image.model)->speaks_modbus() ? Protocol::ModbusRtu : Protocol::Ascii;
   }
-  /// Returns the value of register 0x030E, which is the number of bytes with framing or parity errors.
-  /// Returns 0xFFFF'FFFF if a Modbus module does not reply correctly.
+  /// Returns the value of register 0x030E, which is the number of bytes with a framing error, wrong parity or
+  /// a break. Returns 0xFFFF'FFFF if the reply of a Modbus module has a wrong length.
   unsigned damaged_bytes() {
     if (protocol() == Protocol::Ascii) {
       return static_cast<unsigned>(std::stoul(bench.ask("~01X030E").substr(3), nullptr, 16));
@@ -74,7 +74,8 @@ TEST_P(ImageInFormat, RepliesToAMasterInTheSameFormat) {
   EXPECT_EQ(damaged_bytes(), 0U);
 }
 
-/// firmware/extensions.md: in ASCII, one character of the format; in Modbus, T3.5 of 11-bit characters.
+/// firmware/extensions.md, "Line format": the turn-around time is one character time of the format in ASCII.
+/// In Modbus it is T3.5, with characters of 11 bits.
 TEST_P(ImageInFormat, RepliesImmediatelyAfterTheTurnAroundTimeOfTheFormat) {
   constexpr microseconds kAtOnce{100};
   const int character = format() == LineFormat::k8N1 ? 10 : 11;
@@ -91,7 +92,7 @@ TEST_P(ImageInFormat, RepliesImmediatelyAfterTheTurnAroundTimeOfTheFormat) {
   }
 }
 
-TEST_P(ImageInFormat, IgnoresFramesWithAnotherParityAndCountsTheirBytes) {
+TEST_P(ImageInFormat, IgnoresFramesWithAnotherParityAndCountsDamagedBytes) {
   for (const LineFormat other : {LineFormat::k8N1, LineFormat::k8N2, LineFormat::k8E1, LineFormat::k8O1}) {
     SCOPED_TRACE(sim::line_format_text(other));
     const bool understands = form_of(other).parity_bit == form_of(format()).parity_bit &&
@@ -108,7 +109,7 @@ TEST_P(ImageInFormat, IgnoresFramesWithAnotherParityAndCountsTheirBytes) {
     EXPECT_TRUE(its_reply.empty());
     bench.run_for(milliseconds(20));
     if (protocol() == Protocol::Ascii) {
-      bench.ask("");  // the CR was damaged, so the frame is still open
+      bench.ask("");  // sends a CR, because a frame with a damaged CR is still open
     }
     EXPECT_GT(damaged_bytes(), before);
   }

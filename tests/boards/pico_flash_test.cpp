@@ -14,7 +14,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-/// The results of tests/rp2040/flash_exercise.
+/// The words of Results in tests/rp2040/flash_exercise/main.cpp, in the same order.
 enum Result : std::uint32_t { Received, Unexpected, Rounds, Wrong, Erasing, Reason };
 
 class PicoFlash : public testing::Test {

@@ -86,7 +86,7 @@ TEST_F(PicoImage, AModuleRepliesInItsStoredFormatAndIgnoresAMasterWithAnotherPar
     bench_.set_format(other);
     EXPECT_EQ(ask("$01M"), "");
     bench_.set_format(format);
-    ask("");  // the CR was damaged, so the frame may still be open
+    ask("");  // the CR may have been damaged, and the module then still waits for one
     const std::string damaged_bytes = ask("~01X030E");
     EXPECT_GT(std::stoul(damaged_bytes.substr(3), nullptr, 16), 0U);
     EXPECT_EQ(ask("$01M"), "!019043M\r");
@@ -116,7 +116,8 @@ TEST_F(PicoImage, AReplyBeginsOneCharacterAfterTheRequest) {
   }
 }
 
-/// The wake timer wakes the main loop, which polls the memory. The tick occurs only every 10 ms.
+/// While a store runs, the wake timer wakes the main loop, which polls the memory. The tick occurs only every
+/// 10 ms.
 TEST_F(PicoImage, AReplyToAStoreBeginsWithoutWaitingForTheTick) {
   begin("EX9043D-M", 115200);
   const nanoseconds bit(1'000'000'000 / 115200);
@@ -187,8 +188,8 @@ TEST_F(PicoImage, TheInitSwitchSelectsTheInitMode) {
   EXPECT_EQ(ask("$00M"), "!009043M\r");
 }
 
-// The LED on a Pico W is connected to the radio chip, so the image for a Pico W drives an LED of the module
-// instead.
+// The LED on a Pico W is connected to the radio chip, so the image for a Pico W drives an external LED at
+// GP22 instead.
 TEST_F(PicoImage, TheStatusLedOfAPicoWUsesAPinThatTheRadioDoesNotUse) {
   constexpr std::uint32_t kLedOfPicoW = 1U << 22;
   constexpr std::uint32_t kRadio = 1U << 23 | 1U << 24 | 1U << 25 | 1U << 29;

@@ -24,7 +24,8 @@ std::vector<std::string> names_of(const Groups& groups) {
   return names;
 }
 
-/// Returns the pins of the UART and of the EEPROM (RP2040 data sheet, 1.4.3: UART0 and I2C0).
+/// Returns the names of the pins of the UART and of the EEPROM, by signal. The checks of the pins follow the
+/// RP2040 data sheet, 1.4.3.
 inline std::map<std::string, std::string> names_of_peripherals() {
   static_assert(kUartPins.first_pin % 16 == 0 || kUartPins.first_pin % 16 == 12,
                 "the UART pins must be TX and RX of UART0");
@@ -35,7 +36,8 @@ inline std::map<std::string, std::string> names_of_peripherals() {
           {"EEPROM clock", name_of(kI2cPins.first_pin + 1U)}};
 }
 
-/// The power supply of the Pico uses these pins (Raspberry Pi Pico data sheet, 2.1).
+/// The power supply of the Pico (Raspberry Pi Pico data sheet, 2.1) or the radio of the Pico W uses these
+/// pins.
 inline const std::array<std::string, 3> kReservedPins{"GP23", "GP24", "GP29"};
 
 /// The GPIO at each position of a Pico, from position 1 on (Raspberry Pi Pico data sheet, 2.1). An empty text

@@ -1,5 +1,6 @@
 // Tests the images for the Pico that store their settings in the flash: requests and pulses while the flash
-// programs and erases, the time of a store, power failures, and the time of a start.
+// programs and erases, the time of a store, power failures, a reset during an erase, and the time of a start.
+// Also tests an update of the firmware, with the settings in the flash and with the settings in the EEPROM.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -51,7 +52,7 @@ class PicoSettings : public testing::Test {
     }
   }
 
-  /// Provides a new board whose module and master use kBaud. Its supply is off.
+  /// Provides a new board, whose supply is off. Its module and its master use kBaud.
   void prepare() {
     bench_.begin_anew(model_, &settings_);
     bench_.set_baud(kBaud);
@@ -71,8 +72,8 @@ class PicoSettings : public testing::Test {
   }
 
   /// Sends a request after a silence, and returns the first `size` bytes of the reply, or fewer if no more
-  /// arrive in time. Sets `waited_` to the time from the end of the request to the start of the reply, which
-  /// must have `size` bytes.
+  /// arrive in time. If `size` bytes arrive, sets `waited_` to the time from the end of the request to the
+  /// start of the reply; otherwise `waited_` is wrong. Checks that `waited_` is at least the silence.
   Bytes ask(const Bytes& request, std::size_t size) {
     bench_.run_for(kSilence);
     bench_.send(request);
@@ -160,14 +161,14 @@ TEST_F(PicoSettings, TheModuleRepliesInTimeToStoresHalfASecondApartWithTheSlowes
   constexpr int kStores = 170;  // more than two sectors hold
   nanoseconds longest{};
   for (int i = 0; i < kStores; ++i) {
-    // Because of the offset, the stores begin at different times during an erase.
+    // The pauses differ, so that the stores begin at different times during an erase.
     bench_.run_for(milliseconds(500 + i % 7 * 9) - kSilence);
     ASSERT_NO_FATAL_FAILURE(expect_store(static_cast<std::uint8_t>(1 + i))) << i;
     longest = std::max(longest, waited_);
   }
   std::printf("%d stores, %ld erases; longest turn-around: %.1f ms\n", kStores, erases(),
               static_cast<double>(longest.count()) / 1e6);
-  EXPECT_GE(erases(), 13 + kStores / 79);  // those of the first start, and one for each full sector
+  EXPECT_GE(erases(), 13 + kStores / 79);  // 13 on the first start, and one for each full sector
 }
 
 TEST_F(PicoSettings, AModuleWithAnErasedFlashStoresTheFirstCommandInTime) {
@@ -256,8 +257,8 @@ INSTANTIATE_TEST_SUITE_P(, PicoAfterAnUpdate, testing::Values(Memory::Flash, Mem
                            return memory.param == Memory::Flash ? "Flash" : "Eeprom";
                          });
 
-// The emulator is slow, so this test uses only one model. The other tests of updates do not depend on the
-// board.
+// The emulator is slow, so this test uses only one model. old_layouts_test.cpp uses all stored bytes, without
+// a board.
 TEST_P(PicoAfterAnUpdate, HasAllSettingsThatEarlierFirmwareHasStored) {
   unsigned updates = 0;
   for (const StoredBytes& stored : all_stored_bytes()) {

@@ -1,5 +1,6 @@
-// Compares the register accesses of an image, from reset until it can receive, with the data sheets. The
-// simulated peripherals reject an access to a peripheral without a clock, and a wrong use of the PLL.
+// Tests the start-up of images, from reset until they can receive. Most tests compare the register accesses
+// of an image with the data sheets. The simulated peripherals reject an access to a peripheral without a
+// clock, and a wrong use of the PLL.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -43,7 +44,7 @@ class StartUp : public testing::TestWithParam<ImageName> {
     }
     return values;
   }
-  /// Writes to a block of registers: offset and value.
+  /// The writes to a block of registers, in order: the offset and the value of each write.
   using Writes = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
   [[nodiscard]] Writes writes_to(std::uint32_t base) const {
     Writes writes;
@@ -54,7 +55,8 @@ class StartUp : public testing::TestWithParam<ImageName> {
     }
     return writes;
   }
-  /// Returns the index, among all accesses, of the first write to `address` that sets a bit of `bits`.
+  /// Returns the index, among all accesses, of the first write to `address` of a value with a bit of `bits`.
+  /// Returns the number of accesses if there is no such write.
   [[nodiscard]] std::size_t first_setting(std::uint32_t address, std::uint32_t bits) const {
     const auto& all = bench.mcu->recorded();
     return static_cast<std::size_t>(std::find_if(all.begin(), all.end(),
@@ -76,7 +78,8 @@ class StartUp : public testing::TestWithParam<ImageName> {
 
 TEST_P(StartUp, SwitchesToThePllInTheDataSheetsOrderAndRunsAt50MHz) {
   come_up();
-  // The writes are: bypass; crystal and power; divider; and, after the lock, end of bypass.
+  // The writes switch the bypass on; select the crystal and switch the PLL on; set the divider; and, after
+  // the lock, switch the bypass off.
   const std::vector<std::uint32_t> lm3s{0x078E'3AD1, 0x078E'0B80, 0x01CE'0B80, 0x01CE'0380};
   const std::vector<std::uint32_t> tm4c{0x078E'3AD1, 0x078E'0D40, 0x01CE'0D40, 0x01CE'0540};
   EXPECT_EQ(written(0x400F'E060), image.tm4c ? tm4c : lm3s);
@@ -88,8 +91,8 @@ TEST_P(StartUp, IsResetByTheWatchdogIfThePllNeverLocks) {
   bench.power_on();
   bench.mcu->system_control.set_lock_time(kNever);
   bench.mcu->set_clocks_an_access(1000);
-  // The countdown has a value for 50 MHz. The clock is still the crystal's frequency divided by four, so the
-  // countdown takes proportionally longer.
+  // The watchdog counts down from a value for 50 MHz. The clock is still the crystal's frequency divided by
+  // four, so the countdown takes proportionally longer.
   bench.run_for(std::chrono::seconds(40));
   EXPECT_EQ(bench.watchdog_resets, 1U);
   bench.run_for(kComesUpWithin);
@@ -105,7 +108,7 @@ TEST_P(StartUp, EnablesTheClocksOfTheUsedPeripheralsOnly) {
   EXPECT_EQ(gates(2), image.tm4c ? 0x3FU : 0x6FU);
 }
 
-TEST_P(StartUp, DoesNotChangeTheDebugPins) {
+TEST_P(StartUp, KeepsTheFunctionAndThePullUpsOfTheDebugPins) {
   come_up();
   for (std::uint8_t pin = 0; pin < 4; ++pin) {
     EXPECT_TRUE(has({'C', pin}, GpioPort::kAlternate));
@@ -141,7 +144,7 @@ TEST_P(StartUp, ConfiguresInputPinsWithAPullToTheInactiveLevel) {
     EXPECT_TRUE(has(pin, GpioPort::kEnable));
     EXPECT_FALSE(has(pin, GpioPort::kAlternate));
     EXPECT_TRUE(has(pin, GpioPort::kPullDown));
-    EXPECT_FALSE(has(pin, GpioPort::kSense)) << "edges, not levels";
+    EXPECT_FALSE(has(pin, GpioPort::kSense)) << "must sense edges, not levels";
     EXPECT_TRUE(has(pin, GpioPort::kBothEdges));
     EXPECT_TRUE(has(pin, GpioPort::kMask));
   }
@@ -161,7 +164,7 @@ TEST_P(StartUp, AssignsTheUartAndI2cPinsAsTheFamilyRequires) {
   }
   EXPECT_TRUE(has({'B', 3}, GpioPort::kOpenDrain));
   EXPECT_EQ(has({'B', 2}, GpioPort::kOpenDrain), !image.tm4c)
-      << "the clock pin of a TM4C must not be open drain";
+      << "the clock pin must be open drain, except on a TM4C";
   EXPECT_TRUE(has({'B', 2}, GpioPort::kPullUp));
   EXPECT_TRUE(has({'B', 3}, GpioPort::kPullUp));
   if (image.tm4c) {
@@ -205,7 +208,7 @@ TEST_P(StartUp, EnergisesNoOutputBeforeTheSettingsAreRead) {
   EXPECT_GT(bytes_read, 16U);
 }
 
-TEST_P(StartUp, EnergisesNoOutputIfThePowerOnValueIsZero) {
+TEST_P(StartUp, EnergisesNoOutputAndDoesNotDriveTheLineIfTheMemoryIsBlank) {
   come_up();
   EXPECT_EQ(bench.output_came_on, kNever);
   EXPECT_TRUE(bench.line.drives.empty());
@@ -213,7 +216,7 @@ TEST_P(StartUp, EnergisesNoOutputIfThePowerOnValueIsZero) {
 }
 
 TEST_P(StartUp, SetsTheUartDivisorsOfTheDataSheetsForEachBaudRate) {
-  // 50 MHz / (16 * rate): the integer part, and the rest rounded to 64ths.
+  // 50 MHz / (16 * rate): the integer part, and the fractional part rounded to 64ths.
   struct Divisors {
     std::uint32_t rate;
     std::uint32_t integer;
@@ -236,7 +239,8 @@ TEST_P(StartUp, SetsTheUartDivisorsOfTheDataSheetsForEachBaudRate) {
     settings.baud_code = static_cast<std::uint8_t>(kFirstBaudCode + i);
     store(settings);
     come_up();
-    // The writes are: off; divisors; the line control that latches them (8N1 without FIFOs); interrupts; on.
+    // The writes switch the UART off; set the two divisors; set the line control (8N1 without FIFOs), which
+    // latches the divisors; enable the interrupts; and switch the UART on.
     EXPECT_EQ(writes_to(uart().base()), (Writes{{0x030, 0},
                                                 {0x024, at.integer},
                                                 {0x028, at.fraction},
@@ -277,8 +281,8 @@ TEST_P(StartUp, StartsTheWatchdogBeforeItConfiguresTheClock) {
   come_up();
   Writes writes = writes_to(WatchdogTimer::kBase);
   writes.resize(3);
-  // 37,500,000 clocks are 750 ms; the watchdog resets after two of these periods. After a reset the watchdog
-  // is not locked.
+  // 37,500,000 clock cycles at 50 MHz are 750 ms. The watchdog resets the microcontroller after two such
+  // periods. After a reset the watchdog is not locked, so no write unlocks it first.
   EXPECT_EQ(writes, (Writes{{0x000, 37'500'000}, {0x008, 3}, {0xC00, 0}}));
   EXPECT_TRUE(bench.mcu->watchdog.locked());
   EXPECT_LT(first_setting(WatchdogTimer::kBase + WatchdogTimer::kControl, 1),

@@ -1,5 +1,4 @@
 // Tests the shipped code that an image runs before its `main`, after a return from `main`, and on a fault.
-// The memory has extra words around the sections that the linker marks.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-// The image's `main` is renamed because the test program has its own.
+// The image's `main` is renamed because the test program has its own `main`.
 #define main main_of_the_image
 #include "boards/cortex_m/start_up.cpp"
 #undef main
@@ -17,7 +16,8 @@ namespace {
 
 constexpr std::size_t kCopied = 3;
 constexpr std::size_t kCleared = 16;
-/// The words of both marked sections, and one word before, between and after them.
+/// The words of the copied section and of the cleared section, and one word before, between and after these
+/// sections. The extra words show whether the code writes outside the sections.
 constexpr std::size_t kWords = 1 + kCopied + 1 + kCleared + 1;
 
 }  // namespace

@@ -26,7 +26,7 @@ std::vector<std::string> names_of(const Groups& groups) {
   return names;
 }
 
-/// Returns the pins of the UART and of the EEPROM.
+/// Returns the names of the pins of the UART and of the EEPROM, by signal.
 inline std::map<std::string, std::string> names_of_peripherals() {
   return {{"receive", name_of({kUartPins.port, kUartPins.first_pin})},
           {"transmit", name_of({kUartPins.port, static_cast<std::uint8_t>(kUartPins.first_pin + 1)})},

@@ -1,5 +1,5 @@
-// A module on its board and its master, for tests of the watchdogs: its settings, its activities, and the
-// fixture of the tests.
+// For tests of the watchdogs: a module on its board, with a master; the settings and the activities of the
+// module; and the fixture of the tests.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -26,10 +26,11 @@ inline constexpr std::uint16_t kSafeValue = 0xA5A4;
 inline constexpr std::uint16_t kDriven = 0xC35A;
 inline constexpr std::uint8_t kTimeout = 0x64;
 
-/// Returns two hex digits.
+/// Returns the low byte of `value` as two hex digits.
 inline std::string hex(unsigned value) { return reference::hex(value, 2); }
 
-/// Returns settings with an enabled host watchdog. All output values differ from each other and from kDriven.
+/// Returns settings with an enabled host watchdog. If the model has outputs, the power-on value and the safe
+/// value differ from each other and from kDriven.
 inline Settings set_up(const Model& model, Protocol protocol) {
   Settings settings = Settings::factory(model);
   settings.protocol = protocol;
@@ -42,7 +43,7 @@ inline Settings set_up(const Model& model, Protocol protocol) {
   return settings;
 }
 
-/// A module on its board, with a master that uses its protocol.
+/// A module on its board, with a master that uses the module's protocol.
 class WatchedModule : public EitherProtocol {
  public:
   struct Change {
@@ -78,7 +79,7 @@ class WatchedModule : public EitherProtocol {
 
   Bytes text(const std::string& reply) { return framed(reply, {}); }
 
-  /// Drives `value` on all outputs. Returns whether the module accepted it.
+  /// Drives `value` on all outputs. Returns whether the module accepted the command.
   bool drive(std::uint16_t value) {
     const Bytes reply = bench.exchange(drive_frame(value));
     return ascii() ? reply == text(">") : reply.size() == 8 && reply[1] == 0x0F;
@@ -94,9 +95,9 @@ class WatchedModule : public EitherProtocol {
   }
   /// Sends a host OK and returns the time at which the module has received it.
   Instant host_ok() { return receives(framed("~**", {1, 0x03, 0x30, 0x38, 0, 0})); }
-  /// Sends a frame and returns the time at which the module has received it: for Modbus the end of the
-  /// silence after the frame, for ASCII the middle of the last stop bit, at which the UART reports a
-  /// character.
+  /// Sends a frame, waits until the last bit is sent, and returns the time at which the module has received
+  /// the frame. For Modbus, this time is the end of the silence after the frame. For ASCII, it is the middle
+  /// of the stop bit of the last character, when the UART reports the character.
   Instant receives(const Bytes& frame) {
     bench.line.send(frame);
     while (bench.line.sending()) {
@@ -104,7 +105,8 @@ class WatchedModule : public EitherProtocol {
     }
     return bench.line.sent() + over_behind_its_last_bit();
   }
-  /// Waits until a host OK that the test sends immediately would end `phase` after a tick.
+  /// Waits for the moment to send a host OK: if the test sends it immediately after this call, the module has
+  /// received it `phase` after a tick.
   void wait_until_a_host_ok_is_over_behind_a_tick(Instant phase) {
     constexpr unsigned kAscii = 4;
     constexpr unsigned kModbus = 8;
@@ -128,7 +130,7 @@ class WatchedModule : public EitherProtocol {
 };
 
 /// Runs until `condition` is true, and checks it after every `step`. Returns false if the condition is not
-/// true within a second.
+/// true within a second of simulated time.
 template <class Condition>
 bool runs_until(BoardBench& bench, Condition condition, Instant step) {
   const Instant gives_up = bench.timeline.now() + std::chrono::seconds(1);
@@ -157,8 +159,8 @@ inline const char* name_of(Doing doing) {
   return "";
 }
 
-/// Starts this activity of the module. For a store, sends a command that sets the name, or in Modbus the
-/// timeout of the host watchdog.
+/// Makes the module start this activity, and returns during the activity. To make the module write to the
+/// EEPROM, sends a request that sets the name (in ASCII) or the timeout of the host watchdog (in Modbus).
 inline void make_it(WatchedModule& module, Doing doing) {
   BoardBench& bench = module.bench;
   const WatchedModule::Bytes harmless = module.framed("$01M", {1, 0x11});
@@ -194,7 +196,7 @@ inline void make_it(WatchedModule& module, Doing doing) {
   }
 }
 
-/// A test of an image whose module uses one of the protocols.
+/// The fixture of tests whose parameter is an image and the protocol of its module.
 class WatchedImage : public testing::TestWithParam<std::tuple<ImageName, Protocol>> {
  protected:
   [[nodiscard]] ImageName image() const { return std::get<0>(GetParam()); }

@@ -68,10 +68,11 @@ Table table_in(const char* readme, const std::string& head) {
   return found;
 }
 
-/// Returns the table of the board whose first column has this header.
+/// Returns the table of the board under test. `head` is the header of the first column of the table.
 Table table_of(const std::string& head) {
 #ifdef EX9000_BASE_README
-  // The README of the board contains only the rows that differ from those of another board.
+  // The README of the board contains only the rows that differ from the rows of another board, on which this
+  // board is based.
   Table found = table_in(EX9000_BASE_README, head);
   for (const Row& row : table_in(EX9000_BOARD_README, head)) {
     const auto same = std::find_if(found.begin(), found.end(),
@@ -96,7 +97,7 @@ std::string output_label(const Model& model, unsigned channel) {
   return is_relay ? "RL" + std::to_string(channel + 1) : "DO" + std::to_string(channel);
 }
 
-/// Returns the terminal at each pin of a model.
+/// Returns the terminal of the model at each pin that the model uses, by pin.
 std::map<std::string, std::string> terminals_of(const Model& model) {
   std::map<std::string, std::string> terminals;
   const std::vector<std::string> outputs = names_of(kOutputs);
@@ -157,7 +158,7 @@ TEST(Wiring, TheReadmeListsThePinsOfTheCommonSignals) {
   EXPECT_EQ(written, expected);
 }
 
-TEST(Wiring, NoPinHasTwoFunctions) {
+TEST(Wiring, TheOutputPinsAndTheSignalPinsAreDistinct) {
   std::set<std::string> pins;
   const auto add = [&pins](const std::string& pin) { EXPECT_TRUE(pins.insert(pin).second) << pin; };
   for (const std::string& pin : names_of(kOutputs)) {
@@ -245,7 +246,7 @@ TEST(Wiring, EveryPositionInTheTextMatchesItsPin) {
   int named = 0;
   for (auto open = text.find(" (GP"); open != std::string::npos; open = text.find(" (GP", open + 1)) {
     const auto start = text.rfind(' ', open - 1) + 1;
-    const std::size_t position = std::stoul(text.substr(start, open - start));  // of "position 4 (GP2)"
+    const std::size_t position = std::stoul(text.substr(start, open - start));  // "4" of "position 4 (GP2)"
     EXPECT_EQ(kPositions.at(position - 1), text.substr(open + 2, text.find(')', open) - open - 2))
         << position;
     ++named;

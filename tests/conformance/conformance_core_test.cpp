@@ -14,7 +14,7 @@
 namespace ex9000 {
 namespace {
 
-TEST(Conformance, TheCorePassesEveryTranscriptOnEveryModelItNames) {
+TEST(Conformance, TheCorePassesAllTranscriptsWhichCoverAllModelsRowsRefusalsAndVerdicts) {
   const std::vector<std::string> files = play::transcript_files(EX9000_CONFORMANCE_DIR);
   ASSERT_FALSE(files.empty());
   std::size_t runs = 0;

@@ -1,4 +1,5 @@
-// Plays all transcripts of the manuals' models on their firmware images, on the emulated reference board.
+// Plays all transcripts of the manuals' models on their firmware images, on the reference board (lm3s6965evb)
+// in QEMU.
 #include <gtest/gtest.h>
 #include <sched.h>
 
@@ -27,7 +28,7 @@ std::uint64_t pulses_of(const play::Transcript& transcript) {
   return pulses;
 }
 
-/// Returns the approximate duration of the transcript.
+/// Returns the approximate duration of the transcript in emulated time.
 std::chrono::microseconds duration_of(const play::Transcript& transcript) {
   constexpr std::chrono::microseconds kPulse{100};
   return runner::waits_of(transcript) + kPulse * static_cast<std::int64_t>(pulses_of(transcript));

@@ -1,6 +1,6 @@
 // Plays the transcripts of the manuals' models on the images for the Pico, in an emulator and in virtual
-// time. All these images store their settings in the flash. One model also runs with its settings in an
-// EEPROM.
+// time. These images store their settings in the flash. For one model, the test also plays the transcripts on
+// an image that stores its settings in an EEPROM.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::string_view kModelWithEeprom = "EX9043D-M";
 
-/// Returns the virtual time that the runs have taken.
+/// Plays the runs. Returns the virtual time of the runs in which all steps have passed.
 std::chrono::nanoseconds play_all(std::vector<Played>& runs, pico::Memory memory) {
   std::atomic<std::size_t> next{0};
   std::atomic<std::int64_t> played{0};

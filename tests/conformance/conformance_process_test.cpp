@@ -1,4 +1,4 @@
-// Plays all transcripts on the running simulator in stepped time, over its pseudo-terminal and over TCP.
+// Plays all transcripts on the running simulator in stepped time, over pseudo-terminals and over TCP.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,10 +16,10 @@ namespace {
 
 using Over = system::TranscriptLines::Over;
 
-constexpr std::size_t kLines = 12;  ///< in one simulator process
+constexpr std::size_t kLines = 12;  ///< the maximum in one simulator process
 
 /// Plays the transcripts one after another in one simulator, each on its own line. If the simulator does not
-/// start or does not accept a connection, all of them fail.
+/// start or does not accept a connection, all these transcripts fail.
 void play_on_a_simulator(Played* runs, std::size_t count, Over over) try {
   std::vector<const play::Transcript*> transcripts;
   for (std::size_t each = 0; each < count; ++each) {

@@ -24,9 +24,10 @@ namespace {
 /// The other folders mostly test the contents of replies.
 constexpr std::array<const char*, 4> kFoldersOfDrivers{"framing", "init", "inputs", "persistence"};
 
-/// Returns whether the test plays a file on an image. All transcripts run on the LaunchPad's images, because
-/// no emulator supports that board. The other board's images use the same drivers, so only the folders above
-/// run there, unless EX9000_TRANSCRIPTS=all is set in the environment.
+/// Returns whether the test plays a file on an image. All files run on the images of the LaunchPad
+/// (ek-tm4c123gxl), because no emulator supports this board. The images of the lm3s6965evb use the same
+/// drivers, so only the files in kFoldersOfDrivers run on them, unless EX9000_TRANSCRIPTS=all is set in the
+/// environment.
 bool plays(const Image& image, const std::string& file) {
   const char* wanted = std::getenv("EX9000_TRANSCRIPTS");
   const std::string folder = std::filesystem::path(file).parent_path().filename();
@@ -54,7 +55,7 @@ TEST_P(ConformanceOnRegisters, PassesTheTranscriptsOfItsModel) {
       EXPECT_TRUE(result.passed()) << result.failure;
       EXPECT_EQ(result.steps, transcript.steps.size());
       BoardBench& bench = target.bench();
-      EXPECT_EQ(bench.line.bits_lost, 0U) << "bits sent before driver enable was on";
+      EXPECT_EQ(bench.line.bits_lost, 0U) << "bits sent while driver enable was off";
       EXPECT_EQ(bench.line.let_go_early, 0U);
       EXPECT_EQ(bench.line.let_go_late, 0U);
       EXPECT_FALSE(bench.pins.any_was_shorted());

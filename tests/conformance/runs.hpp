@@ -1,4 +1,4 @@
-// Plays transcripts in parallel and compares the result with the core.
+// Plays transcripts in parallel and compares the results with those of the core.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -70,7 +70,8 @@ inline void play_run(Played& run, play::Target& target) {
   }
 }
 
-/// Calls `player` with the numbers 0 to `count` - 1, each in its own thread, and waits for all.
+/// Calls `player` with the numbers 0 to `count` - 1, each in its own thread, and waits until all calls
+/// have returned.
 template <class Player>
 void in_parallel(unsigned count, Player player) {
   std::vector<std::thread> players;
@@ -84,7 +85,7 @@ void in_parallel(unsigned count, Player player) {
 
 inline unsigned processors() { return std::max(1U, std::thread::hardware_concurrency()); }
 
-/// Expects that all runs have passed, with as many steps as on the core.
+/// Expects that all runs have passed, and that their total number of steps is the same as on the core.
 inline void expect_the_result_of_the_core(const char* name, const std::vector<Played>& runs) {
   std::size_t steps = 0;
   std::size_t core_steps = 0;

@@ -1,9 +1,11 @@
 // Runs the examples in each section of the documents that has a `text` block. A `sh` block that starts the
 // simulator runs in one terminal. All other `sh` and `python` blocks run in a second terminal, and the `text`
 // blocks are their expected output. A `json` block is the content of the file `bus.json`. Apart from this
-// file, the working directory contains only links to `boards` and `build`, because the images are there. For
-// the line `sim/run`, the test runs only the last command of sim/run. The script itself also builds the
-// simulator; tests/first-command runs it.
+// file, the working directory at first contains only links to `boards` and `build`, because the examples use
+// the programs and images there. For the line `sim/run`, the test runs only the last command of sim/run. The
+// script itself also installs packages and builds the simulator; tests/first-command runs the script.
+// Another test in this file checks that the tables of the documents list all options, control commands and
+// faults.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -39,7 +41,7 @@ struct Section {
   std::vector<Block> blocks;
 };
 
-/// Returns paths relative to the project's root.
+/// Returns the paths of the documents, relative to the project's root.
 std::vector<std::string> documents() {
   std::vector<std::string> paths;
   std::istringstream list(EX9000_DOCUMENTS);
@@ -112,8 +114,8 @@ bool starts_the_simulator(const Block& block) {
   return begins_with("ex9000-sim ") && !begins_with("ex9000-sim describe") && !begins_with("ex9000-sim play");
 }
 
-/// The second terminal. All blocks of a section run in one shell, because later blocks use functions and jobs
-/// of earlier ones.
+/// The second terminal. All its blocks run in one shell, because later blocks use functions and jobs of
+/// earlier blocks.
 class Shell {
  public:
   void paste(const Block& block) {
@@ -187,7 +189,7 @@ void paste_all(std::vector<Section> pasted) {
   }
 }
 
-TEST(Documents, ExamplesPrintTheExpectedOutput) {
+TEST(Documents, ExamplesWithoutPymodbusPrintTheExpectedOutput) {
   std::vector<Section> pasted = sections_with_output();
   pasted.erase(std::remove_if(pasted.begin(), pasted.end(), requires_pymodbus), pasted.end());
   EXPECT_GE(pasted.size(), 14U);
@@ -204,7 +206,7 @@ TEST(Documents, ExamplesOfPymodbusPrintTheExpectedOutput) {
   paste_all(std::move(pasted));
 }
 
-/// Adds the code spans in a table cell, without the escapes of the table syntax.
+/// Adds the code spans in a table cell to `codes`, without the escapes of the table syntax.
 void add_codes(const std::string& cell, std::set<std::string>& codes) {
   for (auto open = cell.find('`'); open != std::string::npos;
        open = cell.find('`', cell.find('`', open + 1) + 1)) {
@@ -214,8 +216,8 @@ void add_codes(const std::string& cell, std::set<std::string>& codes) {
   }
 }
 
-/// Returns the code spans in the first cell of each table row, for example `N power on|off`, without the
-/// escapes of the table syntax.
+/// Returns the code spans in the first cell of each table row that begins with a code span, for example
+/// `N power on|off`, without the escapes of the table syntax.
 std::set<std::string> rows() {
   std::set<std::string> rows;
   for (const std::string& document : documents()) {

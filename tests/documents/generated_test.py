@@ -1,4 +1,8 @@
-"""Tests that each generated part of a document is up to date. toolchain/update-documents updates all of them."""
+"""Tests that generated parts of documents and the wiring picture of the Pico are up to date.
+
+Other tests check firmware/registers.md and sim/docs/bus-file.schema.json. toolchain/update-documents updates all these
+parts and files.
+"""
 
 from __future__ import annotations
 

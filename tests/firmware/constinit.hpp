@@ -1,4 +1,4 @@
-// EX9000_CONSTINIT marks a variable that must have its initial value before any code of the image has run.
+// EX9000_CONSTINIT marks a variable that must have its initial value before any code of the program runs.
 #pragma once
 
 /// Like C++20's constinit: the compiler rejects a variable that it cannot initialise at compile time.

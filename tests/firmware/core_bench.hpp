@@ -1,5 +1,4 @@
-// The core without a simulated line, for tests that send thousands of frames: a Modbus module that receives
-// whole frames.
+// A Modbus module without a board and without a simulated line, for tests that send many frames.
 #pragma once
 
 #include <algorithm>
@@ -27,8 +26,8 @@ class CoreBench {
 
   Module& module() { return module_; }
   [[nodiscard]] Time now() const { return now_; }
-  /// Advances the clock by `time`, then runs the main loop once. `time` must not skip a moment at which
-  /// something is due.
+  /// Advances the clock by `time`, then runs one pass of the main loop. This pass also processes the events
+  /// that became due during `time`.
   void pass(Duration time) {
     now_ = now_ + time;
     module_.poll_panel(false, now_);
@@ -54,8 +53,8 @@ class CoreBench {
     }
     silence();
   }
-  /// Runs the main loop until the received frame is processed and stored. Returns the reply with its CRC;
-  /// empty if there is no reply.
+  /// Runs the main loop until the module has processed the received frame and has stored the settings that
+  /// the frame changes. Returns the reply with its CRC; empty if there is no reply.
   FrameBytes answer() {
     module_.step(now_);
     do_memory_jobs();
@@ -67,7 +66,7 @@ class CoreBench {
     }
     return answer;
   }
-  /// Sends a frame without its CRC (the bench adds it) and returns the reply as `answer` does.
+  /// Appends the CRC to `frame` and passes the result to the module. Returns the reply as `answer` does.
   FrameBytes ask(const FrameBytes& frame) {
     hear(with_crc(frame));
     return answer();

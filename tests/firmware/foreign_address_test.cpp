@@ -1,5 +1,6 @@
-// Tests that a module never replies to a request for another address. The requests combine every other
-// address with every command and every function code. The broadcasts are left out.
+// Tests that a module ignores requests for other addresses: it sends no reply, drives no output and stores
+// nothing. The tests combine every other address with every DCON command and with every Modbus function code.
+// They send no broadcasts.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -16,8 +17,8 @@ using Bytes = ModuleBench::Bytes;
 
 constexpr unsigned kOwnAddress = 0x35;
 
-/// Returns arguments for the command. They are valid, so that only the address is wrong, except for the
-/// commands of firmware/extensions.md.
+/// Returns arguments for the command. They are valid on a model that has the command, except for the commands
+/// of firmware/extensions.md.
 std::string arguments(const dcon::Command& command) {
   if (command.id == "set-configuration") {
     return "02400600";
@@ -79,8 +80,8 @@ void every_function_to_every_other_address(const char* model) {
       if (address == kOwnAddress) {
         continue;
       }
-      // Depending on the function, the data means coil 0000 on, the value 0xFF00 for register 0000, or the
-      // quantity 0xFF00. The module must ignore the request whether or not it is valid.
+      // For function 05, this data means coil 0000 on. With many other functions, the request is invalid. The
+      // module must ignore valid and invalid requests.
       Bytes frame{static_cast<std::uint8_t>(address), static_cast<std::uint8_t>(function), 0, 0, 0xFF, 0};
       if (function == 0x0F) {
         frame = {frame[0], frame[1], 0, 0, 0, 8, 1, 0xFF};

@@ -1,1 +1,1 @@
-"""Checks size, worst-case stack and symbols of a firmware image."""
+"""Checks the size, the worst-case stack and the contents of a firmware image, and how long it disables interrupts."""

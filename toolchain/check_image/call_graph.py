@@ -14,14 +14,15 @@ _STACK = re.compile(r"(\d+) bytes \((static|dynamic|dynamic,bounded)\)$")
 
 
 class NotACallGraph(Exception):
-    """The text does not have the format of GCC 12. The message is the unexpected line."""
+    """The text does not have the format of GCC 12. The message contains the unexpected line."""
 
 
 @dataclass(frozen=True)
 class Title:
-    """The name of a function in a call graph. The name of a static function is preceded by its source file."""
+    """The name of a function in a call graph. GCC writes the source file of the translation unit before the name of a
+    function that is static, inline or an instance of a template."""
 
-    file: str  # empty if the name is global
+    file: str  # empty for other functions
     name: str
 
     @staticmethod
@@ -68,7 +69,7 @@ def _parse_node(line: str, records: dict[str, Record]) -> None:
         raise NotACallGraph(line)
     label = match.group(2).split("\\n")
     stack = _STACK.match(label[2]) if len(label) > 2 else None
-    if stack:  # a node without a stack is a function that this unit calls, but does not contain
+    if stack:  # a node without a stack is INDIRECT, or a function that this unit calls, but does not contain
         records[match.group(1)] = Record(
             title=Title.parse(match.group(1)),
             location=label[1],

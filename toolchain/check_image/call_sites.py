@@ -1,8 +1,8 @@
-"""Finds the functions that a call through a pointer can reach, from the types in GCC's dump.
+"""Decides which functions a call through a pointer can reach, from the types in GCC's dump.
 
 The call graph contains only the location of such a call. The dump of the optimised program
-(-fdump-tree-optimized-lineno) also contains the type of the function pointer, or the slot of the virtual table. A type
-that this module does not understand excludes no function.
+(-fdump-tree-optimized-lineno) also contains the type of the function pointer, or the slot of the virtual table. A
+parameter type that this module does not understand counts as equal to every type.
 """
 
 from __future__ import annotations
@@ -14,8 +14,8 @@ from check_image.functions import Function
 
 _HEADER = re.compile(r";; Function .*\((\S+), funcdef_no=")
 _LOCATION = re.compile(r"^  \[([^]]+:\d+:\d+)\] ")
-# `Refusal (*<T44ec>) (const struct State &, struct Bytes) _5;`, or for a pointer to a member function
-# `void Thing::<T2b8> (struct Thing *) * f;`
+# The declaration of a pointer to a function, `Refusal (*<T44ec>) (const struct State &, struct Bytes) _5;`, or to a
+# member function, `void Thing::<T2b8> (struct Thing *) * f;`.
 _POINTER = re.compile(r"^  .*?(?:\(\*<T\w+>\) \((.*)\)|::<T\w+> \((.*)\) \*) ([\w.]+);$")
 _VIRTUAL_CALL = re.compile(r"OBJ_TYPE_REF\(.*;\((const )?[^)]*\)[^>]*->(\d+)B?\) \((.*)\)")
 _POINTER_CALL = re.compile(r"(?:^| = |\] )([\w.]+)(?:\(D\))? \((.*)\);")
@@ -23,10 +23,10 @@ _POINTER_CALL = re.compile(r"(?:^| = |\] )([\w.]+)(?:\(D\))? \((.*)\);")
 
 @dataclass(frozen=True)
 class PointerCall:
-    """A call through a pointer to a function."""
+    """A call through a pointer to a function or to a member function."""
 
-    parameters: tuple[str, ...] | None  # None if only their number is known
-    count: int
+    parameters: tuple[str, ...] | None  # types; None if only the number of arguments is known
+    count: int  # number of arguments
 
     def can_reach(self, target: Function) -> bool:
         theirs = parameters_of(target.readable)
@@ -35,13 +35,13 @@ class PointerCall:
         ours = self.parameters if self.parameters is not None else ("",) * self.count
         if _agree(ours, theirs):
             return True
-        # The type of a pointer to a member function begins with the object.
+        # For a pointer to a member function, the first parameter is the object.
         return len(ours) > 0 and _may_be_object(ours[0]) and _agree(ours[1:], theirs)
 
 
 @dataclass(frozen=True)
 class VirtualCall:
-    """A call of a virtual function. `slot` is the slot in the table of its class, from 0."""
+    """A call of a virtual function. `slot` is the index of the function in the virtual table, from 0."""
 
     slot: int
     is_const: bool
@@ -58,7 +58,7 @@ CallSite = PointerCall | VirtualCall
 
 
 def parse(text: str) -> dict[tuple[str, str], set[CallSite]]:
-    """Returns the calls through pointers in one translation unit, by mangled caller and location."""
+    """Returns the calls through pointers in one translation unit, by the mangled name of the caller and by location."""
     sites: dict[tuple[str, str], set[CallSite]] = {}
     caller = ""
     pointers: dict[str, tuple[str, ...]] = {}
@@ -84,7 +84,7 @@ def _call_site(line: str, pointers: dict[str, tuple[str, ...]]) -> CallSite | No
     call = _POINTER_CALL.search(line)
     if call:
         name, arguments = call.group(1), split_list(call.group(2))
-        variable, numbered = re.subn(r"_\d+$", "", name)  # names of values end with a number
+        variable, numbered = re.subn(r"_\d+$", "", name)  # the name of an SSA value ends with a number
         parameters = pointers.get(name, pointers.get(variable))
         if numbered or parameters is not None:
             return PointerCall(parameters, len(arguments))
@@ -92,7 +92,8 @@ def _call_site(line: str, pointers: dict[str, tuple[str, ...]]) -> CallSite | No
 
 
 def split_list(text: str) -> tuple[str, ...]:
-    """Splits a list at its top-level commas: `a, b<c, d>, e (f, g)` has three parts."""
+    """Splits a list at the commas outside of brackets: `a, b<c, d>, e (f, g)` has three parts. An empty list and `void`
+    have none."""
     parts, depth, part = [], 0, ""
     for character in text:
         depth += (character in "(<[{") - (character in ")>]}")
@@ -106,7 +107,8 @@ def split_list(text: str) -> tuple[str, ...]:
 
 
 def parameters_of(readable: str) -> tuple[str, ...] | None:
-    """Returns the parameter types of a demangled function, or None if the name does not contain them, as in C."""
+    """Returns the parameter types in a demangled name, or None if the name contains none, like the name of a C
+    function."""
     text = readable.removesuffix(" const")
     if not text.endswith(")"):
         return None
@@ -122,12 +124,13 @@ def parameters_of(readable: str) -> tuple[str, ...] | None:
 class _Shape:
     """The part of a type that the dump and the demangled name both contain."""
 
-    kind: str  # "class", "number", or "named": a class or an enumeration
+    kind: str  # "class"; "number"; or "named" for a class or an enumeration in a demangled name
     name: str
     indirections: str  # `*` and `&`
 
 
-# The words of numeric types in the dump and in demangled names, and newlib's definitions of the types in <cstdint>.
+# The words of numeric types in the dump and in demangled names, and the definitions of the standard integer types on
+# Arm with newlib.
 _NUMBERS = {"bool", "char", "short", "int", "long", "signed", "unsigned", "float", "double", "wchar_t"}
 _ALIASES = {
     "int8_t": "signed char",
@@ -163,7 +166,7 @@ def _may_be_same(ours: _Shape | None, theirs: _Shape | None) -> bool:
 
 def _shape_in_dump(text: str) -> _Shape | None:
     """Returns the shape of a type in the dump, for example `const struct State &`, `unsigned int`, `uint16_t`, or None
-    if it can be any type, for example an alias."""
+    if it can be any type, for example because it is an alias that is not in _ALIASES."""
     name, indirections = _take_apart(text)
     if "(" in text:
         return None
@@ -174,8 +177,8 @@ def _shape_in_dump(text: str) -> _Shape | None:
 
 
 def _shape_demangled(text: str) -> _Shape | None:
-    """Returns the shape of a demangled type, for example `ex9000::State const&`, `unsigned short`, or None if it is not
-    a simple type."""
+    """Returns the shape of a demangled type, for example `ex9000::State const&`, `unsigned short`, or None if the type
+    contains parentheses, for example a pointer to a function."""
     name, indirections = _take_apart(text)
     if "(" in text:
         return None
@@ -185,8 +188,8 @@ def _shape_demangled(text: str) -> _Shape | None:
 
 
 def _number(name: str, indirections: str) -> _Shape | None:
-    """Returns the shape of a numeric type, or None for other types. `long unsigned int` and `unsigned long` are
-    equal."""
+    """Returns the shape of a numeric type, or None for other types. `long unsigned int` and `unsigned long` have equal
+    shapes."""
     words = name.split()
     if not words or not set(words) <= _NUMBERS:
         return None

@@ -1,4 +1,4 @@
-"""Counts for how many instructions interrupts are disabled: from each `cpsid i` to the next `cpsie i`."""
+"""Counts for how many instructions interrupts are disabled: between each `cpsid i` and the next `cpsie i`."""
 
 from __future__ import annotations
 
@@ -6,8 +6,8 @@ import re
 
 from check_image.disassembly import Disassembly, Instruction
 
-# If an interrupt waits longer than one character, 86.8 us at 115200 baud, a byte can be lost. This number of
-# instructions takes less than 2 us on all boards.
+# If an interrupt waits longer than one character, 86.8 us at 115200 baud, a byte can be lost. `MOST` instructions
+# take less than 2 us on all boards.
 MOST = 20
 
 _DISABLE, _ENABLE = "cpsid", "cpsie"
@@ -19,8 +19,9 @@ class _NeverEnabled(Exception):
 
 
 class DisabledInterrupts:
-    """`longest`: number of instructions between `cpsid i` and `cpsie i` on the longest path. `problems`: code whose
-    length cannot be calculated."""
+    """`longest`: number of instructions between `cpsid i` and `cpsie i` on the longest path. `problems`: messages
+    about code that writes to an interrupt mask with `msr`, and about interrupts that are disabled for an unknown number
+    of instructions or for more than MOST."""
 
     def __init__(self, disassembly: Disassembly) -> None:
         self._code = disassembly.instructions
@@ -47,7 +48,7 @@ class DisabledInterrupts:
             self.problems.append(f"{disabled_at:#x}: interrupts are disabled, and then {reason}; use cpsie i before")
 
     def _longest_after(self, address: int, way: list[int]) -> int:
-        """Returns the maximum number of instructions between this one and the `cpsie i`."""
+        """Returns the maximum number of instructions between the one at `address` and the next `cpsie i`."""
         if address in way:
             raise _NeverEnabled(f"there is a loop at {address:#x}")
         if address not in self._known:

@@ -1,4 +1,4 @@
-"""Extracts from the machine code where it branches and how far it moves the stack pointer."""
+"""Extracts from the machine code its branches, the addresses that it loads, and its use of the stack."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from pathlib import Path
 
 from check_image.functions import Function
 
-# objdump prints an object in a code section as characters. Such a line matches only if the characters happen to look
-# like a mnemonic without operands.
+# objdump prints a constant in a code section as characters. Such a line matches only if the characters look like a
+# mnemonic without operands.
 _LINE = re.compile(r"^ *([0-9a-f]+):\t(\.?[a-z][a-z0-9.]*)(?:\t([^@;]*)|$)")
 _CONDITIONS = "eq|ne|cs|hs|cc|lo|mi|pl|vs|vc|hi|ls|ge|lt|gt|le"
 _BRANCH = re.compile(rf"(b|bl|blx|cbz|cbnz|b({_CONDITIONS})|bl({_CONDITIONS}))(\.[nw])?")
@@ -41,7 +41,7 @@ class Instruction:
     @property
     def is_indirect(self) -> bool:
         """Returns whether the instruction calls or jumps to a function whose address is in a register or in memory.
-        Returns False for a return."""
+        Returns False for a return and for a jump through a table."""
         if self.is_call:
             return self.branch_target is None
         if self.mnemonic.startswith("bx"):
@@ -77,7 +77,7 @@ class Instruction:
 
 
 class StackPointerUnknown(Exception):
-    """An instruction moves the stack pointer by an amount that is known only at run time."""
+    """The stack depth is known only at run time, or is more than 64 KiB, for example because a loop pushes."""
 
 
 class Disassembly:
@@ -120,9 +120,10 @@ class Disassembly:
 def stack_of(code: list[Instruction]) -> int:
     """Returns the maximum number of bytes that a function itself has on the stack, without the functions that it calls.
 
-    Follows the code along its branches. The code after a table jump is reachable only through the table, so it starts
-    with the stack depth of the jump. Raises StackPointerUnknown if an instruction moves the stack pointer by an amount
-    that is known only at run time, or if a loop pushes.
+    Follows the code along its branches. Code that is not reached in this way counts as a target of the last table jump
+    before it, and starts with the stack depth of this jump, or with 0 if there is no table jump. Raises
+    StackPointerUnknown if an instruction moves the stack pointer by an amount that is known only at run time, or if the
+    depth exceeds 64 KiB, for example because a loop pushes.
     """
     following = {a.address: b.address for a, b in zip(code, code[1:])}
     by_address = {instruction.address: instruction for instruction in code}
@@ -154,9 +155,10 @@ def stack_of(code: list[Instruction]) -> int:
 
 
 def pushed_by(instruction: Instruction) -> int:
-    """Returns the number of bytes by which the stack grows, negative if it shrinks."""
+    """Returns the number of bytes by which the stack grows, negative if it shrinks. Raises StackPointerUnknown if this
+    number is known only at run time."""
     growth = _growth(instruction.mnemonic.split(".")[0], instruction.operands)
-    # A conditional pop is part of a conditional return. If the code continues, nothing was popped.
+    # A conditional pop is part of a conditional return. If the code continues, it has popped nothing.
     return max(growth, 0) if _CONDITIONAL_POP.match(instruction.mnemonic) else growth
 
 
@@ -178,7 +180,7 @@ def _growth(mnemonic: str, operands: str) -> int:
 
 
 def _count(registers: re.Match[str] | None) -> int:
-    """Returns the number of registers in a list. objdump writes single registers, or a range such as r4-r7."""
+    """Returns the number of registers in a list. A part of the list is a register, or a range such as r4-r7."""
     assert registers is not None
     count = 0
     for part in registers.group(1).split(","):

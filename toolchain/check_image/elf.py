@@ -1,4 +1,4 @@
-"""Reads the sections and symbols of a linked 32-bit little-endian ELF file (ELF 1.2, book I; AAELF32)."""
+"""Reads the sections and symbols of a linked 32-bit little-endian ELF file for Arm (ELF 1.2, book I; AAELF32)."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class Section:
     size: int
     allocated: bool
     executable: bool
-    loaded: bool  # its content is in the file, so it requires flash
+    loaded: bool  # allocated, and its content is in the file, so it requires flash
     data: bytes  # empty if not loaded
 
 
@@ -44,7 +44,7 @@ class Symbol:
     is_object: bool
     has_type: bool
     is_local: bool
-    file: str  # source file of a local symbol, as passed to the compiler; empty if unknown
+    file: str  # name of the source file of a local symbol; empty for a global symbol, or if unknown
     section: Section | None  # None if absolute or undefined
     is_undefined: bool
 
@@ -65,7 +65,7 @@ class Elf:
                 self._read_symbols(header, headers[header[6]][4])
 
     def word_at(self, address: int) -> int | None:
-        """Returns the loaded word at an address, or None if there is none."""
+        """Returns the word at an address, or None if no loaded section contains it."""
         for section in self.sections:
             if section.loaded and section.address <= address <= section.address + section.size - 4:
                 return int(struct.unpack_from("<I", section.data, address - section.address)[0])

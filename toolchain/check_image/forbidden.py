@@ -1,5 +1,5 @@
-"""Finds forbidden contents of an image: undefined symbols, a heap, exceptions, floating point, 64-bit division,
-code that runs before main, and texts for people."""
+"""Finds forbidden contents of an image: undefined symbols, a heap, exceptions, unwind tables, the C++ run-time library,
+floating point, 64-bit division, globals that are initialised at run time, and texts for people."""
 
 from __future__ import annotations
 
@@ -31,8 +31,8 @@ _SECTIONS = [
         (r"\.(preinit_array|init_array|fini_array|ctors|dtors)", "globals initialised at run time"),
     )
 ]
-# One text from each table of the core: commands, functions, coils and registers. These texts are only for people, so an
-# image must not contain them.
+# Texts of a command, a function and a coil from the tables of the core. Such texts are only for people, so an image
+# must not contain them.
 _TEXTS = (b"clear both latches", b"Write Single Coil", b"host watchdog timeout status")
 
 
@@ -53,11 +53,12 @@ def problems(elf: Elf, records: Iterable[Record], disassembly: Disassembly) -> l
                 found.append(
                     f"section {section.name}: contains the text '{text.decode()}'; an image must not contain it"
                 )
-    # A linker script without .init_array silently discards these functions, but the compiler's records contain them.
+    # The linker silently discards the functions that initialise globals, unless its script keeps .init_array. The
+    # compiler's records contain these functions.
     for record in records:
         if _what(record.title.name) == "globals initialised at run time":
             found.append(f"{record.location}: globals initialised at run time")
-    # With a floating-point unit, an exception frame can also be longer than this tool calculates.
+    # If code uses a floating-point unit, an exception frame can be longer than check-image calculates.
     if any(each.mnemonic.startswith("v") and each.operands for each in disassembly.instructions.values()):
         found.append("instructions of a floating-point unit: floating point; compile with -mfloat-abi=soft")
     return found

@@ -39,7 +39,8 @@ class Functions:
         self._globals: dict[str, Function] = {}
         for index, start in enumerate(self._starts):
             here = by_address[start]
-            # The name from the compiler takes precedence over a label from the assembler.
+            # A function of the compiler has a size, so it takes precedence over a label of the assembler. If the sizes
+            # are equal, a global name takes precedence over a local one.
             first = max(here, key=lambda symbol: (symbol.size, not symbol.is_local))
             function = Function(
                 name=first.name,
@@ -59,11 +60,11 @@ class Functions:
         return iter(self._by_address.values())
 
     def at(self, address: int) -> Function | None:
-        """Returns the function that begins at an address."""
+        """Returns the function that begins at an address, or None if there is none."""
         return self._by_address.get(address)
 
     def around(self, address: int) -> Function | None:
-        """Returns the function whose code contains an address."""
+        """Returns the function whose code contains an address, or None if there is none."""
         index = bisect.bisect_right(self._starts, address) - 1
         function = self._by_address[self._starts[index]] if index >= 0 else None
         return function if function is not None and address < function.end else None
@@ -72,10 +73,10 @@ class Functions:
         return self._globals.get(name)
 
     def local_named(self, name: str, file: str) -> Function | None:
-        """Returns the static function of a source file, or None if there is none.
+        """Returns the static function with this name in a source file, or None if there is none.
 
-        If only one static function has this name, returns this function without a comparison of the files. Symbols
-        contain only the name of the file, not its folder.
+        If only one static function has this name, returns this function without a comparison of the files. Otherwise
+        compares the names of the files without their folders, because symbols do not contain the folders.
         """
         there = self._locals.get(name, [])
         if len(there) == 1:
@@ -97,7 +98,7 @@ class Functions:
 
 def demangle(names: list[str]) -> dict[str, str]:
     """Returns the demangled form of each mangled name."""
-    # One name on each line. c++filt cannot read a name with the suffix of a clone.
+    # c++filt reads one name from each line. It cannot read the suffix of a clone, such as .constprop.0.
     plain = [name.split(".", 1)[0] for name in names]
     done = subprocess.run(
         ["arm-none-eabi-c++filt"], input="\n".join(plain), capture_output=True, text=True, check=True
@@ -106,8 +107,8 @@ def demangle(names: list[str]) -> dict[str, str]:
 
 
 def without_parameters(readable: str) -> str:
-    """Returns the name without parameters and return type: for `a::b(int)::{lambda(int)#1}::operator()(int) const` it
-    returns `a::b::{lambda#1}::operator()`."""
+    """Returns a demangled name without parameters, return type and anonymous namespaces, for example
+    `a::b::{lambda#1}::operator()` for `a::b(int)::{lambda(int)#1}::operator()(int) const`."""
     text = readable.replace("(anonymous namespace)::", "").replace("operator()", "operator\0")
     while (shorter := re.sub(r"\([^()]*\)( const)?", "", text)) != text:
         text = shorter
@@ -117,7 +118,7 @@ def without_parameters(readable: str) -> str:
 
 
 def _function_symbols(elf: Elf) -> list[Symbol]:
-    """Returns functions, and labels of the assembler that are not inside a function."""
+    """Returns the symbols of functions, and of assembler labels that are not inside a function or an object."""
     code = [s for s in elf.symbols if s.section is not None and s.section.executable]
     functions = [s for s in code if s.is_function]
     extents = sorted((s.address, s.address + s.size) for s in code if s.has_type)
@@ -132,6 +133,6 @@ def _function_symbols(elf: Elf) -> list[Symbol]:
 
 
 def _holds(symbol: Symbol) -> bool:
-    """Returns whether code or data follows a label. A symbol of a linker script can be at the end of a section."""
+    """Returns whether code or data follows a label in its section. A label of a linker script can be at the end."""
     section = symbol.section
     return section is not None and section.address <= symbol.address < section.address + section.size

@@ -22,14 +22,15 @@ class Foreign:
     reason: str
 
 
-# The frames are compared with what the instructions push. The calls are taken from the instructions.
+# check-image compares each frame with the number of bytes that the instructions push, and takes the calls from the
+# instructions.
 FOREIGN = {
     "memcpy": Foreign(8, "newlib's, or newlib-nano's: loops, no calls"),
     "memmove": Foreign(16, "newlib's, or newlib-nano's: loops, no calls"),
     "memset": Foreign(16, "newlib's, or newlib-nano's: loops, no calls"),
     "memcmp": Foreign(16, "newlib's, or newlib-nano's: loops, no calls"),
-    "__aeabi_uidiv": Foreign(8, "libgcc's division of a processor without one"),
-    "__aeabi_uidivmod": Foreign(0, "libgcc's: continues with the function before"),
+    "__aeabi_uidiv": Foreign(8, "libgcc's division for a processor without a division instruction"),
+    "__aeabi_uidivmod": Foreign(0, "libgcc's: continues in __aeabi_uidiv"),
     "__aeabi_idiv0": Foreign(0, "libgcc's: returns"),
 }
 
@@ -38,11 +39,11 @@ _NOT_UNDERSTOOD = "moves the stack pointer with '{}'; push, pop, or add or subtr
 
 
 class LinkedGraph:
-    """In `graph`, the address identifies a function: aliases are one function, and equal names in two files are two
-    functions.
+    """In `graph`, the address identifies a function: aliases are one function, and functions with the same name
+    in different files are separate.
 
-    `problems` lists the differences between the compiler's records and the machine code, even in functions that are not
-    reachable.
+    `problems` lists the differences between the compiler's records and the machine code, even in functions that no call
+    reaches.
     """
 
     def __init__(
@@ -64,7 +65,7 @@ class LinkedGraph:
         self.graph: Graph = {}
         self._calls_indirectly: set[int] = set()
         self.pointer_calls: dict[tuple[str, str], list[str]] = {}  # targets of each call, by caller and location
-        self.untyped = 0  # number of these calls that can reach all functions whose address is taken
+        self.untyped = 0  # calls through pointers in no dump: they can reach all functions whose address is taken
         for record in records:
             function = self._find(record.title)
             if function is not None:  # otherwise it was inlined everywhere, or the linker has removed it
@@ -91,7 +92,7 @@ class LinkedGraph:
         for title in record.calls:
             target = self._find(title)
             if target is None and title.name.startswith("__aeabi_"):
-                continue  # after it wrote the record, the compiler removed this call of its run-time library
+                continue  # the compiler removed this call of its run-time library after it had written the record
             if target is None:
                 problem = f"calls {title.name}, which the image does not have; link it"
             else:
@@ -105,7 +106,7 @@ class LinkedGraph:
                 str(self._functions.at(t)) for t in sorted(targets)
             ]
         node = Node(str(function), record.frame, frozenset(calls), problem)
-        before = self.graph.get(function.address)  # an inline function that several units have compiled
+        before = self.graph.get(function.address)  # not None for an inline function that several units have compiled
         self.graph[function.address] = _worse_of(before, node) if before else node
         self.locations[function.address] = record.location
         if record.indirect_calls:
@@ -127,8 +128,8 @@ class LinkedGraph:
         return targets
 
     def _find_taken_addresses(self) -> list[Function]:
-        """Returns the functions whose address is in a table, in the initial value of a variable, in a literal pool, or
-        in a pair of movw and movt."""
+        """Returns the functions whose address is in a table other than the vector table, in the initial value of a
+        variable, in a literal pool, or in a pair of movw and movt."""
         taken = set(self._disassembly.immediate_addresses())
         for section in self._elf.sections:
             if section.loaded and section.name != ".vectors":
@@ -140,8 +141,8 @@ class LinkedGraph:
     def _find_virtual_tables(self) -> list[list[Function]]:
         """Returns the functions of each virtual table, by slot (Itanium C++ ABI 2.5.2).
 
-        A table begins with two words that are not functions. The table of a class with several bases consists of
-        several such tables.
+        A table begins with two words that are not functions. The table of a class with several polymorphic bases
+        consists of several such tables.
         """
         tables = []
         for symbol in self._elf.symbols:
@@ -187,7 +188,7 @@ class LinkedGraph:
             )
 
     def _targets_in_code(self, function: Function, code: list[Instruction]) -> list[Function]:
-        """Returns the other functions that the code calls or jumps to, each once, in the order of the code."""
+        """Returns the other functions that the code calls or jumps to directly, each once, in the order of the code."""
         targets: dict[int, Function] = {}
         for instruction in code:
             target = instruction.branch_target
@@ -200,7 +201,8 @@ class LinkedGraph:
         return list(targets.values())
 
     def _behind_veneer(self, function: Function) -> Function:
-        """Returns the target of `function` if it is a veneer, otherwise `function`.
+        """Returns the target of `function` if it is a veneer and exactly one function has the name of the target,
+        otherwise `function`.
 
         The linker inserts a veneer if a function is beyond the range of a branch.
         """
@@ -219,7 +221,7 @@ class LinkedGraph:
 
 
 def _worse_of(a: Node, b: Node) -> Node:
-    """Returns a node that is an upper bound for both records, because either can be the code in the image."""
+    """Returns a node that is an upper bound for both nodes, because the image can contain the code of either."""
     return Node(a.name, max(a.frame, b.frame), a.calls | b.calls, a.problem or b.problem)
 
 

@@ -22,7 +22,7 @@ _TOP_SYMBOLS = 20
 
 @dataclass(frozen=True)
 class Units:
-    """The compiler output that is stored next to the object files."""
+    """The content of the files that the compiler writes next to the object files: call graphs and dumps."""
 
     records: list[call_graph.Record]
     call_sites: dict[tuple[str, str], set[call_sites.CallSite]]
@@ -131,8 +131,11 @@ def _read_units(paths: list[Path]) -> Units:
 def _report(
     options: argparse.Namespace, figures: Figures, vectors: Vectors, disabled: DisabledInterrupts
 ) -> list[str]:
-    """Prints the sizes and writes them to a file next to the image. Returns a problem if RAM is too small. If flash is
-    too small, the linker already fails."""
+    """Prints the sizes, their changes since the record, and the largest number of instructions for which interrupts
+    are disabled. Writes the sizes to a file next to the image.
+
+    Returns a problem if RAM is too small, otherwise an empty list. If flash is too small, the linker already fails.
+    """
     before = records.read(options.record).get((options.board, options.image.stem))
     flash, static, stack = figures.since(before)
     print(

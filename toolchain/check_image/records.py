@@ -1,4 +1,5 @@
-"""Reads and writes files with the sizes of images: one line BOARD IMAGE FLASH STATIC STACK for each image, in bytes."""
+"""Reads and writes files with the sizes of images. Each image has a line BOARD IMAGE FLASH STATIC STACK. The sizes are
+in bytes."""
 
 from __future__ import annotations
 
@@ -6,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-GROWTH = 1.05  # an image may become larger than its record by this factor
+GROWTH = 1.05  # the maximum permitted ratio of the new size to the recorded size, for the flash and for the RAM
 
 Key = tuple[str, str]  # board, image
 
@@ -20,7 +21,7 @@ class Figures:
     stack: int
 
     def since(self, before: Figures | None) -> list[str]:
-        """Returns flash, static RAM and stack as text, with the changes since `before`."""
+        """Returns flash, static RAM and stack as text. Adds the change to each size that differs from `before`."""
         if before is None:
             return [str(self.flash), str(self.static), str(self.stack)]
         return [
@@ -29,7 +30,7 @@ class Figures:
         ]
 
     def exceeds(self, before: Figures) -> bool:
-        """Returns whether the flash, or the RAM as a whole, is more than 5 % larger than `before`."""
+        """Returns whether the flash, or the sum of static RAM and stack, is more than 5 % larger than in `before`."""
         return self.flash > GROWTH * before.flash or self.static + self.stack > GROWTH * (
             before.static + before.stack
         )

@@ -1,4 +1,4 @@
-"""Calculates the flash and RAM that an image requires, in total and by symbol and folder."""
+"""Calculates the static RAM of an image, and its flash: in total, by symbol and by folder."""
 
 from __future__ import annotations
 
@@ -10,33 +10,34 @@ from pathlib import Path
 from check_image.elf import Elf, Section, Symbol
 from check_image.functions import demangle, without_parameters
 
-# SRAM in the system address map, the same for all chips (Armv7-M ARM B3.1).
+# The SRAM region of the system address map. It is the same on all boards (Armv7-M ARM B3.1).
 RAM = range(0x20000000, 0x40000000)
 
 
 def flash(elf: Elf) -> int:
-    """Returns the bytes of code, tables, vectors, and initial values of variables."""
+    """Returns the bytes of all sections that are stored in flash, for example code and initial values of variables."""
     return sum(section.size for section in elf.sections if section.loaded)
 
 
 def static_ram(elf: Elf) -> int:
-    """Returns the bytes of variables with or without initial values. Does not count a section that reserves the
-    stack."""
+    """Returns the bytes of all sections in RAM: variables, and the code of an image that runs from RAM. Does not count
+    a section that reserves the stack."""
     return sum(s.size for s in elf.sections if s.address in RAM and not s.name.startswith(".stack"))
 
 
 def by_symbol(elf: Elf) -> list[tuple[int, str]]:
-    """Returns the flash of each symbol in bytes, largest first."""
+    """Returns the flash in bytes and the name of each symbol, largest first."""
     symbols = _in_flash(elf)
     readable = demangle([symbol.name for symbol in symbols])
     return sorted(((s.size, without_parameters(readable[s.name])) for s in symbols), reverse=True)
 
 
 def by_folder(elf: Elf, path: Path, locations: Mapping[int, str], root: Path) -> list[tuple[int, str]]:
-    """Returns the flash of each source folder in bytes, largest first.
+    """Returns the flash in bytes of each source folder, and of the content that belongs to no folder, largest first.
 
-    Code is attributed by line, so that inlined code counts where it was written. A function without debugging
-    information counts as a whole: `locations` contains the locations of functions, by address.
+    Each halfword of code counts for the folder of its source file. Inlined code therefore counts for the folder in
+    which it was written. If the debugging information names no source file for a halfword, the halfword counts for the
+    folder of its function. `locations` contains the source locations of functions, by address.
     """
     sums: Counter[str] = Counter()
     code = [symbol for symbol in _in_flash(elf) if symbol.is_function]
@@ -76,7 +77,7 @@ def _folder(source: str, root: Path) -> str:
 
 
 def _in_flash(elf: Elf) -> list[Symbol]:
-    """Returns each loaded symbol, once even if it has several names."""
+    """Returns the symbols that have a size and are stored in flash. If several have one address, returns the first."""
     seen: dict[int, Symbol] = {}
     for symbol in elf.symbols:
         if symbol.size and _is_loaded(symbol.section):

@@ -1,12 +1,12 @@
-"""Calculates the maximum stack depth below a function of a call graph, and of a main loop with interrupts."""
+"""Calculates the maximum stack depth of a function with its callees, and of a main loop with interrupts."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-# The stack that an exception uses without a floating-point unit: eight words, and one more if the stack is not aligned
-# to eight bytes (Armv7-M ARM B1.5.6 and B1.5.7).
+# The maximum number of bytes of stack that the entry of an exception uses without a floating-point unit: eight words,
+# and one more if the stack is not aligned to eight bytes (Armv7-M ARM B1.5.6 and B1.5.7).
 EXCEPTION_FRAME = 32 + 4
 
 
@@ -15,19 +15,19 @@ class Node:
     name: str
     frame: int  # bytes
     calls: frozenset[int]
-    problem: str = ""  # why the stack is unknown; empty if it is known
+    problem: str = ""  # why this function makes the stack depth unknown; empty if it does not
 
 
 Graph = dict[int, Node]  # by address
 
 
 class Unbounded(Exception):
-    """The stack depth below a function has no known upper bound."""
+    """The stack depth of a function with its callees has no known upper bound."""
 
 
 @dataclass(frozen=True)
 class Chain:
-    """A function, the callee with the deepest stack, the deepest callee of that one, and so on."""
+    """Functions, each of which calls the next one. The next one is always the callee with the deepest stack."""
 
     nodes: tuple[Node, ...]
 
@@ -48,7 +48,7 @@ class Level:
 
 
 class DeepestChains:
-    """Finds the deepest chain below each function and caches it."""
+    """Finds the deepest chain that begins with a function, and caches each chain that it has found."""
 
     def __init__(self, graph: Mapping[int, Node]) -> None:
         self._graph = graph
@@ -88,7 +88,8 @@ class Interruption:
 
 @dataclass(frozen=True)
 class WorstCase:
-    """The main loop at its deepest point, interrupted there by the deepest handler of each level."""
+    """The deepest chain from the reset handler, which runs the main loop, and the deepest chain from a handler of each
+    level that has handlers."""
 
     main: Chain
     interruptions: tuple[Interruption, ...]
@@ -99,7 +100,7 @@ class WorstCase:
 
 
 def worst_case(graph: Mapping[int, Node], reset: int, levels: Sequence[Level]) -> WorstCase:
-    """Calculates the worst case. Raises Unbounded if a stack depth is unknown."""
+    """Calculates the worst case. Raises Unbounded if a stack depth is unknown. `reset`: the reset handler's address."""
     chains = DeepestChains(graph)
     return WorstCase(
         chains.below(reset),

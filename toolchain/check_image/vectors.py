@@ -16,7 +16,8 @@ _CONFIGURABLE_FAULTS = range(4, 7)  # MemManage, BusFault, UsageFault
 
 
 class BadVectors(Exception):
-    """The table is missing, contains a value that is not the address of a function, or lacks a named handler."""
+    """The table is missing or too short, contains a value that is not the address of a function, or does not have the
+    reset handler or a handler that --level names."""
 
 
 class Vectors:
@@ -42,11 +43,15 @@ class Vectors:
         return self.handlers[_RESET]
 
     def levels(self, named: Sequence[Sequence[str]]) -> list[Level]:
-        """Returns the handlers in levels. Handlers of one level cannot interrupt each other. Handlers of different
-        levels can be active at the same time.
+        """Returns the handlers, except that of Reset, in levels. Handlers of one level cannot interrupt each other.
+        Handlers of different levels can be active at the same time. A level can be empty.
 
-        `named`: interrupts with a separate priority, one level for each entry. The other interrupts form one level. A
-        fault in a fault handler is a HardFault, and NMI can interrupt the HardFault.
+        `named`: for each level with a separate priority, the names of its handlers. The other interrupts form one
+        level. The configurable faults form one level, because a fault in a fault handler becomes a HardFault. HardFault
+        and NMI form one level each, because NMI can interrupt the HardFault handler.
+
+        Raises BadVectors if a name in `named` is not the name of an interrupt handler, or if an earlier level already
+        has this handler.
         """
         own: list[Level] = []
         left = {

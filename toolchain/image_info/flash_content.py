@@ -8,7 +8,7 @@ _ELF = b"\x7fELF\x01\x01"
 _ELF_LOAD = 1  # p_type
 _UF2 = struct.pack("<2I", 0x0A324655, 0x9E5D5157)
 _UF2_BLOCK = 512
-_UF2_DATA = 476  # the largest number of bytes in a block
+_UF2_DATA = 476  # the largest number of data bytes in a block
 _HEX_DATA, _HEX_END, _HEX_SEGMENT, _HEX_START_SEGMENT, _HEX_LINEAR, _HEX_START_LINEAR = range(6)
 
 
@@ -19,7 +19,7 @@ class NotAnImage(Exception):
 def flash_content(file: bytes) -> bytes:
     """Returns the bytes of the flash from its first used address on. Gaps are FFh, as in an erased flash.
 
-    Raises NotAnImage if the file is damaged, contains no data, or would fill more than 16 MiB.
+    Raises NotAnImage if the file is damaged, contains no data, or fills more than 16 MiB of flash.
     """
     if file.startswith(_ELF):
         pieces = _elf(file)
@@ -47,7 +47,7 @@ def _joined(pieces: list[tuple[int, bytes]]) -> bytes:
 
 
 def _elf(file: bytes) -> list[tuple[int, bytes]]:
-    """Returns load address and content of each segment that has content."""
+    """Returns the load address and the content of each loadable segment that has content in the file."""
     try:
         offset, size, count = struct.unpack_from("<I", file, 28)[0], *struct.unpack_from("<HH", file, 42)
         headers = [struct.unpack_from("<5I", file, offset + index * size) for index in range(count)]
@@ -95,7 +95,7 @@ def _hex(file: bytes) -> list[tuple[int, bytes]]:
 
 
 def _hex_record(line: bytes, number: int) -> tuple[int, int, bytes]:
-    """Returns type, address and data of a record."""
+    """Returns the type, the address and the data of a record. Raises NotAnImage if the record is damaged."""
     try:
         record = bytes.fromhex(line[1:].decode("ascii"))
     except ValueError:

@@ -1,4 +1,4 @@
-"""Finds the information in the content of the flash. boards/image_info.hpp describes its fields."""
+"""Finds the information about an image in the content of the flash. boards/image_info.hpp defines the fields."""
 
 from __future__ import annotations
 
@@ -6,7 +6,8 @@ import struct
 
 from image_info.flash_content import NotAnImage
 
-# The offset of the information from the first address of the flash. The linker scripts check this offset.
+# For each family of microcontrollers, the offset of the information from the first address of the flash. The linker
+# scripts check this offset.
 PLACES = {"Stellaris and Tiva": 0xC0, "RP2040": 0x1A8}
 
 MARK = b"EX9INFO1"

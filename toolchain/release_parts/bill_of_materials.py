@@ -1,4 +1,4 @@
-"""Writes the bill of materials of a release: which code of others is in the images and in the simulator (SPDX 2.3)."""
+"""Writes the bill of materials of a release (SPDX 2.3): the third-party code in the images and in the simulator."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _GCC_RUNTIME = "GPL-3.0-or-later WITH GCC-exception-3.1"
 
 @dataclass(frozen=True)
 class Component:
-    """Code of others that is compiled in, and the Debian package that the build takes it from."""
+    """Third-party code that a product contains or links, and the Debian package from which the build takes it."""
 
     key: str
     name: str
@@ -28,7 +28,7 @@ class Product:
     key: str
     name: str
     purpose: str  # primaryPackagePurpose
-    parts: Mapping[str, str]  # the relationship to each component, by key
+    parts: Mapping[str, str]  # the relationship to each component, by the key of the component
     remark: str
 
 

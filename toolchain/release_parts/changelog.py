@@ -1,4 +1,4 @@
-"""Reads the sections of .github/CHANGELOG.md."""
+"""Finds a section of .github/CHANGELOG.md, and converts it to release notes and to a Debian changelog."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ _UNRELEASED = "## Unreleased"
 
 
 class NoSection(Exception):
-    """The changelog has no section of this version."""
+    """The changelog does not have the requested section."""
 
 
 @dataclass
 class Section:
     version: str
-    date: datetime.date | None  # None: not released
-    lines: list[str]
+    date: datetime.date | None  # None if the version is not released
+    lines: list[str]  # without the heading
 
 
 def section_of(version: str, changelog: str, unreleased: bool) -> Section:
@@ -40,7 +40,7 @@ def section_of(version: str, changelog: str, unreleased: bool) -> Section:
 
 
 def release_notes(section: Section, commit: str) -> str:
-    """Returns the section as a document of its own. Links to files of the repository become plain text."""
+    """Returns the section as a separate document. Links to files of the repository become plain text."""
     title = f"# OpenEX9000 {section.version}" + ("" if section.date else ", not released")
     text = re.sub(r"\[([^\]]+)\]\((?![a-z]+:)[^)]*\)", r"\1", "\n".join(section.lines))
     text = re.sub(r"^###", "##", text, flags=re.MULTILINE)

@@ -10,7 +10,8 @@ _FILE_VALUES = {"LINK", "DEVICE", "PATH", "FILE"}
 
 
 def bash_completion(program: Help, subcommands: dict[str, Help], models: list[str]) -> str:
-    """Returns a script that bash-completion loads when a user completes ex9000-sim for the first time."""
+    """Returns a script that bash-completion loads when a user completes an argument of ex9000-sim for the first time in
+    a shell."""
     commands = {"": program, **subcommands}
     lines = [
         "# bash completion of ex9000-sim; generated from its help texts",
@@ -53,7 +54,7 @@ def _bash_values(command: str, help_of: Help) -> list[str]:
         elif option.choices() and not option.value.startswith("["):
             lines.append(f"    {patterns}) _ex9000_sim_words {shlex.quote(' '.join(option.choices()))}; return ;;")
         elif option.choices():
-            # The value is optional, so the next argument can also be anything else.
+            # The value is optional, so the word can also be another option or a positional argument.
             words = shlex.quote(" ".join(option.choices()))
             lines.append(f"    {patterns}) _ex9000_sim_words {words}; [ ${{#COMPREPLY[@]}} -eq 0 ] || return ;;")
         elif option.value:

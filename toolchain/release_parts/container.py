@@ -1,7 +1,7 @@
-"""Writes a container image that consists of one static program.
+"""Writes a container image with one static program, its licences, and an empty working directory.
 
-The archive is an OCI image layout (OCI image specification 1.0) in a tar file. It also has the file manifest.json of
-`docker save`, so both `podman load` and `docker load` accept it.
+The image is a tar file with an OCI image layout (OCI image specification 1.0). The tar file also contains the file
+manifest.json of `docker save`, so both `podman load` and `docker load` accept the tar file.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ _MANIFEST_TYPE = "application/vnd.oci.image.manifest.v1+json"
 
 
 def container_image(program: bytes, licence: bytes, version: str, commit: str, seconds: int) -> bytes:
-    """Returns the archive. `seconds`: the date of all files, in seconds since 1970."""
+    """Returns the tar file. `seconds`: the date of the image and of all files, in seconds since 1970."""
     layer = _tar([
         ("ex9000-sim", program, 0o755, 0),
         ("LICENSE", licence, 0o644, 0),
@@ -80,7 +80,7 @@ def _config(layer: bytes, version: str, commit: str, seconds: int) -> dict[str, 
 
 
 def _tar(entries: list[tuple[str, bytes, int, int]], seconds: int) -> bytes:
-    """Returns a tar file. An entry is path, content, mode and owner; a path that ends in / is a directory."""
+    """Returns a tar file. An entry is a path, a content, a mode and an owner. A path that ends in / is a directory."""
     file = io.BytesIO()
     with tarfile.open(fileobj=file, mode="w", format=tarfile.USTAR_FORMAT) as archive:
         for path, content, mode, owner in entries:

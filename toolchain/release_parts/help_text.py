@@ -12,7 +12,7 @@ _SUBCOMMAND = re.compile(r"^[a-z][a-z-]*$")
 
 
 class UnknownHelp(Exception):
-    """The help text does not have the form that this program reads."""
+    """The help text does not have the form that `read` expects."""
 
 
 @dataclass
@@ -25,7 +25,7 @@ class Option:
     repeats: bool
 
     def choices(self) -> list[str]:
-        """Returns the words that the value can be; empty if the value is free."""
+        """Returns the fixed words that the value can be, without placeholders such as N."""
         if "|" not in self.value:
             return []
         return [word for word in self.value.strip("[]").split("|") if not word.isupper()]
@@ -76,4 +76,4 @@ def _read_entry(line: str, entries: list[Option]) -> None:
         names, _, value = words.removesuffix(" ...").removesuffix(" REQUIRED").partition(" ")
         entries.append(Option(names.split(","), value, text, repeats))
     else:
-        raise UnknownHelp(f"'{line.strip()}' is neither an option nor its description")
+        raise UnknownHelp(f"'{line.strip()}' is neither an option or argument nor part of its description")

@@ -11,7 +11,8 @@ from help_text import Help, Option
 _ENTRY = re.compile(r"^  (\S+(?: \S+)*) {2,}(\S.*)$")
 _CONTINUED = re.compile(r"^ {10,}(\S.*)$")
 
-# Without these escapes, a reader would see typographic characters that a shell does not understand. The backslash is
+# Without these escapes, a backslash would begin an escape, and a quotation mark would end an argument of a macro. A
+# reader would see typographic characters in place of -, ' and `, which a shell does not understand. The backslash is
 # first, because the other escapes contain it.
 _ESCAPES = {"\\": "\\e", '"': "\\(dq", "-": "\\-", "'": "\\(aq", "`": "\\(ga"}
 
@@ -99,7 +100,7 @@ def _tag(option: Option) -> str:
 
 
 def _without_examples(notes: list[str]) -> tuple[list[str], list[str]]:
-    """Separates the examples, which end the notes, from the rest."""
+    """Returns the notes before the examples, and the examples, which end the notes."""
     if "Examples:" not in notes:
         return notes, []
     at = notes.index("Examples:")
@@ -135,7 +136,7 @@ def _notes(notes: list[str]) -> list[str]:
 
 
 def _first(lines: list[str]) -> list[str]:
-    """Returns the lines of a section. Its first paragraph requires no macro."""
+    """Returns the lines of a section without the macro .Pp before the first paragraph, which is not necessary."""
     return lines[1:] if lines[:1] == [".Pp"] else lines
 
 
@@ -148,7 +149,7 @@ def _sentence(text: str) -> str:
 
 
 def _prose(text: str) -> list[str]:
-    """Returns lines of at most about 80 characters. A sentence begins on a new line, as mdoc requires."""
+    """Returns lines of about 80 characters at most. Each sentence begins on a new line, as mdoc recommends."""
     lines = []
     for sentence in re.split(r"(?<=[.!?]) +(?=[A-Z`-])", text):
         line = ""
@@ -162,12 +163,12 @@ def _prose(text: str) -> list[str]:
 
 
 def _text(text: str) -> str:
-    """Returns a text for an argument of a macro."""
+    """Returns `text` with its special characters escaped (_ESCAPES)."""
     for character, escape in _ESCAPES.items():
         text = text.replace(character, escape)
     return text
 
 
 def _not_a_macro(line: str) -> str:
-    """Protects a line of text that begins with a dot."""
+    """Returns a line of text in a form that mdoc does not interpret as a macro."""
     return "\\&" + line if line.startswith(".") else line

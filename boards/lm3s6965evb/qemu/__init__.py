@@ -1,1 +1,1 @@
-"""Runs a module on QEMU's lm3s6965evb and connects it to a pseudo-terminal."""
+"""Runs a module on QEMU's lm3s6965evb and connects the line of the module to a pseudo-terminal."""

@@ -1,7 +1,8 @@
-"""Starts and ends the board in QEMU, and sets INIT* before the first instruction.
+"""Starts and ends the board in QEMU, and passes bytes between the master and the module.
 
-QEMU has no pull-ups: an input that is not driven is low, and each reset of the machine releases all inputs. Therefore a
-reset by the image or by its watchdog only stops QEMU. Then `Machine` carries out the reset and sets INIT* again.
+Unless INIT* is grounded, `Machine` sets INIT* high before the first instruction. QEMU emulates no pull-ups: an input
+that is not driven is low, and each reset of the board makes all inputs low. Therefore, if the image or its watchdog
+requests a reset, QEMU only stops. `Machine` then resets the board and, unless INIT* is grounded, sets INIT* high again.
 """
 
 from __future__ import annotations
@@ -25,10 +26,10 @@ from emulated.refusal import Refusal
 _PROGRAM = "qemu-system-arm"
 _INIT_RELEASED = "set_irq_in /machine/unattached/device[8] unnamed-gpio-in 7 1"  # PA7 high
 _UART0_CONTROL = 0x4000C030
-_DRIVER_ENABLE = 0x40004100  # PA6 only, high while the module sends
+_DRIVER_ENABLE = 0x40004100  # an address that reads only PA6, which is high while the module sends
 _PR_SET_PDEATHSIG = 1
-# The time, in seconds of the host's clock, within which an image must enable its UART, and within which QEMU must end.
-# It is so long that a busy host does not exceed it.
+# The time, in seconds of the host's clock, within which a started image must enable its UART, and within which QEMU
+# must end after the command `quit`. The time is so long that it does not expire on a busy host.
 _HANG = 60
 
 
@@ -47,7 +48,7 @@ class Machine:
         self._pending_events: deque[dict[str, Any]] = deque()
         self._errors = tempfile.TemporaryFile()
         words = [_PROGRAM, "-M", "lm3s6965evb", "-display", "none", "-nodefaults", "-S"]
-        words += ["-icount", "shift=3"]  # 8 ns per instruction, so that a slow host does not distort the time
+        words += ["-icount", "shift=3"]  # 8 ns of virtual time per instruction, even if the host is slow
         words += ["-action", "reboot=shutdown,shutdown=pause", "-kernel", str(image)]
         words += ["-chardev", f"socket,id=line,fd={line.fileno()}", "-serial", "chardev:line"]
         words += ["-chardev", f"socket,id=monitor,fd={monitor.fileno()}", "-mon", "monitor,mode=control"]
@@ -92,11 +93,11 @@ class Machine:
         return 0.001 if self._queued_bytes else 0.1
 
     def carry(self, requests: bytes, ready: list[int]) -> bytes:
-        """Takes bytes of the master and returns bytes of the module. `ready`: the descriptors of `watched` that are
-        readable.
+        """Takes bytes of the master and returns bytes of the module. `ready` must contain the descriptors of `watched`
+        that are readable.
 
         Does not wait for bytes of the master or of the module, because QEMU stops if nobody takes the bytes of the
-        UART.
+        UART. Raises Ended if QEMU has ended or has reported an error.
         """
         if self._events.fileno() in ready:
             self._take_events()
@@ -109,8 +110,8 @@ class Machine:
         return reply
 
     def _send_queued(self) -> None:
-        """Sends queued bytes if the module's driver is off. Bytes that the module does not receive are lost, as on a
-        real line.
+        """Sends queued bytes if the module's driver is off. Bytes that do not fit into the buffer of the socket are
+        lost. On a real line, bytes that the module does not receive are also lost.
 
         Call this even if nothing is queued: if the module hangs, QEMU's virtual time may stop until QEMU gets a
         command. Without such a command, the watchdog would not reset the module.
@@ -122,7 +123,8 @@ class Machine:
             self._queued_bytes = b""
 
     def _take_events(self) -> None:
-        """Reads events and resets the machine if the image or its watchdog has requested a reset."""
+        """Waits for an event of QEMU and processes all received events. Resets the board if the image or its watchdog
+        has requested a reset."""
         self._pending_events.append(self._next_message())
         while self._pending_events or b"\n" in self._unread:
             event = self._pending_events.popleft() if self._pending_events else self._next_message()
@@ -153,7 +155,7 @@ class Machine:
         self._command("cont")
 
     def _wait_until_listening(self) -> None:
-        """Waits until the UART is enabled, because bytes before that are lost. Raises Refusal after 60 s."""
+        """Waits until the image enables the UART, because the UART loses earlier bytes. Raises Refusal after 60 s."""
         deadline = time.monotonic() + _HANG
         while not self._word_at(_UART0_CONTROL) & 1:
             if time.monotonic() > deadline:

@@ -12,7 +12,10 @@ _EEPROM_SIZE = 8192
 
 
 def main(words: list[str]) -> int:
-    """Runs the program and returns its exit status. Wrong options raise SystemExit with status 2."""
+    """Runs the program and returns its exit status.
+
+    Raises SystemExit with status 2 if the arguments are wrong, and with status 0 for `--help`.
+    """
     parser = program.parser_for("QEMU", _BOARD.preset)
     parser.add_argument(
         "--eeprom",

@@ -1,1 +1,1 @@
-"""Runs a module on a Pico in npm's rp2040js and connects it to a pseudo-terminal."""
+"""Runs a module on a Pico in the npm package rp2040js and connects the module to a pseudo-terminal."""

@@ -1,7 +1,7 @@
-"""Starts and ends a Pico in rp2040js. Its virtual time follows the clock of the host.
+"""Runs a Pico in rp2040js. The virtual time of the Pico follows the clock of the host.
 
-tests/rp2040/emulator.js is the emulator. It executes one command for each line of its input. Its time passes only
-during a command.
+tests/rp2040/emulator.js is the emulator. It executes one command for each line of its input. Virtual time passes only
+during commands such as `run`.
 """
 
 from __future__ import annotations
@@ -32,11 +32,15 @@ _LARGEST_LAG = 0.1  # seconds
 
 
 class Machine:
-    """A module on a Pico in rp2040js. After the start, only `carry` lets time pass."""
+    """A module on a Pico in rp2040js. After `__init__`, only `carry` lets virtual time pass."""
 
     def __init__(self, image: int, settings: int, eeprom: int, init_grounded: bool) -> None:
-        """Starts the emulator and the module. `image`, `settings` and `eeprom` are descriptors of files that contain
-        the flash, the settings at its end, and the EEPROM."""
+        """Starts the emulator and the module, and lets 100 ms of virtual time pass. `image`, `settings` and `eeprom`
+        are descriptors of three files: the flash from its first byte on, the settings at the end of the flash, and the
+        EEPROM. `init_grounded`: whether INIT* is tied to GND.
+
+        Raises Refusal if rp2040js or Node.js is missing. Raises Ended if the emulator ends or reports an error.
+        """
         self.watched: list[int] = []
         self._errors = tempfile.TemporaryFile()
         self._process = self._start([image, settings, eeprom])
@@ -81,16 +85,20 @@ class Machine:
 
     @property
     def carry_within(self) -> float:
-        """Returns the time in seconds within which `carry` must be called. It is shorter in the second after a byte."""
+        """Returns the time in seconds within which `carry` must be called. This time is shorter for one second after
+        a byte."""
         return 0.002 if time.monotonic() - self._last_byte < 1 else 0.02
 
     def carry(self, requests: bytes, _ready: list[int]) -> bytes:
-        """Lets virtual time pass up to the time of the host, takes bytes of the master and returns bytes of the
-        module."""
+        """Lets virtual time pass up to the time of the host, and returns the bytes that the module has sent. Then
+        begins to send `requests`, the bytes of the master. The module receives them during later calls.
+
+        Raises Ended if the emulator has ended or reports an error.
+        """
         now = time.monotonic()
         due = round((now - self._began) * _NANOSECONDS)
-        # If the host was busy for too long, the lost time is skipped. Otherwise the module would run too fast until its
-        # time is the time of the host again.
+        # If virtual time is more than _LARGEST_LAG behind the time of the host, the rest of the lag is skipped.
+        # Otherwise the module would run faster than real time for too long.
         lag = due - self._passed - _LARGEST_LAG * _NANOSECONDS
         if lag > 0:
             self._began += lag / _NANOSECONDS
@@ -112,7 +120,8 @@ class Machine:
         self._process.wait()
 
     def _follow_baud_rate(self) -> None:
-        """Sets the master to the baud rate of the module, so that the user does not need to know this rate."""
+        """Sets the master to the baud rate of the module, so that the user does not need to know this rate. Does
+        nothing while the module's UART is off."""
         counts = dict(word.split("=") for word in self._ask("counts").split())
         if counts["uart"] != "0":
             self._ask("baud", counts["uart"])

@@ -9,13 +9,13 @@ from rp2040js.machine import Machine
 
 _BOARD = image.Memory(preset="pico", vectors=0x20000000, top_of_ram=0x20040000)
 _FLASH = 0x10000000
-_IMAGE_SIZE = (2048 - 64) * 1024  # image.ld
+_IMAGE_SIZE = (2048 - 64) * 1024  # the length of FLASH in boards/pico/image.ld
 _SETTINGS_SIZE = 64 * 1024
 _EEPROM_SIZE = 8192
 
 
 def _flash_of(segments: list[image.Segment]) -> bytes:
-    """Returns the content of the flash from its first byte on."""
+    """Returns the content of the flash from its first byte to the end of the last segment in the flash."""
     content = bytearray()
     for segment in segments:
         begin = segment.stored_at - _FLASH
@@ -26,7 +26,8 @@ def _flash_of(segments: list[image.Segment]) -> bytes:
 
 
 def main(words: list[str]) -> int:
-    """Runs the program and returns its exit status. Wrong options raise SystemExit with status 2."""
+    """Runs the program and returns its exit status. Raises SystemExit with status 2 if an argument is wrong, and with
+    status 0 after `--help`."""
     parser = program.parser_for("rp2040js", f"{_BOARD.preset}, pico-eeprom or pico-w")
     parser.add_argument(
         "--flash",

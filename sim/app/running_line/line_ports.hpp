@@ -15,28 +15,31 @@
 namespace ex9000::sim {
 
 /// Bytes that the master's end receives go to every port. The rate that a master sets at a port becomes the
-/// line's rate. Works the same way for paced and for stepped time.
+/// line's rate. Pacer uses this class for paced time, and SteppedLine uses it for stepped time.
 class LinePorts final : private BusObserver {
  public:
   using All = std::vector<std::unique_ptr<Port>>;
   using Notice = std::function<void(const std::string&)>;
 
-  /// All arguments must live as long as the line's bus is used. `notice` receives a one-line message for each
-  /// module that cannot receive because of its rate or format, and for bytes that a port drops.
+  /// Observes the bus of `line`: this object and all arguments must live as long as that bus is used.
+  /// `notice` receives a one-line message for each module that cannot receive because of its rate or format,
+  /// and for bytes that a port drops.
   LinePorts(Line& line, const All& ports, Notice notice);
 
-  /// Stores a byte that the master's end of the line has received. The line calls this for each such byte.
+  /// Stores a byte that the master's end of the line has received. Call this for each such byte.
   void hear(std::uint8_t byte) { heard_.push_back(byte); }
   /// Returns whether a station other than the master has stopped sending since the last `hand_out`.
   [[nodiscard]] bool reply_is_complete() const { return stopped_sending_; }
-  /// Writes the bytes received since the last call to all ports. Does not block: if a port has no room, drops
-  /// the bytes and reports the first drop with a notice.
+  /// Writes the bytes received since the last call to all ports. If `reply_is_complete` returned true before
+  /// this call, also calls `Port::sent` of all ports. Does not block: if a port has no room, drops the bytes.
+  /// Reports the first of consecutive drops with a notice.
   void hand_out();
   /// Sets the line to the rate of the port, if the port has one, and reports mismatches.
   void take_rate(const Port& port);
   /// Returns the number of bytes written to each port so far, including dropped bytes.
   [[nodiscard]] std::uint64_t sent() const { return sent_; }
-  /// Reports each mismatch of rates or formats once. A mismatch that ends and begins again is reported again.
+  /// Reports each mismatch between the rate or format of the line and that of a module once. A mismatch that
+  /// ends and begins again is reported again.
   void report_mismatches();
 
   [[nodiscard]] const All& all() const { return ports_; }
@@ -55,7 +58,7 @@ class LinePorts final : private BusObserver {
   bool mismatches_ = false;                            ///< `reported_` contains a mismatch
   std::vector<std::uint8_t> heard_;
   std::uint64_t sent_ = 0;
-  std::vector<const Port*> full_;  ///< ports whose dropped bytes have been reported
+  std::vector<const Port*> full_;  ///< ports that dropped bytes at their last `send`
   bool stopped_sending_ = false;   ///< see reply_is_complete
 };
 

@@ -17,11 +17,13 @@ class LineRecord final : private Station {
  public:
   using Print = BusLog::Print;
 
-  /// Records a line that has started up. `line` must outlive this object; `name` is its name in the records.
-  /// `print` receives the lines of its log.
+  /// Records a line that has started up. `line` must outlive this object. If frames are recorded or `end_at`
+  /// is called, this object must also live as long as the bus of `line` is used. `name` is the name of the
+  /// line in a JSON log and in the capture. `print` receives the lines of the log.
   LineRecord(Line& line, std::string name, LogFormat format, const Print& print);
 
-  /// Writes a note with the line's present time. Notes are printed even if frames are not.
+  /// Writes a note to the log, with the time of the line's clock. Notes are printed even if frames are not.
+  /// Does nothing after the end of the log, see `end_at`.
   void note(const std::string& text);
   /// Starts to print frames.
   void print_frames();
@@ -39,7 +41,7 @@ class LineRecord final : private Station {
   void finish() { frames_.finish(); }
 
  private:
-  // --- Station: only observes the clock ---
+  // --- Station: called at the time that `end_at` sets ---
   void run() override;
 
   void listen();

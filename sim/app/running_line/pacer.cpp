@@ -12,11 +12,11 @@ namespace ex9000::sim {
 
 namespace {
 
-/// When this many bytes wait for the line, masters have to wait, as with a full UART.
+/// When this many bytes wait for the line, masters have to wait, as if the buffer of their UART were full.
 constexpr std::size_t kMostWaiting = 4096;
 
-/// Limits how far virtual time runs ahead, so that watchdogs do not expire early after many transactions in a
-/// row.
+/// Limits how far virtual time runs ahead of the wall clock, so that watchdogs do not expire early after many
+/// consecutive transactions.
 constexpr std::chrono::milliseconds kFarthestAhead{5};
 
 /// By default the kernel may delay timers by 50 us to save power; this is more than half a character at
@@ -77,7 +77,8 @@ std::chrono::steady_clock::time_point Pacer::when(VirtualTime time) const {
   return began_ + (real < kCentury ? std::chrono::duration_cast<VirtualTime>(real) : kCentury);
 }
 
-/// Processes due events and leaves the clock at the last event, not at `until`: see Pace::host_latency.
+/// Processes the events up to `until`, and later events that need not wait for the wall clock. Leaves the
+/// line's clock at the last event, not at `until`: see Pace::host_latency.
 void Pacer::catch_up(VirtualTime until) {
   VirtualTime next = line_.bus().next();
   report_delay(next);
@@ -144,8 +145,9 @@ void Pacer::arm_timer() {
   });
 }
 
-/// Reports the delay of an event that was due at `next`, if the wall clock has passed it. After the first
-/// report, only delays at least twice as long are reported, because a busy host is always late.
+/// Reports the delay of an event that was due at `next`, if the delay is at least kReportedDelay. After a
+/// report, only a delay at least twice as long as the reported one is reported, because a busy host is always
+/// late.
 void Pacer::report_delay(VirtualTime next) {
   if (next > wall()) {
     return;
@@ -200,9 +202,10 @@ bool Pacer::receive(const Port& port, Bytes bytes, const Port::Positions& damage
   return !pause_if_full();
 }
 
-/// Returns the size of the first frame in `bytes`. Many masters send the next request immediately after a
-/// request without a reply, and the program reads both in one piece. On an instant line a frame ends as soon
-/// as its CRC is correct. If the CRC of all bytes is correct, they are a single frame.
+/// Returns the size of the first Modbus frame in `bytes`. Many masters send the next request immediately
+/// after a request without a reply, and the program may read both in one piece. The first frame is the
+/// shortest prefix of at least 4 bytes whose CRC is correct. If there is no such prefix, or if the CRC of all
+/// bytes is correct, all bytes are a single frame.
 std::size_t Pacer::first_frame_size(Bytes bytes) {
   constexpr std::size_t kShortest = 4;
   Crc16 crc;
@@ -216,7 +219,7 @@ std::size_t Pacer::first_frame_size(Bytes bytes) {
   return crc.value() == 0 ? bytes.size : first;
 }
 
-/// Returns the earliest start of a frame to `address`, see Pace::keep_frames_apart. The returned time may be
+/// Returns the earliest start of a frame to `address`: see Pace::keep_frames_apart. The returned time may be
 /// in the past.
 VirtualTime Pacer::earliest_frame(std::uint8_t address) const {
   if (!pace_.keep_frames_apart) {

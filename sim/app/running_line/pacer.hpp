@@ -1,4 +1,5 @@
-// Keeps a virtual line in step with the wall clock and connects its master's end to the ports.
+// Makes the time of a virtual line follow the wall clock, and connects the ports to the master's end of the
+// line.
 #pragma once
 
 #include <algorithm>
@@ -17,20 +18,23 @@ namespace ex9000::sim {
 
 /// The relation between virtual time and the wall clock.
 struct Pace {
-  /// Compensates for the time that the process takes to wake up and read: bytes from a master count as
-  /// written up to this much earlier, but never before an event that has already happened. Without this, the
-  /// host's delays would extend every transaction.
+  /// Compensates for the wall clock time that the process takes to wake up and read: bytes from a master
+  /// count as written this much before the program reads them, but never before an event that has already
+  /// happened. If the port is a real line, the bytes count as written earlier by their transmission time too.
+  /// Without this, the host's delays would extend every transaction.
   VirtualTime host_latency = std::chrono::microseconds(300);
   /// While a byte is on the wires, and for this time after it, the pacer processes events without waiting for
-  /// the wall clock. If virtual time is then more than 5 ms ahead, masters have to wait. If this value is
-  /// zero, every event waits for the wall clock.
+  /// the wall clock. If virtual time is then more than 5 ms ahead of the wall clock, masters have to wait. If
+  /// this value is zero, every event waits for the wall clock.
   VirtualTime lead{0};
-  /// After a Modbus reply, a frame to another module waits until a silence of T3.5 has passed. A frame to a
-  /// Modbus module after an ASCII reply, or after bytes of an unknown sender, waits until the module no
-  /// longer treats these bytes as part of a frame. If a master begins earlier, only the module that has just
-  /// replied receives the frame, because that module does not receive its own reply. All other modules
-  /// receive the reply and the frame as one frame. Many masters, for example libmodbus, begin too early. With
-  /// a real adapter this causes no problem, because the adapter delays the frame.
+  /// After a Modbus reply, a frame to another module waits until the silence that ends a Modbus frame has
+  /// passed. If `lead` is not zero, a frame after a frame of the master waits for this silence too. A frame
+  /// to a Modbus module after an ASCII reply, or after bytes of an unknown sender, waits until the module no
+  /// longer treats these bytes as part of a frame. Without these delays, many masters, for example libmodbus,
+  /// would begin a frame too early after a Modbus reply. Only the module that has just replied would then
+  /// receive the frame, because that module does not receive its own reply. All other modules would receive
+  /// the reply and the frame as one frame. With a real adapter this problem does not occur, because the
+  /// adapter delays the frame.
   bool keep_frames_apart = true;
   /// The ratio of virtual time to the wall clock.
   double speed = 1;
@@ -40,16 +44,16 @@ struct Pace {
 constexpr Pace kWallPace{};
 /// Bytes take their real time, for masters that follow the standard strictly.
 constexpr Pace kStrictWallPace{kWallPace.host_latency, kWallPace.lead, false};
-/// Bytes take no time: no timer delays a reply that the module sends immediately.
+/// Bytes take almost no time. A reply that the module sends immediately does not wait for the wall clock.
 constexpr Pace kInstantPace{VirtualTime(0), std::chrono::microseconds(200), true};
 
 /// Virtual time follows the wall clock from `start` on.
 class Pacer final {
  public:
   /// Sends the bytes that the master of `line` receives to all `ports`, and puts the bytes from the ports on
-  /// the line. `frames` may be null. All arguments must live as long as `io` runs. `notice`: see LinePorts;
-  /// it also receives a message if a delay of the host has affected the line, or if two frames were read in
-  /// one piece.
+  /// the line. `frames` may be null. `io` must outlive this object. `line`, `ports` and `frames` must live as
+  /// long as `io` runs. `notice`: see LinePorts; it also receives messages about long delays of the host, and
+  /// about two Modbus frames that were read in one piece and that modules treat as one frame.
   Pacer(boost::asio::io_context& io, Line& line, const LinePorts::All& ports, FrameWatch* frames, Pace pace,
         LinePorts::Notice notice);
 
@@ -63,7 +67,7 @@ class Pacer final {
   [[nodiscard]] std::uint64_t sent() const { return ports_.sent(); }
   /// Returns the line's present time. The line's clock has the time of the last event, which may be earlier.
   [[nodiscard]] VirtualTime present() const { return std::max(wall(), line_.clock().virtual_now()); }
-  /// Advances the line to its present time, then runs `action`, which acts on the line.
+  /// Advances the line to its present time, then runs `action`, which may use the line.
   void now(const std::function<void()>& action);
 
  private:
@@ -91,7 +95,7 @@ class Pacer final {
   Pace pace_;
   std::chrono::steady_clock::time_point began_;
   VirtualTime first_{0};  ///< the line's time at `began_`
-  bool paused_ = false;   ///< the ports and the server wait for `resume`
+  bool paused_ = false;   ///< a port or the server waits for `resume`
   /// The longest delay of the host that was reported, in wall clock time.
   VirtualTime longest_delay_{0};
 };

@@ -110,8 +110,8 @@ void RunningLine::make_missing_memories(std::list<NewFile>& made) {
   }
 }
 
-/// Returns the name of the line. If the line has no name, returns the name of its first port, in the order
-/// pseudo-terminal, TCP, Modbus TCP, serial; "line" if it has no port.
+/// Returns the name of the line. If the line has no name, returns the path or the address of its first port,
+/// in the order pseudo-terminal, TCP, Modbus TCP, serial. If the line has no port either, returns "line".
 std::string RunningLine::log_name() const {
   for (const std::string& name :
        {setup_.name, introduced_.pty, introduced_.tcp, introduced_.modbus_tcp, introduced_.serial}) {

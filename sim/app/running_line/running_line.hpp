@@ -1,4 +1,4 @@
-// One line of a run: the memories of its modules, its ports, its faults and its log.
+// One line of a run: the memories of its modules, its ports, its faults, its log and its capture.
 #pragma once
 
 #include <boost/asio/io_context.hpp>
@@ -24,10 +24,11 @@ class RunningLine {
  public:
   using Print = std::function<void(const std::string& line)>;
 
-  /// Opens everything that `setup` names, except EEPROM files that do not exist. Throws std::invalid_argument
-  /// or std::runtime_error with a one-line message. After an exception, everything is closed again, and no
-  /// file has been created or changed. `io` and `setup` must outlive this object. If `stepped` is true, the
-  /// behaviour of the ports does not depend on the wall clock.
+  /// Opens everything that `setup` names, except EEPROM files that do not exist, and starts up the modules.
+  /// Throws std::invalid_argument or std::runtime_error with a one-line message. After an exception,
+  /// everything is closed again, no new file remains, and the content of existing files is unchanged. `io`
+  /// and `setup` must outlive this object. If `stepped` is true, the behaviour of the ports does not depend
+  /// on the wall clock.
   RunningLine(boost::asio::io_context& io, const LineSetup& setup, std::uint64_t seed, LogFormat format,
               bool stepped, Print print);
   RunningLine(const RunningLine&) = delete;
@@ -40,16 +41,17 @@ class RunningLine {
   /// one-line message if a file exists by now or cannot be created.
   void make_missing_memories(std::list<NewFile>& made);
 
-  /// Returns the records of the line.
   LineRecord& record() { return *record_; }
-  /// Connects the memories to their files: from now on, all data that modules store is written to the files.
+  /// Connects the memories to their EEPROM files: from now on, all data that a module with such a file stores
+  /// is written to the file. Call this after `make_missing_memories`.
   void start();
-  /// Starts to process the line as soon as `io` runs, at `speed` times the speed of the wall clock.
+  /// From now on, the line's time passes at `speed` times the speed of the wall clock. The events of the line
+  /// are processed while `io` runs.
   void start_paced(boost::asio::io_context& io, double speed);
-  /// Starts to process the line. The line's time does not pass until the caller advances it. `arrived` is
-  /// called when bytes from masters have arrived.
+  /// Accepts masters. The line's time passes only when the caller advances it. `arrived`: see
+  /// SteppedLine::start.
   SteppedLine& start_stepped(SteppedLine::Arrived arrived);
-  /// Ends the log and the capture when the modules have been up for `up`. Call this before `start`.
+  /// Ends the log and the capture when the modules have been up for `up`. Call this before that time.
   void end_at(VirtualTime up) { record_->end_at(came_up_ + up); }
   /// Processes all events until the modules have been up for `up`, without waiting.
   void run_until(VirtualTime up);
@@ -78,7 +80,7 @@ class RunningLine {
 
   const LineSetup& setup_;
   Print print_;
-  std::vector<std::unique_ptr<EepromFile>> memories_;  ///< one for each module; null: it has no EEPROM file
+  std::vector<std::unique_ptr<EepromFile>> memories_;  ///< for each module; null if it has no EEPROM file
   std::unique_ptr<Line> line_;
   VirtualTime came_up_{0};  ///< the line's time at which all modules had started up
   LineSummary introduced_;

@@ -12,7 +12,7 @@ void SteppedLine::start(Arrived arrived) {
   arrived_ = std::move(arrived);
   ports_.report_mismatches();
   for (const auto& port : ports_.all()) {
-    // Only serial ports report wrong parity, and they cannot be combined with stepped time.
+    // Only serial ports report wrong parity, and a line with a serial port cannot run in stepped time.
     port->start([this, &port = *port](const std::uint8_t* bytes, std::size_t size,
                                       const Port::Positions& /*damaged*/) {
       return receive(size, [this, &port, copy = std::vector<std::uint8_t>(bytes, bytes + size)] {
@@ -63,7 +63,7 @@ void SteppedLine::put_on_line() {
 void SteppedLine::run_until(VirtualTime until) {
   line_.bus().run_until(until);
   if (ports_.reply_is_complete()) {
-    ports_.hand_out();  // passes on the complete reply in one piece
+    ports_.hand_out();
   }
   if (frames_ != nullptr) {
     frames_->run(until);

@@ -1,4 +1,4 @@
-// A line in stepped time: only a command advances its clock.
+// A line in stepped time: only the command `advance` advances its clock.
 #pragma once
 
 #include <cstddef>
@@ -13,19 +13,20 @@
 
 namespace ex9000::sim {
 
-/// Stores the bytes that arrive at the line's ports until they are put on the line. No function reads the
-/// wall clock or blocks.
+/// Stores the bytes that arrive at the line's ports and the requests that arrive at its Modbus TCP server,
+/// until `put_on_line`. No function reads the wall clock or blocks.
 class SteppedLine {
  public:
   using Arrived = std::function<void()>;
 
-  /// If this many bytes are stored, the ports deliver no more until `put_on_line`.
+  /// A port or a server that delivers bytes while at least this many bytes are stored, including the
+  /// delivered ones, delivers no more until `put_on_line`.
   static constexpr std::size_t kMostBytes = 65'536;
 
-  /// `frames` may be null. All arguments must outlive this object.
+  /// `frames` may be null. `line`, `ports` and `frames` must outlive this object.
   SteppedLine(Line& line, const LinePorts::All& ports, FrameWatch* frames, LinePorts::Notice notice);
 
-  /// Accepts masters. `arrived` is called whenever bytes have arrived.
+  /// Accepts masters. `arrived` is called whenever bytes have arrived at a port or at the server.
   void start(Arrived arrived);
   /// Starts `server` and puts its requests on the line. Call this after `start`; `server` must outlive this
   /// object.
@@ -35,30 +36,31 @@ class SteppedLine {
 
   /// Returns how many bytes have arrived that are not on the line yet.
   [[nodiscard]] std::size_t waiting() const { return waiting_; }
-  /// Reads everything that is available at the ports and at the server.
+  /// Reads what is available at the ports and at the server, within the limit of `kMostBytes`.
   void read_ports();
   /// Puts the stored bytes on the line, without a gap, after those that the master still has to send. Adds
-  /// the requests of the server to the queue of the line.
+  /// the requests of the server to the queue of the line. If a port or the server has stopped at
+  /// `kMostBytes`, it continues.
   void put_on_line();
 
   [[nodiscard]] VirtualTime now() const { return line_.clock().virtual_now(); }
-  /// Returns the time of the next event; kNever: none occurs without an action from outside.
+  /// Returns the time of the next event; kNever if no event occurs without an action from outside.
   [[nodiscard]] VirtualTime next() const { return line_.bus().next(); }
-  /// Processes all events up to and including `until`.
+  /// Processes all events up to and including `until`. Calls `hand_out` if a reply has become complete.
   void run_until(VirtualTime until);
-  /// Returns whether a byte, a silence, a reply or a store is in progress: see Line::pending.
+  /// See Line::pending.
   [[nodiscard]] bool pending() const { return line_.pending(); }
   /// See LinePorts::sent.
   [[nodiscard]] std::uint64_t sent() const { return ports_.sent(); }
-  /// Writes the bytes that the master's end has received from the line to the ports.
+  /// See LinePorts::hand_out.
   void hand_out() { ports_.hand_out(); }
 
  private:
-  /// Puts bytes that have arrived together on the line.
+  /// Puts bytes that have arrived together on the line, or adds the requests in them to the line's queue.
   using Put = std::function<void()>;
 
   bool receive(std::size_t size, Put put);
-  /// Returns whether the ports wait for `resume`.
+  /// Returns whether a port or the server waits for `resume`.
   [[nodiscard]] bool full() const { return waiting_ >= kMostBytes; }
 
   Line& line_;
@@ -67,7 +69,7 @@ class SteppedLine {
   Arrived arrived_;
   ModbusTcpServer* server_ = nullptr;
   std::vector<Put> arrivals_;  ///< in the order of arrival
-  std::size_t waiting_ = 0;    ///< number of bytes in them
+  std::size_t waiting_ = 0;    ///< number of bytes in `arrivals_`
 };
 
 }  // namespace ex9000::sim

@@ -30,7 +30,8 @@ void LineThreads::start() {
   }
 }
 
-/// Runs the handlers of a thread. After an exception the thread continues, because `pause_for` waits for it.
+/// Runs the handlers of `io` until `io` is stopped. After an exception the thread continues, because
+/// `pause_for` waits for all threads.
 void LineThreads::run(boost::asio::io_context& io) {
   while (!io.stopped()) {
     try {

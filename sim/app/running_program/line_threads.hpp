@@ -14,27 +14,29 @@
 
 namespace ex9000::sim {
 
-/// Runs each line on one of the threads. The main thread may use a line only during a pause. Only the main
-/// thread may call the functions of this class.
+/// Runs each line on one of the threads. While the threads run, the main thread may use a line only in the
+/// `action` of `pause_for`. Only the main thread may call the public functions of this class.
 class LineThreads {
  public:
-  /// With fewer than two threads, the lines run on the main thread, in `main`. `main` must outlive this
+  /// If `threads` is less than two, the lines run on the main thread, in `main`. `main` must outlive this
   /// object.
   LineThreads(boost::asio::io_context& main, std::size_t threads);
   ~LineThreads() { end(); }
   LineThreads(const LineThreads&) = delete;
   LineThreads& operator=(const LineThreads&) = delete;
 
-  /// Returns the io_context of a line. `line` is its position, from 0.
+  /// Returns the io_context of a line. `line` is the position of the line, from 0.
   [[nodiscard]] boost::asio::io_context& io(std::size_t line);
-  /// Starts the threads. An exception in a handler of a line stops `main`. Throws std::runtime_error with a
-  /// one-line message if the system cannot start a thread.
+  /// Starts the threads. An exception in a handler on one of the threads stops `main`. Throws
+  /// std::runtime_error with a one-line message if the system cannot start a thread.
   void start();
-  /// Runs `action` while no handler of a line runs. Blocks until the present handlers have ended.
+  /// Waits until the handlers that are running or ready on the threads have ended, then runs `action` while
+  /// no handler of a line runs. Throws what `action` throws.
   void pause_for(const std::function<void()>& action);
-  /// Ends the threads. Blocks until the present handlers have ended.
+  /// Ends the threads. Blocks until the handlers that are running have ended.
   void end();
-  /// Throws the first exception that a handler of a line has thrown. Call this after `end`.
+  /// Throws the first exception that a handler has thrown on one of the threads. Does nothing if there was
+  /// none. Call this after `end`.
   void rethrow() const;
 
  private:
@@ -51,7 +53,7 @@ class LineThreads {
   boost::asio::io_context& main_;
   std::deque<Worker> workers_;  ///< a deque, because a Worker must not move
   std::size_t running_ = 0;     ///< number of started threads
-  std::mutex mutex_;            ///< protects the members below
+  std::mutex mutex_;            ///< protects `paused_`, `pauses_` and `failure_`
   std::condition_variable changed_;
   std::size_t paused_ = 0;    ///< number of threads in the present pause
   std::uint64_t pauses_ = 0;  ///< number of pauses that have ended

@@ -42,7 +42,8 @@ RunningProgram::RunningProgram(boost::asio::io_context& io, Setup setup, Print p
     print_ = [this](const std::string& line) { watch_->print(line); };
   }
   for (const LineSetup& line : setup_.lines) {
-    // Each message begins with the line's name, if the line has one. JSON already contains the name.
+    // A line of the text log begins with the name of the simulated line, if it has one. JSON has a key for
+    // the name.
     const bool as_it_is = line.name.empty() || for_machines();
     const std::string lead = as_it_is ? "" : line.name + ": ";
     lines_.push_back(std::make_unique<RunningLine>(
@@ -126,8 +127,8 @@ void RunningProgram::watch_lines() {
   }
 }
 
-/// Updates the view of the modules every 50 ms. If the lines do not follow the wall clock, the code that
-/// advances their time calls look() instead.
+/// Updates the view of the modules now and, if the lines follow the wall clock, every 50 ms. Otherwise the
+/// code that advances the time of the lines updates the view.
 void RunningProgram::keep_watching() {
   constexpr auto kBetweenLooks = std::chrono::milliseconds(50);
   threads_.pause_for([this] { watch_->look(); });
@@ -148,13 +149,15 @@ void RunningProgram::open_capture() {
   }
   const std::string place = place_of(setup_.places, "capture");
   with_place(place, [this] {
-    refuse_overwriting(*setup_.capture, in_use_by(setup_));  // the links and the control socket exist now
+    // The links and the control socket exist now, so that their inodes can be compared with the capture's.
+    refuse_overwriting(*setup_.capture, in_use_by(setup_));
   });
   made_.emplace_back(*setup_.capture, is_there(*setup_.capture));
   capture_ = std::make_unique<Capture>(*setup_.capture, place);
 }
 
-/// Advances all paced lines to the present time before the command, so that its replies are consistent.
+/// Carries out a command of the control socket or of the panel. Before the command, advances all paced lines
+/// to the present time, so that the reply describes all lines at this time.
 Control::Reply RunningProgram::carry_out(const std::string& command) {
   if (stepper_) {
     return control_->carry_out(command);
@@ -168,8 +171,8 @@ Control::Reply RunningProgram::carry_out(const std::string& command) {
   return reply;
 }
 
-/// Adds a request to the queue of a line. The line's thread receives the reply, and the main thread reports
-/// it.
+/// Adds a request to the queue of a line. The line's thread receives the reply, and the main thread calls
+/// `request.done` with the reply.
 void RunningProgram::ask(std::size_t line, RequestQueue::Request request) {
   request.done = [this, done = std::move(request.done)](const RequestQueue::Reply& reply) {
     boost::asio::post(io_, [done, reply] { done(reply); });
@@ -192,8 +195,8 @@ void RunningProgram::answer(const std::string& command, const ControlSocket::Ans
   }
 }
 
-/// Begins the capture. If the lines do not follow the wall clock, the times in the capture begin at 0, so
-/// that the capture does not depend on the time of day.
+/// Begins the capture. If the lines do not follow the wall clock, the capture contains the lines' time
+/// without an offset, so that the capture does not depend on the time of day.
 void RunningProgram::keep_a_capture() {
   capture_->begin();
   const auto now = std::chrono::system_clock::now().time_since_epoch();
@@ -244,8 +247,8 @@ void RunningProgram::start() {
   }
 }
 
-/// Creates the files, and starts the lines. All other steps of the start that can fail come first, so that no
-/// file is created if one of them fails.
+/// Creates the files, prints the greeting, and starts paced lines. The other steps of the start that can fail
+/// come first, so that no file is created if one of them fails.
 void RunningProgram::begin() {
   make_files_and_greet();
   for (std::size_t i = 0; i < lines_.size(); ++i) {
@@ -263,7 +266,7 @@ void RunningProgram::begin() {
   }
 }
 
-/// Returns whether the run has an end. A duration of more than a century on the wall clock counts as endless,
+/// Returns whether the run has an end. A duration of a century or more on the wall clock counts as endless,
 /// because the clock's range is finite.
 bool RunningProgram::ends() const {
   constexpr auto kLongestRun = std::chrono::hours(24 * 365 * 100);

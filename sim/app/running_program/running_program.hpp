@@ -1,4 +1,4 @@
-// One run of the program: its lines, its control socket and its panel.
+// One run of the program: its lines, its control socket, its panel, its terminal view and its capture.
 #pragma once
 
 #include <boost/asio/io_context.hpp>
@@ -30,25 +30,28 @@ class RunningProgram : private PanelSource {
  public:
   using Print = RunningLine::Print;
 
-  /// Opens everything that `setup` names. Throws std::invalid_argument or std::runtime_error with a one-line
-  /// message. After an exception, everything is closed again, and no file has been created or changed.
-  /// `print` receives the log and the greeting; if the log is JSON, `greet` receives the greeting instead.
-  /// `terminal` is the terminal that `print` writes to, or null. `io` and `terminal` must outlive this
-  /// object.
+  /// Opens everything that `setup` names, except EEPROM files that do not exist. Throws std::invalid_argument
+  /// or std::runtime_error with a one-line message. After an exception, everything is closed again, no new
+  /// file remains, and the content of existing files is unchanged. `print` receives the log, the notes and
+  /// the greeting; if the log is JSON, `greet` receives the greeting instead. `terminal` is used only if
+  /// `setup.watch` is true; see Watch. `io` and `terminal` must outlive this object.
   RunningProgram(boost::asio::io_context& io, Setup setup, Print print, Print greet, Terminal* terminal);
   ~RunningProgram() override;
   RunningProgram(const RunningProgram&) = delete;
   RunningProgram& operator=(const RunningProgram&) = delete;
 
-  /// Creates the missing files, prints the greeting, and prepares the lines. Paced lines advance from then
-  /// on, those on the main thread as soon as `io` runs. Stepped lines advance at each `advance`. Both stop
-  /// `io` at the end of the duration in `setup`. Throws like the constructor; files that it has created are
-  /// then removed.
+  /// Updates the existing EEPROM files, creates the missing files, prints the greeting, and starts the lines.
+  /// The time of paced lines passes from then on. The time of stepped lines passes at each command `advance`.
+  /// If `setup` has a duration, paced or stepped lines stop `io` at its end. Throws std::invalid_argument or
+  /// std::runtime_error with a one-line message. If the greeting has not been printed, the destructor removes
+  /// the new files.
   void start();
-  /// Only for Speed::Kind::Max: processes all events in the duration of `setup`, unless `io` is stopped.
+  /// Only for Speed::Kind::Max: processes all events in the duration of `setup`. Ends early if `io` is
+  /// stopped.
   void run_unpaced();
-  /// Records the frames that are still in progress. Call this when `io` has stopped or `run_unpaced` has
-  /// returned. Throws like the constructor.
+  /// Ends the threads and records the frames that are still in progress. Call this when `io` has stopped or
+  /// `run_unpaced` has returned. Throws the first exception of a handler on one of the threads, and
+  /// std::runtime_error with a one-line message if a record cannot be written.
   void finish();
 
  private:
@@ -85,9 +88,9 @@ class RunningProgram : private PanelSource {
   boost::asio::steady_timer next_look_;
   std::optional<Control> control_;
   StopSignals stop_signals_;
-  std::unique_ptr<Stepper> stepper_;  ///< null unless time is stepped
+  std::unique_ptr<Stepper> stepper_;  ///< null until `start`, and always null if time is not stepped
   std::unique_ptr<ControlSocket> control_socket_;
-  std::list<NewFile> made_;  ///< the destructor removes them unless the greeting has been printed
+  std::list<NewFile> made_;  ///< kept after the greeting has been printed; see NewFile
   std::unique_ptr<Capture> capture_;
   std::unique_ptr<Panel> panel_;
   std::unique_ptr<PanelServer> panel_server_;

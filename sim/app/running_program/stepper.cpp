@@ -107,9 +107,10 @@ void Stepper::carry_out(const Request& request, const Answer& answer) {
   answer({"ok " + seconds_text(now), now >= end_});
 }
 
-/// Processes events in the order of time across all lines, so that the log of several lines is sorted too.
-/// Only the line with the next event is updated. Returns false if the program was asked to end before TIME
-/// had passed.
+/// Advances the lines. Processes events in the order of time across all lines, so that the logs of the lines
+/// are not printed one after the other. In each step, only the line with the next event advances; at the end,
+/// all lines advance to the same time. Returns false if the program was asked to end before the command was
+/// completed.
 bool Stepper::pass(const Request& request) {
   struct State {
     SteppedLine* line;

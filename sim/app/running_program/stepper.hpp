@@ -12,8 +12,9 @@
 
 namespace ex9000::sim {
 
-/// All lines have the same time. Events depend only on the commands and on the bytes that arrive: the same
-/// commands produce the same bytes at the same virtual times.
+/// Between commands, all lines have the same time. Events depend only on the commands and on the bytes that
+/// arrive: if the same bytes arrive before the same commands, the replies are the same at the same virtual
+/// times.
 class Stepper {
  public:
   using Answer = std::function<void(const Control::Reply&)>;
@@ -21,25 +22,26 @@ class Stepper {
   /// Returns whether the program has been asked to end.
   using StopRequested = std::function<bool()>;
 
-  /// `lines` must outlive this object. When their time reaches `end`, the program ends; kNever: no end.
-  /// `stop_requested` is called regularly while time passes.
+  /// The lines must outlive this object. When their time reaches `end`, the program ends; kNever if the run
+  /// has no end. `stop_requested` is called repeatedly during an `advance` with many events.
   Stepper(std::vector<SteppedLine*> lines, VirtualTime end, StopRequested stop_requested);
 
-  /// Returns whether `command` is an `advance` command.
+  /// Returns whether the first word of `command` is `advance`.
   static bool is_advance(const std::string& command);
-  /// Carries out `advance TIME [after N] [quiet]`. Does not wait for bytes: calls `answer`, during this call
-  /// or later, as soon as all of these are true:
-  /// - N bytes have arrived at the ports that no earlier `advance` has put on a line. Everything that is
-  ///   available has been read and put on its line.
-  /// - TIME has passed, or the lines have reached `end`. With `quiet`, it is also sufficient that nothing is
+  /// Carries out `advance TIME [after N] [quiet]` in these steps:
+  /// - If fewer than N bytes have arrived that no earlier `advance` has put on a line, returns. The next
+  ///   steps then follow in the call of `arrived` after which N bytes have arrived.
+  /// - Reads what is available at all ports and Modbus TCP servers, and puts it on their lines.
+  /// - Advances the lines by TIME, but not beyond `end`. With `quiet`, stops earlier, as soon as nothing is
   ///   pending on any line.
-  /// - Every reply has been written to its port.
+  /// - Writes the bytes of the replies to the ports, and calls `answer`.
   ///
-  /// `answer` receives `ok NOW`, the lines' time in seconds, or `error: ...`. If the command is wrong,
-  /// nothing changes. If the program is asked to end while time passes, time stops and `answer` receives an
-  /// error. A later call replaces a call that still waits for bytes; the replaced call receives an error.
+  /// `answer` receives `ok NOW`, where NOW is the lines' time in seconds, or `error: ...`. If the command is
+  /// wrong, it has no effect except the error. If the program is asked to end while time passes, time stops
+  /// and `answer` receives an error. A later correct command replaces one that still waits for bytes; the
+  /// `answer` of the replaced command receives an error.
   void advance(const std::string& command, Answer answer);
-  /// Call this when bytes have arrived at a port.
+  /// Call this when bytes have arrived at a port or at a Modbus TCP server.
   void arrived();
 
  private:

@@ -6,18 +6,20 @@
 
 namespace ex9000::sim {
 
-/// Adds SIGINT, SIGTERM and SIGHUP, except those that were ignored when the program started: nohup ignores
-/// SIGHUP, and shells ignore SIGINT for background jobs.
+/// Adds SIGINT, SIGTERM and SIGHUP to `signals`, except those that the process ignores at this time. If nohup
+/// has started the program, the process ignores SIGHUP. If a shell script has started the program in the
+/// background, the process ignores SIGINT.
 void add_stop_signals(boost::asio::signal_set& signals);
 
-/// Detects these signals while a long computation prevents the io_context of the program from running.
+/// Detects the signals of `add_stop_signals` while a long computation prevents the io_context of the program
+/// from running.
 class StopSignals {
  public:
   StopSignals();
   StopSignals(const StopSignals&) = delete;
   StopSignals& operator=(const StopSignals&) = delete;
 
-  /// Returns whether a signal has arrived since construction. Does not block.
+  /// Returns whether one of these signals has arrived since construction. Does not block.
   bool arrived();
 
  private:

@@ -24,8 +24,8 @@ UpperPdu dissected_by(const Frame& frame) {
 }
 
 /// Sets the ports of a frame. The master of each line has its own port, because Wireshark matches replies
-/// with requests by their ports. A station that is neither the master nor a module has no port, because it
-/// may send both requests and replies.
+/// with requests by their ports. A frame of a station that is neither the master nor a module gets no ports,
+/// because this station may send both requests and replies.
 void set_ports(UpperPdu& pdu, std::size_t line, std::size_t modules, const Frame& frame) {
   constexpr std::size_t kFirstMastersPort = 10000;
   const auto master = static_cast<std::uint16_t>(kFirstMastersPort + line);

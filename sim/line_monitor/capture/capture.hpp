@@ -12,25 +12,24 @@
 
 namespace ex9000::sim {
 
-/// The TCP port that represents all modules. Wireshark's dissector for Modbus RTU uses it to distinguish
-/// requests from replies: set mbrtu.tcp.port to this value.
+/// The TCP port that represents all modules. Wireshark's dissector for Modbus RTU uses this port to
+/// distinguish requests from replies: set mbrtu.tcp.port to this value.
 constexpr std::uint16_t kCapturedModulesPort = 9000;
 
-/// Each line becomes an interface, and each frame becomes a packet. A packet is inbound if the master
-/// receives the frame, and outbound if the master sends it. A frame that looks like DCON is stored as text.
-/// All other frames are stored as Modbus RTU or, if they are too short for that, as bytes. The errors of a
-/// frame become the comment of its packet. A frame that a fault puts on a line is not marked as request or
-/// reply.
+/// Each line becomes an interface, and each frame becomes a packet. A packet is outbound if the master sends
+/// the frame, and inbound if another station sends it. A frame that looks like a DCON frame, even a damaged
+/// one, is marked as text. All other frames are marked as Modbus RTU or, if they have fewer than five bytes,
+/// as data. The errors of a frame become the comment of its packet. A frame that a fault puts on a line is
+/// not marked as request or reply.
 class Capture {
  public:
-  /// Opens the file. All functions throw the exceptions of CaptureFile.
+  /// Opens the file; see CaptureFile. All functions may throw the exceptions of CaptureFile.
   Capture(std::string path, const std::string& place) : file_(std::move(path), place) {}
 
   /// Replaces the content of the file with an empty capture. Call this first.
   void begin();
-  /// Adds a line with `modules` modules, which are attached after the master. `began` is the wall clock time
-  /// (since 1970-01-01 00:00:00 UTC) that corresponds to time 0 of the line. Returns the line's number for
-  /// `write`.
+  /// Adds a line with `modules` modules, which are stations 1 to `modules`. `began` is the timestamp for time
+  /// 0 of the line, since 1970-01-01 00:00:00 UTC. Returns the line's number for `write`.
   std::size_t add_line(const std::string& name, std::size_t modules, std::chrono::nanoseconds began);
   /// Writes a frame of a line. Several threads may call this at the same time, but not during `add_line`.
   void write(std::size_t line, const Frame& frame);

@@ -9,7 +9,7 @@ constexpr std::uint32_t kSectionHeaderBlock = 0x0A0D0D0A;
 constexpr std::uint32_t kInterfaceDescriptionBlock = 1;
 constexpr std::uint32_t kEnhancedPacketBlock = 6;
 
-// Option codes: those of all blocks (3.5), then those of each block.
+// Option codes: first those of all blocks (3.5), then those of one type of block.
 constexpr std::uint16_t kEndOfOptions = 0;
 constexpr std::uint16_t kComment = 1;
 constexpr std::uint16_t kSectionUserApplication = 4;

@@ -11,8 +11,8 @@ namespace ex9000::sim::pcapng {
 
 using Block = std::vector<std::uint8_t>;
 
-/// Returns a Section Header Block (4.1), the first block of a file. `userappl` is the program that writes the
-/// file.
+/// Returns a Section Header Block (4.1), the first block of a file. `userappl` names the program that writes
+/// the file.
 Block section_header(const std::string& userappl);
 
 /// Returns an Interface Description Block (4.2), which describes a source of packets. Interfaces are numbered

@@ -26,7 +26,8 @@ void put_number(std::vector<std::uint8_t>& header, std::uint16_t tag, std::uint3
   put(header, number, sizeof number);
 }
 
-/// Appends a tag with a text, padded with zeros. The length in the tag includes the padding.
+/// Appends a tag with a text, padded with zeros to a multiple of four bytes. The length in the tag includes
+/// the padding.
 void put_text(std::vector<std::uint8_t>& header, std::uint16_t tag, std::string text) {
   text.resize((text.size() + 3) / 4 * 4);
   put(header, tag, 2);

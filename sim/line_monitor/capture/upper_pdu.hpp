@@ -1,7 +1,6 @@
 // The header that lets Wireshark dissect a frame without the layers below it: LINKTYPE_WIRESHARK_UPPER_PDU,
-// see https://wiki.wireshark.org/Protocols/exported_pdu. Unlike the link types for serial lines, this one
-// records whether a frame is a request or a reply. It also names the dissector, so that users need not
-// configure one.
+// see https://wiki.wireshark.org/Protocols/exported_pdu. The ports in this header can show whether a frame is
+// a request or a reply. The header also names the dissector, so that users need not choose a dissector.
 #pragma once
 
 #include <cstdint>

@@ -35,7 +35,7 @@ std::string escaped(std::uint8_t byte) {
 
 struct DconRequest {
   const dcon::Command* command = nullptr;  ///< null: no matching command
-  bool checksum = false;                   ///< its last two characters are a checksum, correct or not
+  bool checksum = false;                   ///< the last two characters are a checksum, correct or not
 };
 
 DconRequest dcon_request_of(const std::string& text) {
@@ -67,11 +67,11 @@ bool checksum_is_right(const std::string& text) {
   return text.substr(text.size() - kChecksumDigits) == hex_byte_text(sum & 0xFFU);
 }
 
-/// Modules ignore these bytes before a delimiter (wire.md 3): the turn-around of a line can produce 00, and
-/// terminals send LF after CR.
+/// Returns whether modules ignore this byte before a delimiter (wire.md section 3). The turn-around of a line
+/// can produce 00, and some terminals send LF after CR.
 bool is_skipped(std::uint8_t byte) { return byte == 0x00 || byte == '\n'; }
 
-/// Returns the position of the delimiter if only skipped bytes precede it; otherwise the beginning.
+/// Returns the position of the delimiter if only bytes of `is_skipped` precede it; otherwise the beginning.
 FrameBytes::const_iterator dcon_begin(const FrameBytes& bytes) {
   const auto first = std::find_if_not(bytes.begin(), bytes.end(), is_skipped);
   const bool delimits =
@@ -79,7 +79,7 @@ FrameBytes::const_iterator dcon_begin(const FrameBytes& bytes) {
   return delimits ? first : bytes.begin();
 }
 
-/// Returns the text from the delimiter to the character before CR.
+/// Returns the text of a DCON frame, without skipped bytes before a delimiter and without CR.
 std::string dcon_text(const FrameBytes& bytes) {
   return {dcon_begin(bytes), bytes.end() - (bytes.back() == '\r' ? 1 : 0)};
 }
@@ -109,7 +109,8 @@ std::string dcon_reply(const FrameBytes& bytes) {
   }
 }
 
-/// Returns whether the address is in `row` on at least one model and a function of `listed` can access it.
+/// Returns whether a function of `listed` can access `row`, and the address is in `row` on at least one
+/// model.
 template <class Row>
 bool lies_in(const Row& row, modbus::Functions listed, unsigned address) {
   return (row.functions & listed) != 0 &&

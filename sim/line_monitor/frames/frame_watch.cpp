@@ -12,7 +12,8 @@ namespace {
 constexpr std::size_t kMaster = 0;
 
 /// The longest pauses inside a frame: between the pieces of a master's write, and between two key presses of
-/// a person. If four characters take longer than 5 ms, the first limit is the time of four characters.
+/// a person. If four characters of 11 bits take longer than 5 ms, the first limit is the time of four such
+/// characters.
 constexpr VirtualTime kLongestPauseInWrite = std::chrono::milliseconds(5);
 constexpr VirtualTime kLongestPauseInTyping = std::chrono::seconds(5);
 
@@ -35,8 +36,9 @@ FrameWatch::Sender& FrameWatch::sender(std::size_t station) {
   return senders_[station];
 }
 
-/// Returns whether this byte of the master begins a new frame. A time limit alone cannot detect a new frame:
-/// gaps between requests without a reply may be shorter than gaps between the pieces of one request.
+/// Returns whether the master's byte from `start` to `end` begins a new frame. A time limit alone cannot
+/// detect a new frame: gaps between requests without a reply may be shorter than gaps between the pieces of
+/// one request.
 bool FrameWatch::begins_another(VirtualTime start, VirtualTime end) {
   constexpr std::size_t kShortest = 4;
   const Frame& frame = sender(kMaster).frame;
@@ -83,7 +85,7 @@ void FrameWatch::byte(std::size_t station, std::uint8_t byte, SerialMode mode, b
 
 void FrameWatch::driver(std::size_t station, bool on, VirtualTime /*now*/) {
   if (!on) {
-    sender(station).change.reset();  // the byte in progress is cut off and will not arrive
+    sender(station).change.reset();  // a byte in progress is cut off, and the bus does not report it
     if (station != kMaster) {
       hand_out(station);
     }

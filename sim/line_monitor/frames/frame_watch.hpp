@@ -12,7 +12,7 @@
 
 namespace ex9000::sim {
 
-/// The bytes that one station has sent in one transmission.
+/// Bytes that one station has sent, combined into a frame by the rules of FrameWatch.
 struct Frame {
   /// A byte that was sent with wrong parity or that a disturbance has changed.
   struct Change {
@@ -21,10 +21,10 @@ struct Frame {
     Levels arrives = 0;
     LineFormat format = LineFormat::k8N1;
 
-    /// Returns the byte that receivers read; nullopt if the start bit is lost, because receivers then do not
-    /// detect the byte.
+    /// Returns the byte that receivers in the sender's mode read; nullopt if the start bit is lost, because
+    /// receivers then do not detect the byte.
     [[nodiscard]] std::optional<std::uint8_t> byte() const;
-    /// Returns the status that receivers report if they detect the byte.
+    /// Returns the status that these receivers report if they detect the byte.
     [[nodiscard]] ByteStatus status() const { return status_of(arrives, format); }
   };
 
@@ -35,8 +35,8 @@ struct Frame {
   std::vector<Change> changes;
   bool collided = false;  ///< see BusObserver::byte; true if at least one byte collided
   /// The modes of the sender and of the line at the first byte. Receivers in the line's mode get these bytes
-  /// only if the rates and the parities of both modes are equal. A change of the mode during the frame is not
-  /// reported.
+  /// only if the rates and the parities of both modes are equal. A change of a mode during the frame does not
+  /// change these members.
   SerialMode sent_in;
   SerialMode line_in;
   VirtualTime began{0};  ///< start of the first start bit
@@ -47,10 +47,11 @@ struct Frame {
 
 /// Combines bytes into frames by these rules. A DCON frame ends with CR, or when no byte follows for 5 s,
 /// because a person may type the frame. Any other frame ends when no byte follows for 5 ms or for the time of
-/// four characters, whichever is longer, because the master may write the frame in pieces. If the master
-/// sends such a frame, the frame also ends when another station enables its driver, or when a gap follows a
-/// correct CRC. A frame of another station also ends when this station disables its driver. Every frame ends
-/// after 300 bytes at the latest.
+/// four characters of 11 bits, whichever is longer, because the master may write the frame in pieces. A frame
+/// of the master that is not DCON also ends when another station enables its driver. A frame of the master
+/// with a correct CRC also ends if the gap before the next byte is longer than 1.5 characters. A frame of
+/// another station also ends when this station disables its driver. Every frame ends after 300 bytes at the
+/// latest.
 class FrameWatch final : public BusObserver {
  public:
   using Take = std::function<void(const Frame&)>;
@@ -62,8 +63,8 @@ class FrameWatch final : public BusObserver {
   /// Adds a receiver. FrameWatch calls `take` with each later frame when the frame has ended.
   void add_receiver(Take take) { takers_.push_back(std::move(take)); }
 
-  /// Returns the time at which `run` must pass on the first unfinished frame if no byte follows; kNever if
-  /// there is none.
+  /// Returns the earliest time at which `run` must pass on an unfinished frame if no byte follows; kNever if
+  /// no frame is unfinished.
   [[nodiscard]] VirtualTime next() const;
   /// Passes on the frames that are due at `now`.
   void run(VirtualTime now);

@@ -11,7 +11,7 @@ namespace ex9000::sim {
 
 namespace {
 
-/// Returns the path, in quotes if the shell requires them.
+/// Returns the path as one word for the shell. Adds quotes if a character of the path is not in `plain`.
 std::string quoted(const std::string& path) {
   const std::string plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./-+:@%";
   if (path.find_first_not_of(plain) == std::string::npos) {
@@ -44,7 +44,7 @@ const FormatOptions& options_of(LineFormat format) {
                        [format](const FormatOptions& options) { return options.format == format; });
 }
 
-/// The part of an mbpoll command that names the port.
+/// The parts of an mbpoll command that depend on the port.
 struct MbpollPort {
   std::string options;
   std::string name;
@@ -86,7 +86,8 @@ std::string terminal(const ModuleSummary& module, const std::string& link) {
          "M and Enter\n";
 }
 
-/// Returns commands that a user can paste to use the module; empty if there is no port for them.
+/// Returns commands that a user can paste to use the module; empty if masters can reach the module neither
+/// through a pseudo-terminal nor through the gateway.
 std::string commands(const LineSummary& line, const ModuleSummary& module) {
   if (!line.pty.empty()) {
     return module.speaks_ascii ? terminal(module, quoted(line.pty)) : mbpoll(module, pty_of(line, module));

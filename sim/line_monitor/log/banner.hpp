@@ -1,4 +1,4 @@
-// The greeting that the program prints first.
+// The greeting that the program prints when it starts.
 #pragma once
 
 #include <cstdint>
@@ -21,15 +21,15 @@ struct ModuleSummary {
 };
 
 struct LineSummary {
-  std::string name;  ///< empty for the line of a command line
+  std::string name;  ///< empty if the command line describes the line
   hal::SerialMode mode;
   bool instant = false;
   std::vector<ModuleSummary> modules;
-  std::string pty;         ///< link of the pseudo-terminal; empty: none
+  std::string pty;         ///< path of the link to the pseudo-terminal; empty: none
   std::string pty_device;  ///< the device to which the link points
   std::string tcp;         ///< HOST:PORT of the TCP port; empty: none
   std::string modbus_tcp;  ///< HOST:PORT of the gateway; empty: none
-  std::string serial;      ///< the serial port; empty: none
+  std::string serial;      ///< path of the serial port; empty: none
 };
 
 struct BannerContent {
@@ -38,10 +38,11 @@ struct BannerContent {
   std::string control;  ///< path of the control socket; empty: none
 };
 
-/// Returns a text of several lines that names the simulated lines, their ports and their modules. For each
-/// module that masters can reach through a pseudo-terminal or a gateway, the text contains commands that the
-/// user can paste. These commands read a Modbus module and switch an output. For a module that speaks ASCII,
-/// the command opens a terminal.
+/// Returns a text of several lines that names the version, the panel, the simulated lines with their ports
+/// and modules, and the control socket. For each module that masters can reach through a pseudo-terminal or a
+/// gateway, the text contains commands that the user can paste. For a Modbus module, these commands read the
+/// outputs, the inputs and the counters that the module has, and switch output 0 on if there are outputs. For
+/// a module that speaks ASCII, the command opens a terminal program.
 std::string greeting(const BannerContent& all);
 
 }  // namespace ex9000::sim

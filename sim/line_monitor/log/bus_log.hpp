@@ -10,8 +10,8 @@
 
 namespace ex9000::sim {
 
-/// The names of the master and of the modules, in the order of the stations. Stations that faults add to the
-/// line follow after the modules and have no name.
+/// The names of the master and of the modules, in the order of the stations. Stations that are attached to
+/// the line later, for example by faults, have no name.
 class StationNames {
  public:
   explicit StationNames(std::vector<std::string> names) : names_(std::move(names)) {}
@@ -35,7 +35,7 @@ class BusLog {
   virtual ~BusLog() = default;
 
   virtual void frame(const Frame& frame) = 0;
-  /// Writes a note about the line; `now` is the time in the log.
+  /// Writes a note about the line. `now` is the time of the line's clock.
   virtual void note(VirtualTime now, const std::string& text) = 0;
 };
 

@@ -7,16 +7,16 @@
 
 namespace ex9000::sim {
 
-/// Members of a frame:
+/// Members of the object of a frame:
 ///   time      start of its first start bit, in seconds of the line's time
 ///   line      name of the line
-///   from      name of the station that sent it
+///   from      name of the station that sent it, or `unknown sender`
 ///   bytes     in hex, without blanks
-///   text      present if the bytes are DCON
-///   meaning   present if it is known and there was no collision
-///   error     collision, wrong rate or format, noise, wrong CRC or checksum; present if there is any
+///   text      the bytes as text; present if they have the form of a DCON frame
+///   meaning   see `meaning`; present if it is known, the station has a name, and there was no collision
+///   error     see `errors`, but only `line_error` if the station has no name; present if there is an error
 ///   collided  whether a byte collided, see BusObserver::byte
-/// Members of a note: time, line, note.
+/// Members of the object of a note: time, line, note.
 class JsonLog final : public BusLog {
  public:
   JsonLog(std::string line, StationNames names, Print print)

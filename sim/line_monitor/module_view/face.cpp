@@ -70,7 +70,7 @@ HostWatchdogState guard_of(const SimulatedModule& module, VirtualTime now) {
   guard.timeout = state.settings.watchdog_timeout;
   guard.reset_status = state.reset_status;
   const Deadline expiry = module.module().host_watchdog_expiry();
-  // Rounds down to microseconds, like the firmware's clock, so that the result stays the same until the
+  // Rounds `now` down to microseconds, like the firmware's clock, so that `expires` stays the same until the
   // watchdog is restarted.
   const auto since = std::chrono::duration_cast<std::chrono::microseconds>(now);
   const Time core_now(static_cast<std::uint32_t>(since.count()));
@@ -134,7 +134,7 @@ bool operator==(const HostWatchdogState& a, const HostWatchdogState& b) {
   return all(a) == all(b);
 }
 
-/// Compares only the bytes, because all other members depend on them.
+/// Compares only the bytes of the copies, because all other members depend on them.
 bool operator==(const Stored& a, const Stored& b) { return a.copies == b.copies; }
 
 Face face_of(const SimulatedModule& module, VirtualTime now) {

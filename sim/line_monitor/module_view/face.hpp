@@ -22,13 +22,13 @@ enum class Led : std::uint8_t {
   SettingsUnreadable,  ///< two short flashes every 2 s
 };
 
-/// The state of the front plate.
+/// The state that viewers show on the front plate of a module.
 struct Plate {
   bool switched_on = false;  ///< the supply's switch
   bool powered = false;      ///< false during a supply failure, even if the switch is on
   bool init = false;         ///< INIT* is tied to GND
   bool listening = false;    ///< the module has started up
-  bool init_mode = false;    ///< the module has started up while INIT* was tied to GND
+  bool init_mode = false;    ///< the module has started up in INIT mode (wire.md section 2)
   // address, mode, protocol and checksum are valid only if `listening`.
   std::uint8_t address = 0;  ///< the address in force
   hal::SerialMode mode;      ///< rate and format in force
@@ -37,7 +37,7 @@ struct Plate {
   Led led = Led::Off;
   std::uint16_t outputs = 0;  ///< driven outputs; bit n is channel n
   std::uint16_t inputs = 0;   ///< levels at the terminals; bit n is channel n
-  /// The remaining time of each timed output, in units of 0.1 s; 0: no time is running.
+  /// The remaining time of each timed output, in units of 0.1 s, rounded up; 0: the timer does not run.
   std::array<std::uint16_t, kMaxOutputs> timers{};
   std::uint64_t watchdog_resets = 0;
 
@@ -58,7 +58,7 @@ struct HostWatchdogState {
   bool enabled = false;
   bool timed_out = false;              ///< the timeout status
   std::uint8_t timeout = 0;            ///< in units of 0.1 s
-  std::optional<VirtualTime> expires;  ///< line time of the expiry unless restarted; nullopt: not running
+  std::optional<VirtualTime> expires;  ///< line time of the expiry if not restarted; nullopt: not running
   bool reset_status = false;           ///< the reset status that `$AA5` would report
 
   friend bool operator==(const HostWatchdogState& a, const HostWatchdogState& b);
@@ -74,14 +74,14 @@ struct Stored {
   };
 
   std::vector<Copy> copies;            ///< in the order of kPlaces
-  std::optional<std::size_t> current;  ///< the copy that a reset would load; nullopt: none is valid
+  std::optional<std::size_t> current;  ///< index of the copy that a reset would load; nullopt: none is valid
   bool blank = false;                  ///< nothing has been stored: a reset would load factory settings
   Settings settings;                   ///< the settings in `current`, or the factory settings
 
   friend bool operator==(const Stored& a, const Stored& b);
 };
 
-/// The complete state. The model is not included because it does not change.
+/// The state of a module that viewers show, without the model, because the model does not change.
 struct Face {
   Plate plate;
   InputRecords gathered;
@@ -94,7 +94,7 @@ Face face_of(const SimulatedModule& module, VirtualTime now);
 
 /// Returns `off`, `on`, `flashing`, or `flashing: settings unreadable`.
 std::string_view led_text(Led led);
-/// Returns the module's name.
+/// Returns the module's name in `settings`.
 std::string name_text(const Settings& settings);
 
 }  // namespace ex9000::sim

@@ -7,14 +7,14 @@
 
 namespace ex9000::sim {
 
-/// Returns the label of output `channel`, from 0. Relays and PhotoMOS switches are counted from 1 on the
-/// label and from 0 on the wire.
+/// Returns the label of output `channel`, which counts from 0. Relays and PhotoMOS relays are counted from 1
+/// on the label and from 0 on the wire.
 inline std::string output_terminal(const Model& model, unsigned channel) {
   const bool open_collector = model.output_kind == OutputKind::OpenCollector;
   return open_collector ? "DO" + std::to_string(channel) : "RL" + std::to_string(channel + 1);
 }
 
-/// Returns the label of input `channel`, from 0.
+/// Returns the label of input `channel`, which counts from 0.
 inline std::string input_terminal(unsigned channel) { return "DI" + std::to_string(channel); }
 
 /// Returns whether the model has a terminal for INIT*. The other models have a switch at the rear.

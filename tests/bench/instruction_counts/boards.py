@@ -1,4 +1,4 @@
-"""The boards for whose images the tool counts instructions."""
+"""The boards for whose images tests/bench/instructions counts instructions."""
 
 import collections
 import pathlib
@@ -10,8 +10,10 @@ from instruction_counts.pico_emulator import PicoEmulator
 
 FOLDER = pathlib.Path(__file__).resolve().parent.parent
 
-# `groups`: the pins of the inputs, in groups that one interrupt serves. `start_up`: seconds until the module has
-# nothing to do. `capacity`: returns a text about the pulses that the board can count, or None.
+# `init`: the pin of INIT*. `groups`: the pins of the inputs; one interrupt serves all pins of a group. `start_up`: the
+# emulated time from power-up until the module has nothing to do, in seconds. `record`: the file with the recorded
+# counts. `capacity`: a function that returns a text about the pulses that a TM4C123 can count; None if the board has no
+# such function.
 Board = collections.namedtuple("Board", "emulator interrupts init groups start_up record capacity")
 
 BOARDS = {
@@ -24,7 +26,7 @@ BOARDS = {
         record=FOLDER / "recorded_instructions",
         capacity=capacity,
     ),
-    # On its first start, the module erases the sectors of its flash, so the start takes longer.
+    # On its first start, the module erases the flash sectors for the settings, so the start takes longer.
     "pico": Board(
         emulator=PicoEmulator,
         interrupts=RP2040,

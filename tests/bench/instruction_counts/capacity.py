@@ -1,5 +1,5 @@
-"""Calculates from instruction counts how many input edges a TM4C123 can process per second. Nothing is measured on a
-board."""
+"""Calculates from instruction counts how many pulses per second a TM4C123 can count on each input. Nothing is measured
+on a board."""
 
 import math
 
@@ -20,7 +20,7 @@ def cycles(instructions):
 
 
 class Found:
-    """The highest counts of all sessions."""
+    """The highest counts of one or more sessions."""
 
     def __init__(self):
         self.received_byte = 0
@@ -29,7 +29,7 @@ class Found:
         self.edges = {}  # number of edges that one interrupt serves -> its instructions
 
     def add(self, counter):
-        """Adds the counts of a counter.Counter."""
+        """Replaces each count by that of a counter.Counter if that is higher."""
         self.received_byte = max(self.received_byte, counter.received_byte.count)
         self.sent_byte = max(self.sent_byte, counter.sent_byte.count)
         for mine, its in ((self.interrupts, counter.interrupts), (self.edges, counter.edges)):
@@ -44,8 +44,8 @@ class Found:
                 mine[key] = max(mine.get(key, 0), count)
 
     def edges_at_once(self, edges):
-        """Returns the instructions of an interrupt that serves this many edges. Calculates them linearly from the
-        counts for one edge and for the largest measured number of edges."""
+        """Returns the number of instructions of an interrupt that serves this many edges. Calculates it linearly from
+        the counts for one edge and for the largest measured number of edges."""
         most = max(self.edges)
         one = self.edges[1]
         return one + (edges - 1) * (self.edges[most] - one) / (most - 1)
@@ -58,7 +58,7 @@ def capacity(found):
     tick = cycles(found.interrupts[execution.TICK])
     busy = byte * BAUD / BITS_A_CHARACTER / HERTZ + tick * TICKS_A_SECOND / HERTZ
     left = max(0.0, 1 - busy - LEFT_TO_THE_MAIN_LOOP)
-    # In the worst case an edge waits for one run of each other interrupt, and then until its own flag is cleared.
+    # In the worst case, an edge waits for one run of each other interrupt, and then until its own interrupt ends.
     waits = (
         sum(ports)
         + max(byte, cycles(found.sent_byte))

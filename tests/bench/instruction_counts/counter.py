@@ -6,7 +6,7 @@ from instruction_counts import execution
 
 
 class Highest:
-    """Keeps the pass with the most instructions."""
+    """Keeps the pass with the most instructions. Here a pass is one interrupt or one turn of the main loop."""
 
     def __init__(self):
         self.passes = 0
@@ -23,8 +23,9 @@ class Highest:
 
 
 class Median:
-    """Keeps all passes and returns the median. A single pass is not exact: a tick can occur during the pass, and its
-    instructions cannot be separated completely if the same turn of the main loop also does other work."""
+    """Keeps all passes of a request and returns the pass with the median number of instructions. A single pass is not
+    exact: a tick can occur during the pass, and the instructions of the tick cannot be separated completely if the same
+    turn of the main loop also does other work."""
 
     def __init__(self):
         self._passes = []
@@ -46,7 +47,7 @@ class Median:
 
 
 class Sum:
-    """Adds up all passes."""
+    """Adds up the instructions of all passes. Here a pass is one interrupt or one turn of the main loop."""
 
     def __init__(self):
         self.passes = 0
@@ -64,9 +65,10 @@ class Sum:
 class Counter:
     """A listener for execution.follow.
 
-    A pass is a whole transaction: all interrupts and all turns of the main loop from `begin` to `end`. It excludes the
-    tick: its interrupt, the turns that only the tick has woken, and the tick's work in other turns. It also excludes
-    turns that only the alarm of this tool has woken.
+    A pass of a request is a whole transaction: the interrupts and the turns of the main loop from `begin` to `end`. The
+    pass excludes the tick: the interrupt of the tick, the turns that only the tick has woken, and in other turns the
+    code at the addresses `of_the_tick`. The pass also excludes the alarm of this tool: its interrupt, and the turns
+    that only the alarm has woken.
     """
 
     def __init__(self, handlers, sleeps, of_the_tick, numbers):
@@ -76,9 +78,10 @@ class Counter:
         self._of_the_tick = {execution.as_logged(address) for address in of_the_tick}
         self._seen = threading.Event()
         self._pass = None  # addresses of the current pass; None between passes
-        self.answered = False  # the driver enable has been switched off
-        self.nothing_happens = False  # nothing except ticks happens
-        self.at_rest = False  # the main loop has gone to sleep, and no interrupt except the tick has occurred since
+        self.answered = False  # the driver enable has been switched off since `begin`
+        self.nothing_happens = False  # set by the caller while it sends no request and changes no input
+        # The main loop has gone to sleep, and no interrupt except ticks and alarms of this tool has occurred since.
+        self.at_rest = False
         self.requests = {}
         self.edges_at_once = 0
         self.forget()
@@ -87,25 +90,25 @@ class Counter:
         """Discards the counts of everything that is not a request."""
         self.received_byte = Highest()
         self.sent_byte = Highest()
-        self.interrupts = {}  # other interrupts, by exception number
+        self.interrupts = {}  # except those of the UART and of the inputs; by exception number
         self.edges = {}  # by the number of edges that one interrupt serves
         self.ticks_turn = Highest()
-        self.idling = Sum()  # all code that is executed while only ticks occur
+        self.idling = Sum()  # all code, except for the alarm of this tool, while `nothing_happens`
 
     def begin(self):
-        """Starts a pass. The main loop must be asleep."""
+        """Starts a pass of a request. The main loop must be asleep."""
         self._pass = []
         self.answered = False
         self.at_rest = True
 
     def end(self, request):
-        """Ends the pass of `request`. The request must be complete and the main loop asleep."""
+        """Ends the pass of `request`. The transaction must be complete and the main loop asleep."""
         self.requests.setdefault(request, Median()).note(self._pass)
         self._pass = None
 
     def wait_until_seen(self, patience):
-        """Waits until the log contains the line of Emulator.write_sync_line. Call write_sync_line first. Raises
-        RuntimeError after `patience` seconds."""
+        """Waits until execution.follow has read the line that Emulator.write_sync_line has written. Call
+        write_sync_line first. Raises RuntimeError if this takes longer than `patience` seconds."""
         if not self._seen.wait(patience):
             raise RuntimeError("the emulator's log has ended")
         self._seen.clear()

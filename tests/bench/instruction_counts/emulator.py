@@ -11,16 +11,16 @@ import struct
 import subprocess
 import tempfile
 
-# Events that QEMU logs together with the instructions, in order of occurrence.
+# QEMU logs these events and the instructions in the order in which they occur.
 EVENTS = ["pl011_read", "pl011_write", "nvic_acknowledge_irq", "nvic_complete_irq"]
 
-PORT_A = 8  # /machine/unattached/device[8] is GPIO port A, and the others follow
+PORT_A = 8  # /machine/unattached/device[8] is GPIO port A, and the other ports follow
 UART_FLAGS = 0x4000C018
 RECEIVER_EMPTY = 1 << 4
-UART_IDENTIFICATION = 0x4000CFE0  # a register that no firmware reads
-UART_IDENTIFICATION_2 = 0x4000CFE4  # a register that no firmware reads
+UART_IDENTIFICATION = 0x4000CFE0  # a register that no image reads
+UART_IDENTIFICATION_2 = 0x4000CFE4  # a register that no image reads
 
-# tests/qemu/alarm_clock.cpp explains these values.
+# tests/qemu/alarm_clock.cpp explains the meaning of the values from here to INTERRUPT_TAKES.
 TIMERS = range(0x40030000, 0x40034000, 0x1000)
 ALARM = TIMERS[3]
 TIMER_MODE, TIMER_CONTROL, TIMER_MASK, TIMER_CLEAR, TIMER_INTERVAL = 0x04, 0x0C, 0x18, 0x24, 0x28
@@ -37,7 +37,7 @@ HERTZ = 50_000_000
 AT_RESET = 4  # clock divisor at reset, relative to HERTZ
 INTERRUPT_TAKES = 0.7e-6
 ROOT = pathlib.Path(__file__).resolve().parents[3]
-HANG = 60  # seconds; only detects a hang: even a busy machine is faster than this
+HANG = 60  # seconds of real time; only detects a hang: even a busy machine needs less
 
 
 def alarm_code():
@@ -57,12 +57,13 @@ def die_with_parent():
 
 
 class Emulator:
-    """The emulator runs only during `run_for`. `log` is a stream of lines, which a thread must read continuously.
+    """The emulated processor runs only during `run_for`. `log` is a stream of lines, which a thread must read
+    continuously.
 
-    The emulated time is independent of real time: 8 ns for each instruction, however long logging takes. The emulated
-    time stops between calls of `run_for`: an interrupt of this tool stops the emulator at a gate (tests/qemu/gate.cpp).
-    execution.follow excludes that interrupt. -singlestep executes one instruction at a time, so that each one is
-    logged.
+    The emulated time is independent of real time: each instruction takes 8 ns of emulated time, however long logging
+    takes. The emulated time stops between calls of `run_for`: the interrupt of an alarm, which this class sets, makes
+    the processor wait at a gate (tests/qemu/gate.cpp). execution.follow excludes that interrupt. The option -singlestep
+    makes QEMU execute one instruction at a time, so that QEMU logs each one.
     """
 
     def __init__(self, image, gate):
@@ -170,7 +171,7 @@ class Emulator:
             return b""
 
     def mark(self):
-        """Writes to the log a line that the image cannot cause. See execution.py."""
+        """Writes to the log a line that no image causes. See execution.py."""
         self._ask_bus(f"readl {UART_IDENTIFICATION:#x}")
 
     def write_sync_line(self):

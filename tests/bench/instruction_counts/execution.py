@@ -2,16 +2,16 @@
 
 QEMU logs a line before it executes an instruction. Two events can prevent the execution: QEMU restarts an instruction
 that accesses a peripheral ("cpu_io_recompile"), or an interrupt comes first ("Stopped"). The next line then reports
-that event, and the line before it does not count.
+that event, and the line of the instruction does not count.
 """
 
 import collections
 
 MAIN = 0
 TICK = 15
-ALARM = 51  # alarm interrupt of this tool: see emulator.py. The RP2040 has no such interrupt
+ALARM = 51  # alarm interrupt of this tool: see emulator.py. The RP2040 has no exception 51
 
-# Exception numbers of a board. `edges`: those of the ports with inputs.
+# Exception numbers of a board. `edges` contains those of all ports whose inputs this tool changes.
 Interrupts = collections.namedtuple("Interrupts", "edges line i2c silence line_end wake")
 LM3S6965 = Interrupts(edges=range(16, 21), line=21, i2c=24, silence=35, line_end=37, wake=39)
 RP2040 = Interrupts(edges=[29], line=36, i2c=39, silence=16, line_end=17, wake=18)
@@ -26,13 +26,13 @@ class Span:
         self.addresses = []  # of all instructions; eight hexadecimal digits each, as logged
         self.received = []  # bytes read from the UART
         self.sent = 0  # number of bytes written to the UART
-        self.interrupts = []  # exceptions that occurred during the turn
+        self.interrupts = []  # exceptions that occurred during the turn, except ALARM
 
 
 def follow(log, sleeps, listener):
-    """Reads the log to its end. `sleeps` are the addresses of WFI instructions. `listener` requires these methods:
+    """Reads the log to its end. `sleeps` are the addresses of WFI instructions. Calls these methods of `listener`:
 
-    - entered(span, main), left(span, main): an interrupt has started, or has returned
+    - entered(span, main), left(span, main): an interrupt other than ALARM has started, or has returned
     - slept(main): a turn has ended
     - seen(): everything that was executed before the call of Emulator.write_sync_line has been reported
     """

@@ -6,7 +6,7 @@ import subprocess
 
 
 class Image:
-    """An ELF file, read with the cross tools."""
+    """An ELF file, read with the arm-none-eabi tools."""
 
     def __init__(self, path):
         self.path = path
@@ -36,14 +36,15 @@ class Image:
         return {int(line.split(":")[0], 16) for line in lines if line.endswith("\twfi")}
 
     def function(self, address):
-        """Returns the name of the function that contains the address, or the address itself if there is none."""
+        """Returns the name of the function that contains the address. Returns the address as a hexadecimal text if no
+        function contains it."""
         index = bisect.bisect_right(self._begins, address) - 1
         if index >= 0 and address < self._functions[index][1]:
             return self._functions[index][2]
         return hex(address)
 
     def inlined(self, addresses):
-        """Returns for each address the names of the source functions that contain it, innermost first."""
+        """Returns the names of the source functions that contain each address, innermost first, by address."""
         unknown = sorted(set(addresses) - set(self._chains))
         text = "\n".join(map(hex, unknown)).encode()
         chain = []

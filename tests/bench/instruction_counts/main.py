@@ -18,8 +18,9 @@ OUTPUTS = Model("EX9042D-M", 0, 13, True)
 INPUTS = Model("EX9052D-M", 8, 0, True)
 BOTH = Model("EX9055D", 8, 8, False)
 
-# Model, whether it uses ASCII, and whether to also send the requests that all models support. Those are sent once in
-# each protocol, to a model with inputs, because they require the most instructions there.
+# For each session: the model, whether the session uses ASCII, and whether it also sends the requests that are the same
+# for all models. Without --all, only one session of each protocol sends those requests. The model of this session has
+# inputs, because these requests require the most instructions on a model with inputs.
 SESSIONS = [
     (INPUTS, False, True),
     (BOTH, True, True),
@@ -28,10 +29,11 @@ SESSIONS = [
     (INPUTS, True, False),
 ]
 
-EDGE_PASSES = 20  # for each of eight inputs
-GROWTH = 1.05  # permitted growth without a new record
+EDGE_PASSES = 20  # for each input and for each group of inputs
+GROWTH = 1.05  # a count above this multiple of the recorded count is an error
 
-# A line of the result. Each pass has served `served` events, so the count is divided by that number.
+# A line of the result. `passes`: a counter.Highest, Median or Sum. Its count is for `served` events or milliseconds, so
+# the count is divided by that number. `until`: how the request ends (requests.py); empty if the line is for no request.
 Row = collections.namedtuple("Row", "name passes served until")
 
 

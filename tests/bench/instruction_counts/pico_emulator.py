@@ -1,4 +1,5 @@
-"""Runs an image for the Pico in rp2040js in emulated time. It has the functions of emulator.Emulator."""
+"""Runs an image for the Pico in rp2040js in emulated time. PicoEmulator has the public functions of
+emulator.Emulator."""
 
 import os
 import pathlib
@@ -10,7 +11,7 @@ from instruction_counts.emulator import ROOT, die_with_parent
 MARK = "pl011_read addr 0x00000fe0 value 0x00000000"
 SYNC_LINE = "pl011_read addr 0x00000fe4 value 0x00000000"
 
-PINS = "0 1 2 4"  # boards/pico/module.hpp
+PINS = "0 1 2 4"  # transmit, receive, driver enable, SDA: boards/pico/module.hpp
 SETTINGS_AT = (2048 - 64) * 1024
 SETTINGS_SIZE = 64 * 1024
 
@@ -49,7 +50,7 @@ class PicoEmulator:
         self._ask(f"run {round(seconds * 1e9)}")
 
     def put(self, byte):
-        """Puts a byte on the line, at the rate of the module. The image receives it when the emulator continues."""
+        """Puts a byte on the line at the baud rate of the module. The image receives it when the emulator continues."""
         counts = dict(word.split("=") for word in self._ask("counts").split())
         self._ask(f"baud {counts['uart']}")
         self._ask(f"queue {byte:02x}")

@@ -1,4 +1,4 @@
-"""The requests whose replies are counted: one list for each protocol, depending on the features of the model."""
+"""The requests whose instructions are counted: a list for each protocol, which depends on the features of the model."""
 
 import collections
 
@@ -12,10 +12,11 @@ Model = collections.namedtuple("Model", "name inputs outputs modbus")
 
 
 class Request:
-    """A request to repeat several times. The passes send the `frames` in turn, so that a setting changes each time.
-    Before each pass, the frames of `before` are sent, which are not counted. If there are as many of them as `frames`,
-    and more than one, each pass sends only one of them, in turn. `settles` is the time until their effect is complete,
-    in seconds."""
+    """A request to repeat. Each pass sends one of the `frames`, in turn: a request that changes a setting has several
+    frames, so that the setting changes in each pass. Before each pass, the session sends the frames of `before`, which
+    it does not count. If `before` has as many frames as `frames`, and more than one, the session sends only one of them
+    before each pass, in turn. `settles`: how long the session then waits, in seconds. `passes`: the maximum number of
+    passes."""
 
     def __init__(
         self,
@@ -56,8 +57,8 @@ def dcon(text, checksum):
 
 
 def modbus_requests(model, general):
-    """Returns the requests of firmware/modbus/functions.hpp, with up to 4 registers or 13 coils each. The module has
-    address 01. With `general`, also returns the requests that all models support."""
+    """Returns requests for the functions of firmware/modbus/functions.hpp, with up to 4 registers or 13 coils each. The
+    module has address 01. With `general`, also returns the requests that are the same for all models."""
 
     def request(name, *frames, before=(), **rest):
         return Request(
@@ -161,7 +162,8 @@ def modbus_requests(model, general):
 
 
 def ascii_requests(model, general, checksum):
-    """Returns the requests of firmware/dcon/commands.hpp. See modbus_requests."""
+    """Returns requests with commands of firmware/dcon/commands.hpp. `checksum`: whether they have checksums. See
+    modbus_requests."""
 
     def request(name, *commands, before=(), **rest):
         return Request(

@@ -1,4 +1,4 @@
-"""Sends all requests to one image in one protocol and returns the counts."""
+"""Sends requests to one image in one protocol, changes the inputs of the image, and counts the instructions."""
 
 import threading
 
@@ -10,16 +10,16 @@ from instruction_counts.requests import DONE, IGNORED, ascii_requests, crc16, dc
 
 # In seconds of emulated time.
 DEBOUNCE = 0.03
-PATIENCE = 0.25  # for a reply
+PATIENCE = 0.25  # maximum time until a reply is complete
 DRIVER_OFF = 0.0006  # after a reply, at 115200 baud
 DRIVER_OFF_AT_9600 = 0.01
 BYTE = 10 / 115200
 BYTE_AT_9600 = 10 / 9600
 SLICE = 0.001
-PASS = 0.3  # maximum duration of a pass
+PASS = 0.3  # maximum time from the end of a request to the end of its pass
 REST = 0.2
 
-QUIET = 0.004  # after a byte; then all frames have ended, and the module has processed them
+QUIET = 0.004  # after the last byte of a request without a reply; then the module has processed the request
 
 
 class Session:
@@ -46,8 +46,9 @@ class Session:
         self._emulator.close()
 
     def count_requests(self, general, wanted, passes):
-        """Counts the instructions of requests. With `general`, also sends the requests that all models support.
-        `wanted` is a function that returns whether to send a request. `passes` is the maximum number of repetitions."""
+        """Counts the instructions of requests. With `general`, also sends the requests that are the same for all
+        models. `wanted` is a function that returns whether to send a request. `passes` is the maximum number of passes
+        of each request."""
         requests = (
             ascii_requests(self._model, general, True)
             if self._ascii
@@ -61,7 +62,8 @@ class Session:
                 self._set_init(False)
 
     def count_edges(self, passes):
-        """Changes each input alone, then all inputs of a group together. Levels alternate between high and low."""
+        """Counts the instructions of edges. Changes each input alone, then all inputs of each group together, `passes`
+        times each. The levels alternate between high and low."""
         groups = self._board.groups
         for pins in [[pin] for group in groups for pin in group] + groups:
             for attempt in range(passes):
@@ -83,8 +85,8 @@ class Session:
         self.counter.nothing_happens = False
 
     def set_up(self):
-        """Configures the module in INIT mode, as a user does: address 01, 115200 baud, checksums for ASCII. Call this
-        function once, before all others."""
+        """Configures the module in INIT mode, as a user does: the protocol, address 01, 115200 baud, and checksums for
+        ASCII. Call this function once, before all others."""
         self._power_up(False)
         commands = [f"%0001400A{'40' if self._ascii else '00'}"]
         if self._model.modbus:
@@ -111,7 +113,8 @@ class Session:
         self._run(self._board.start_up)
 
     def _count(self, request, passes):
-        """Repeats a request. Its last frame restores the state that the module had before the request."""
+        """Repeats a request. If the request has several frames, sends the last one at the end, so that the module has
+        the address and the line settings of the session, and checks that the module replies."""
         for attempt in range(passes):
             in_turn = len(request.before) == len(request.frames) > 1
             for frame in [request.before[attempt % len(request.before)]] if in_turn else request.before:
@@ -163,7 +166,7 @@ class Session:
             self._run(byte_takes)
 
     def _converse(self, frame):
-        """Sends a frame whose reply is not counted. Broadcasts have no reply."""
+        """Sends a frame that is not counted, and waits for its reply. The broadcasts of DCON have no reply."""
         self._say(frame)
         if frame[1:3] == b"**":
             self._run(0.003)
@@ -175,8 +178,9 @@ class Session:
         return self._hear() != b""
 
     def _hear(self, end=None):
-        """Returns a reply, which is complete when it ends with `end` or as the protocol specifies. Returns nothing if
-        no reply arrives."""
+        """Waits for a reply and returns it. The reply is complete when it ends with `end`, or, if `end` is None, as the
+        protocol specifies. If the reply is not complete after PATIENCE, returns the bytes that have arrived,
+        possibly none."""
         reply = self._emulator.said()
         left = PATIENCE
         while not (reply.endswith(end) if end else self._is_whole(reply)) and left > 0:

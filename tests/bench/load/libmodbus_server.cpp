@@ -19,14 +19,15 @@
 
 namespace {
 
-/// Creates a pseudo-terminal and prints its path. Returns the master end; -1 if that fails.
+/// Creates a pseudo-terminal and prints its path. Returns the master end, or -1 after an error.
 int open_terminal() {
   const int master = posix_openpt(O_RDWR | O_NOCTTY);
   if (master < 0 || grantpt(master) != 0 || unlockpt(master) != 0) {
     return -1;
   }
-  // Keeping this end open prevents a hang-up when one master disconnects and the next one connects. Raw mode
-  // prevents an echo before the first master configures the terminal.
+  // The open `other_end` prevents a hang-up between the time when one Modbus master disconnects and the time
+  // when the next one connects. Raw mode prevents an echo before the first Modbus master configures the
+  // terminal.
   const int other_end = open(ptsname(master), O_RDWR | O_NOCTTY);
   termios settings{};
   tcgetattr(other_end, &settings);
@@ -37,7 +38,8 @@ int open_terminal() {
   return master;
 }
 
-/// Prints a port and waits for a client. Returns the connection; -1 if that fails.
+/// Listens on a free port, prints the port, and waits for a client. Returns the connection, or -1 after an
+/// error.
 int accept_client() {
   const int listener = socket(AF_INET, SOCK_STREAM, 0);
   sockaddr_in address{};
@@ -65,7 +67,8 @@ int main(int argc, char** argv) {
     std::perror("libmodbus_server");
     return 1;
   }
-  modbus_t* const server = modbus_new_rtu("/dev/null", 115200, 'N', 8, 1);  // uses `master` instead
+  // libmodbus does not open /dev/null, because modbus_set_socket passes `master` to it.
+  modbus_t* const server = modbus_new_rtu("/dev/null", 115200, 'N', 8, 1);
   modbus_mapping_t* const map = modbus_mapping_new(13, 0, 0, 0);
   if (server == nullptr || map == nullptr || modbus_set_slave(server, 1) != 0 ||
       modbus_set_socket(server, master) != 0) {
@@ -78,7 +81,7 @@ int main(int argc, char** argv) {
     if (size > 0) {
       modbus_reply(server, request.data(), size, map);
     } else if (tcp && size < 0) {
-      return 0;  // the client has gone
+      return 0;  // the client has disconnected, or its request is invalid
     }
   }
 }

@@ -2,12 +2,14 @@
 // libmodbus and pymodbus on the same transport. Then measures the cost of many modules and of many lines, and
 // the memory of a module.
 //
-//     load [--without pymodbus] [MILLISECONDS]    duration of each measurement; default 1000
+//     load [--without pymodbus] [MILLISECONDS]    duration of one round of a measurement; default 1000
 //
-// Fails if one module costs more than its limit, or if a module requires too much memory. The limit applies
-// to the best round, because other programs on the processors disturb single rounds. The cost of many modules
-// is only printed, because other programs change it if they use the caches.
-// tests/bench/simulator_instructions checks that cost.
+// Fails if a module requires too much memory, or if the simulator with one module uses more than 1.5 times
+// the processor time of the libmodbus server. The limit of the processor time applies to the best round,
+// because other programs on the processors disturb single rounds. If other programs disturb all rounds, the
+// program skips this limit. The cost of many modules is only printed, because other programs change it if
+// they use the caches. tests/bench/simulator_instructions limits the instructions that each further module
+// adds.
 #include <sched.h>
 
 #include <array>
@@ -46,16 +48,17 @@ void print(const std::string& what, double ratio, double target) {
   std::printf("  %s: %.2f (target: %.2f)\n", what.c_str(), ratio, target);
 }
 
-/// Prints a ratio with its target and its limit. Fails if the ratio is above the limit.
+/// Prints a value with its target and its limit. If the value is above the limit, the program fails when it
+/// ends.
 void judge(const std::string& what, double ratio, double target, double limit) {
   std::printf("  %s: %.2f (target: %.2f, limit: %.2f)%s\n", what.c_str(), ratio, target, limit,
               ratio > limit ? "  TOO MUCH" : "");
   failed = failed || ratio > limit;
 }
 
-/// Restricts this process, and the servers that it starts, to one processor while this object exists. On two
-/// processors, it sometimes takes ten times the processor time of a transaction to wake another program, and
-/// sometimes none. This cost changes from round to round.
+/// Restricts the calling thread to one processor while this object exists. The servers that the thread starts
+/// during this time inherit the restriction. On two processors, waking another program sometimes takes ten
+/// times the processor time of a transaction, and sometimes none. This cost changes from round to round.
 class OneProcessor {
  public:
   OneProcessor() {
@@ -131,7 +134,8 @@ void compare_one_module(milliseconds time, bool with_pymodbus) {
   }
 }
 
-/// Measures 1, 32 and 247 modules on one line.
+/// Measures one line with 1, 32 and 247 modules. If `with_pymodbus`, also measures pymodbus servers with 32
+/// and 247 units, and compares the simulator with them.
 void compare_modules(milliseconds time, bool with_pymodbus) {
   const std::array<unsigned, 3> sizes{1, kModules, kMostModules};
   std::vector<std::unique_ptr<SimulatorProcess>> simulators;
@@ -174,7 +178,7 @@ std::string bus_file() {
   return file.str();
 }
 
-/// Returns all TCP ports in a greeting.
+/// Returns all TCP ports in a greeting of the simulator.
 std::vector<std::uint16_t> ports_of(const std::string& greeting) {
   const std::string lead = "TCP 127.0.0.1:";
   std::vector<std::uint16_t> ports;
@@ -184,7 +188,7 @@ std::vector<std::uint16_t> ports_of(const std::string& greeting) {
   return ports;
 }
 
-/// Returns the resident memory, in KiB.
+/// Returns the resident memory of a process, in KiB; 0 if the system does not report it.
 double memory_of(int pid) {
   std::ifstream status("/proc/" + std::to_string(pid) + "/status");
   for (std::string line; std::getline(status, line);) {
@@ -195,8 +199,9 @@ double memory_of(int pid) {
   return 0;
 }
 
-/// Measures eight lines in one process, each with a master of its own. Returns the processor time that the
-/// process uses for a transaction, in microseconds.
+/// Measures eight lines in one process; each line has its own master. `threads`: the value of the option
+/// --threads. If it is "1", also judges the memory of a module. Returns the processor time that the process
+/// uses for a transaction, in microseconds. Throws std::runtime_error if the simulator does not start.
 double load(milliseconds time, const std::string& threads) {
   const Directory directory;
   ex9000::system::write_file(directory / "bus.json", bus_file());
@@ -258,7 +263,8 @@ int main(int argc, char** argv) {
     const double one = load(time * kRounds, "1");
     const double two = load(time * kRounds, "2");
     // The masters use the same processors, so the rates do not show what a second processor adds. Two threads
-    // reach 1.7 times the rate of one if a transaction costs at most 2 / 1.7 times the processor time.
+    // that use two whole processors reach at least 1.7 times the rate of one thread if a transaction costs at
+    // most 2 / 1.7 times the processor time.
     print("processor time for each transaction, two threads / one thread", two / one, 2 / 1.7);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "load: %s\n", error.what());

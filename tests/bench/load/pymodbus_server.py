@@ -1,10 +1,10 @@
 #!/usr/bin/python3
-"""The server of pymodbus: coils in units 1 to UNITS, RTU frames.
+"""Runs the Modbus server of pymodbus with RTU frames. Units 1 to UNITS have 16 coils each.
 
-    pymodbus_server.py tcp UNITS      over TCP; prints its port
-    pymodbus_server.py DEVICE UNITS   on a serial port; prints its path
+    pymodbus_server.py tcp UNITS      over TCP; prints the port number when the server is ready
+    pymodbus_server.py DEVICE UNITS   on the serial port DEVICE; prints DEVICE when the server is ready
 
-It runs until it is terminated.
+The server runs until it is terminated.
 """
 
 import asyncio
@@ -35,5 +35,5 @@ async def serve(device, units):
         await serving
 
 
-logging.disable()  # termination is not an error
+logging.disable()  # otherwise pymodbus prints an error when a TCP client disconnects
 asyncio.run(serve(sys.argv[1], int(sys.argv[2])))

@@ -47,8 +47,8 @@ inline double processor_seconds(int pid) {
 }
 
 /// Returns the time that all processors together have been busy since the machine started, in seconds.
-/// Includes all programs and the time that a hypervisor has given to other machines. Throws
-/// std::runtime_error if the system does not report the time.
+/// This time includes all programs, interrupts, and the time that a hypervisor has given to other machines.
+/// Throws std::runtime_error if the system does not report the time.
 inline double busy_seconds() {
   std::ifstream file("/proc/stat");
   std::string name;
@@ -68,14 +68,14 @@ inline double busy_seconds() {
          static_cast<double>(sysconf(_SC_CLK_TCK));
 }
 
-/// A server and a master that polls its units in turn.
+/// A server, and a master that polls the units of the server in turn.
 class Server {
  public:
   Server(std::string name, int pid, PollingMaster master, unsigned units)
       : name_(std::move(name)), pid_(pid), master_(std::move(master)), units_(units) {}
 
   void poll_for(std::chrono::milliseconds time, std::size_t round) {
-    constexpr double kMostOfAProcessor = 0.1;  // that other programs may use
+    constexpr double kMostOfAProcessor = 0.1;  // the share of one processor that other programs may use
     const double before = processor_seconds(pid_);
     const double own_before = processor_seconds(getpid());
     const double all_before = busy_seconds();
@@ -92,9 +92,10 @@ class Server {
   [[nodiscard]] const std::string& name() const { return name_; }
   /// Returns the processor time of the server for a transaction, in microseconds: the median of all rounds.
   [[nodiscard]] double median() const { return median_of(microseconds_); }
-  /// Returns the smallest ratio of the processor time for a transaction to that of `other`. Compares the two
-  /// servers only within a round, in which the machine treats both equally. nullopt: other programs disturbed
-  /// every round.
+  /// Returns the smallest ratio of the processor time for a transaction to that of `other` in one round.
+  /// Ignores each round in which other programs disturbed the measurement of one of the two servers. Returns
+  /// nullopt if this applies to every round. Compares only results of the same round, because the speed of
+  /// the machine can change from round to round.
   [[nodiscard]] std::optional<double> least_ratio_to(const Server& other) const {
     std::optional<double> result;
     for (std::size_t round = 0; round < kRounds; ++round) {
@@ -122,7 +123,7 @@ class Server {
   unsigned units_;
   Figures microseconds_{};
   Figures rates_{};
-  std::array<bool, kRounds> disturbed_{};  ///< other programs used the processors during the round
+  std::array<bool, kRounds> disturbed_{};  ///< other programs used too much processor time in the round
 };
 
 /// Polls each server for `time` in each round, and prints the medians of all rounds.

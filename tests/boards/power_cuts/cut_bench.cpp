@@ -15,15 +15,15 @@ using std::chrono::milliseconds;
 
 constexpr milliseconds kComesUpWithin{100};
 constexpr milliseconds kRepliesWithin{25 + kLongestResponseDelay};
-constexpr std::size_t kAroundSettings = 8;  // layout, length, sequence and check
+constexpr std::size_t kAroundSettings = 8;  // bytes of layout, length, sequence and check
 constexpr milliseconds kStoresWithin{600};  // includes the wait until the host watchdog expires
 constexpr milliseconds kFinishesAnUpdateWithin{200};
-constexpr std::uint16_t kDriven = 0xC35A;  // set by a command before the command that stores
+constexpr std::uint16_t kDriven = 0xC35A;  // value of the outputs, set before the command that stores
 
 constexpr unsigned kWholeCopy = 20;  // in bytes; a write that invalidates a copy is shorter
 
 constexpr unsigned kWaysAByteIsLeft = 5;
-/// Returns one of the values that a byte may have if the power fails while it changes.
+/// Returns one of the values that a byte may have if the power fails while the byte changes.
 std::uint8_t left(unsigned way, std::uint8_t old_byte, std::uint8_t new_byte) {
   const std::array<std::uint8_t, kWaysAByteIsLeft> ways{old_byte, new_byte, 0x00, 0xFF,
                                                         static_cast<std::uint8_t>(new_byte ^ 0x5AU)};
@@ -33,7 +33,8 @@ std::uint8_t left(unsigned way, std::uint8_t old_byte, std::uint8_t new_byte) {
 }  // namespace
 
 /// Returns whether `contents` hold a good copy of layout 3 and a good copy of an older layout. This is the
-/// case if the power failed after the first store of new firmware, before it invalidated the older layout.
+/// case if the power fails during the first store after an update, when the new copy is complete and the
+/// firmware has not yet invalidated all older copies.
 bool CutBench::has_unfinished_update(const Contents& contents) const {
   const StoringModel storing = storing_model(model_);
   const auto good = [&](std::size_t place) { return StoredCopy(storing, contents.data(), place).is_good(); };
@@ -43,14 +44,14 @@ bool CutBench::has_unfinished_update(const Contents& contents) const {
 
 constexpr std::size_t pages_of(std::size_t bytes) { return (bytes + kStoredPage - 1) / kStoredPage; }
 
-/// Returns the number of pages that the next store programs if it stores `settings`. Includes the pages that
-/// invalidate old copies (firmware/settings/store.hpp).
+/// Returns the number of page writes of the next store if it stores `settings`. Includes the writes that
+/// invalidate old copies (firmware/settings/store.hpp). `contents` must not contain an unfinished update.
 std::size_t CutBench::pages_of_a_store(const Contents& contents, const Settings& settings) const {
   const StoringModel storing = storing_model(model_);
   const std::size_t place = place_that_counts(storing, contents.data());
   if (place == kStoredPlaces[0] || place == kStoredPlaces[1]) {
     const std::size_t present = StoredCopy(storing, contents.data(), place).size();
-    // A record of newer firmware keeps its length.
+    // The firmware does not shorten a record of newer firmware.
     return present > kSupportedSettings + kAroundSettings
                ? pages_of(present)
                : pages_of(bytes_of_settings(settings) + kAroundSettings);
@@ -106,7 +107,7 @@ FrameFormat CutBench::speak_as(const Settings& settings, bool init_mode) {
   return init_mode ? FrameFormat::init_mode() : FrameFormat::of(settings);
 }
 
-/// Waits for longer than T3.5, and then sends `frame`.
+/// Waits for longer than the silence T3.5 of Modbus RTU, and then begins to send `frame`.
 void CutBench::send(const Bytes& frame) {
   bench_.run_for(40 * bench_.line.bit_time() + microseconds(1800));
   bench_.line.heard.clear();
@@ -114,7 +115,8 @@ void CutBench::send(const Bytes& frame) {
   bench_.line.send(frame);
 }
 
-/// Waits for the reply and returns it. Returns nothing if no reply begins within kRepliesWithin.
+/// Waits for the reply and returns it. Returns an empty vector if no reply begins within kRepliesWithin after
+/// the end of the request.
 CutBench::Bytes CutBench::hear() {
   while (bench_.line.sending()) {
     bench_.run_for(microseconds(500));
@@ -162,8 +164,8 @@ Found CutBench::come_up(const Contents& contents, const std::vector<Settings>& g
   return found;
 }
 
-/// Adds the contents that a cut at this time may leave. A page may be programmed byte by byte from either
-/// end, and each byte is a separate point.
+/// Adds the contents that a cut at this time may leave to `cuts`. The EEPROM may program a page byte by byte
+/// from either end, and each byte is a separate point.
 void CutBench::note_cuts(Cuts& cuts) {
   const bool done = !bench_.line.drives.empty();
   const auto note = [&](const Contents& contents) {
@@ -203,8 +205,8 @@ void CutBench::set_outputs(const FrameFormat& frame_format) {
   ASSERT_EQ(bench_.outputs(), kDriven);
 }
 
-/// Sends a command, or waits until the host watchdog expires. Returns when the settings are stored, the reply
-/// is sent, and the bus and the line are idle.
+/// Sends the command, or waits until the host watchdog expires. Returns when `pages` pages are programmed and
+/// verified, and the reply, if the command has one, is sent. Checks that the module accepts the command.
 void CutBench::carry_out(const FrameFormat& frame_format, const StoringCommand& command,
                          const Settings& before, std::size_t pages) {
   const std::size_t had_programmed = bench_.eeprom.programmed().size();
@@ -225,7 +227,7 @@ void CutBench::carry_out(const FrameFormat& frame_format, const StoringCommand& 
     ASSERT_GE(reply.size(), 3U) << "no reply";
     EXPECT_TRUE(frame_format.protocol == Protocol::Ascii ? reply[0] == '!' : reply[1] < 0x80U) << "refused";
   }
-  bench_.run_for(milliseconds(10));  // the module reads back what it has stored
+  bench_.run_for(milliseconds(10));  // without a reply, the last page may not be verified yet
 }
 
 std::uint16_t CutBench::outputs_before(const Settings& settings) const {
@@ -253,8 +255,8 @@ FrameFormat CutBench::get_ready(const Contents& contents, const Settings& before
   return frame_format;
 }
 
-/// Waits until the module has finished an update that a power cut has interrupted. Without a command, the
-/// module stores the settings once more and invalidates the old copies.
+/// If a power cut has interrupted an update, waits until the module has finished the update. The module does
+/// this without a command: it stores the settings once more and invalidates the old copies.
 void CutBench::finish_update() {
   const Instant gives_up = bench_.timeline.now() + kFinishesAnUpdateWithin;
   while (has_unfinished_update(CutBench::contents()) && bench_.timeline.now() < gives_up) {
@@ -303,7 +305,7 @@ Cuts CutBench::cut_everywhere(const Contents& contents, const Settings& before,
 
 Attempt CutBench::attempt(const Contents& contents, const Settings& before, const StoringCommand& command,
                           std::uint16_t place, std::uint8_t bits, std::uint8_t stuck) {
-  constexpr milliseconds kTriedAgain{1300};  // the module retries every second, wire.md D15
+  constexpr milliseconds kTriedAgain{1300};  // longer than the second between two retries of wire.md D15
   Attempt attempt;
   const FrameFormat frame_format = get_ready(contents, before, command);
   EepromChip& eeprom = bench_.eeprom;

@@ -1,5 +1,6 @@
-// Runs an image that stores settings, and collects the contents of its EEPROM at every point at which the
-// power may fail. Also starts the image from such contents and reads its settings.
+// Runs an image that stores settings, and collects the contents that a power cut at any time may leave in its
+// EEPROM. Also starts the image from such contents and reads its settings, resets its microcontroller during
+// a command, and runs commands on a worn-out EEPROM.
 #pragma once
 
 #include <array>
@@ -19,47 +20,53 @@
 
 namespace ex9000::registers {
 
-/// The contents of the EEPROM at the addresses that settings may use; the rest is blank.
+/// The contents of the EEPROM at the addresses that settings may use. The other addresses are blank.
 using Contents = std::array<std::uint8_t, kStoredMemory>;
 
-/// The results of power cuts during one command.
+/// The results of power cuts during one command, or while the module finishes an update.
 struct Cuts {
-  std::size_t points = 0;  ///< of cuts: each event on the bus, and each byte that is being programmed
-  std::size_t cuts = 0;    ///< each point counts once for each effect that a cut may have on the page
-  /// Each of the resulting contents, once. The value is true if the command was certainly done after at least
-  /// one of these cuts, because the reply had begun, or because enough time had passed for a command without
-  /// a reply.
+  /// The number of points at which the power was cut. Each event of the EEPROM (EepromChip::on_event) is one
+  /// point. If a page is being programmed at the event, each byte of the page is a point instead. The end of
+  /// a command is also a point.
+  std::size_t points = 0;
+  std::size_t cuts = 0;  ///< each point counts once for each effect that a cut may have on the EEPROM
+  /// Each of the contents that the cuts left, once. The value is true if the command was certainly done at
+  /// one or more of the cuts that left these contents: the reply had begun, or the command had ended.
   std::map<Contents, bool> left;
   std::uint16_t outputs = 0;    ///< before the command
-  std::vector<Instant> events;  ///< times of events on the EEPROM's bus, from the beginning of the command
+  std::vector<Instant> events;  ///< times of the EEPROM's events, from the beginning of the command
 };
 
 /// The levels seen at the output pins since a reset.
 struct Outputs {
   std::uint16_t now = 0;
   std::uint16_t ever_on = 0;
-  unsigned changes = 0;  ///< of any output
+  unsigned changes = 0;  ///< number of changes of all outputs together
 };
 
 /// The state that a master finds when a module has started.
 struct Found {
-  std::optional<Settings> settings;  ///< no value: the module does not reply
+  std::optional<Settings> settings;  ///< no value: no guess got a reply of the right length
   Outputs outputs;                   ///< before the first request
 };
 
-/// A module whose microcontroller was reset in the middle of a command while the EEPROM kept its supply.
+/// A module that has restarted after a reset of its microcontroller during a command. The EEPROM kept its
+/// supply.
 struct AfterReset {
   Contents contents;
-  bool certainly_done;  ///< as in Cuts::left
+  bool certainly_done;  ///< the reply had begun before the reset
   Outputs outputs;
 };
 
-/// The results of a command on a worn-out memory.
+/// The results of a command, or of a timeout of the host watchdog, on a worn-out memory.
 struct Attempt {
   std::vector<std::uint8_t> reply;
-  Instant reply_after{0};  ///< from the end of the request until the driver is on; up to 0.1 ms too short
-  unsigned spoiled = 0;    ///< bytes that the memory has stored incorrectly
-  unsigned tries = 0;      ///< number of pages that were programmed with at least 20 bytes
+  /// The time from the end of the request until the driver is on, up to 0.1 ms too short. kNever if an
+  /// expected reply is missing; 0 for a command without a reply.
+  Instant reply_after{0};
+  // The next two numbers are those of the first 600 ms after the request.
+  unsigned spoiled = 0;             ///< number of times that the worn-out byte did not take its new value
+  unsigned tries = 0;               ///< number of page writes of at least 20 bytes
   std::vector<Contents> meanwhile;  ///< at each event before the reply; without a reply, at each event
   std::vector<Contents>
       behind;  ///< at each event from the reply until more than a second later, and at the end
@@ -71,34 +78,39 @@ class CutBench {
  public:
   CutBench(const Image& image, const Model& model);
 
-  /// Executes the command on a module that starts with `contents`, which store `before`. Also checks that the
-  /// module replies correctly and drives the correct outputs at the correct time.
+  /// Starts a module with `contents`, which store `before`, and executes the command. Returns the results of
+  /// power cuts at all points of the command. Also checks that the module accepts the command and changes the
+  /// outputs at the correct time.
   Cuts cut_everywhere(const Contents& contents, const Settings& before, const StoringCommand& command);
 
-  /// Starts a module with `contents`, which store `before`, and sends the command. Resets the microcontroller
-  /// at `time` after the beginning of the command, while the EEPROM keeps its supply. Returns the state after
-  /// the restart.
+  /// Starts a module with `contents`, which store `before`, and sends the command, or waits until the host
+  /// watchdog expires. Resets the microcontroller at `time` after the beginning of the command, while the
+  /// EEPROM keeps its supply. Returns the state after the restart.
   AfterReset reset_after(Instant time, const Contents& contents, const Settings& before,
                          const StoringCommand& command);
 
-  /// Starts a module with `contents`, which a cut during the first store after an update has left, and lets
-  /// it finish the update. Returns no cuts if the update is already complete.
+  /// If a power cut has interrupted the first store after an update and left `contents`, starts a module with
+  /// `contents`, waits until it has finished the update, and returns the results of power cuts at all points
+  /// of that time. Returns no cuts if `contents` contain no unfinished update.
   Cuts cut_while_finishing_update(const Contents& contents);
 
-  /// Starts a module with `contents`, which store `before`. Then wears out its memory: the bits `bits` of the
-  /// byte at `place` keep the value `stuck`. Then sends the command.
+  /// Starts a module with `contents`, which store `before`. Then wears out its memory: from the next write of
+  /// the byte at `place` on, the bits `bits` of this byte have the values that they have in `stuck`. Then
+  /// sends the command, or waits until the host watchdog expires.
   Attempt attempt(const Contents& contents, const Settings& before, const StoringCommand& command,
                   std::uint16_t place, std::uint8_t bits, std::uint8_t stuck);
 
   /// Sets the programming time of a page: at most 10 ms according to the AT24C64's data sheet.
   void set_programming_time(Instant time) { bench_.eeprom.set_programming_time(time); }
 
-  /// Returns the outputs before a command that is executed with these settings.
+  /// Returns the outputs that a module with these settings has when the command arrives.
   [[nodiscard]] std::uint16_t outputs_before(const Settings& settings) const;
 
-  /// Starts the module with `contents` and reads all its settings with the protocol, baud rate and address of
-  /// the first of `guesses` to which the module replies. Modbus has no register for the data format. If
-  /// `thoroughly` is true, reads the format in INIT mode; otherwise uses the format of the guess.
+  /// Starts the module with `contents` and reads all its settings. For that, uses the protocol, address,
+  /// checksum, baud rate and line format of the first of `guesses` to which the module replies. Modbus has no
+  /// register for the data format. If `thoroughly` is true, first starts the module in INIT mode and reads
+  /// the format there; otherwise takes the format of a Modbus module from the guess. Also checks that reading
+  /// changes no output, and that the module writes nothing to the EEPROM unless it has an update to finish.
   Found come_up(const Contents& contents, const std::vector<Settings>& guesses, bool thoroughly);
 
  private:
@@ -122,7 +134,7 @@ class CutBench {
                  std::size_t pages);
 
   const Model& model_;
-  /// Does not include the present levels. Declared before `bench_` because it must outlive `bench_`.
+  /// Its member `now` is not used. Declared before `bench_` because callbacks of `bench_` write to it.
   Outputs shown_;
   BoardBench bench_;
 };

@@ -1,11 +1,12 @@
-// Tests power cuts at every point of every command that stores, and of a timeout: wire.md section 8, "At the
-// next reset each *command* is either done completely or not done at all". A command to which the module has
-// replied must be done.
+// Tests power cuts at every point of every command that stores, and of a timeout of the host watchdog:
+// wire.md section 8, "At the next reset each *command* is either done completely or not done at all". A
+// command to which the module has replied must be done. Also tests resets of the microcontroller during these
+// commands.
 //
-// The image stores settings with its own drivers. A reader without code of the firmware (StoredCopy) checks
-// all contents that a cut may leave in the EEPROM. The image also starts from some of these contents, which a
-// seed selects, and the test reads all its settings. With EX9000_CUTS=all in the environment, the image
-// starts from all of these contents.
+// The image stores settings with its own drivers. StoredCopy, which has no code of the firmware, reads the
+// settings from all contents that a cut may leave in the EEPROM. The image also starts from some of these
+// contents, which a seed selects, and the test reads all its settings. With EX9000_CUTS=all in the
+// environment, the tests with one cut start the image from all of these contents.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -41,7 +42,9 @@ class PowerCutsOf : public testing::TestWithParam<ImageName> {
     ASSERT_EQ(outputs.changes, std::bitset<16>(outputs.now).count());
   }
 
-  /// Starts the image from `contents`, in which StoredCopy has already found `settings`.
+  /// Starts the image from `contents`, in which StoredCopy has found `settings`, and checks that the module
+  /// has these settings and drives the outputs that belong to them. `otherwise` are the settings that a
+  /// faulty module might have instead.
   void come_up(const Contents& contents, const Settings& settings, const Settings& otherwise) {
     const Found found = bench_.come_up(contents, {settings, otherwise}, all_cases_requested());
     ASSERT_TRUE(found.settings) << "the module does not reply";
@@ -50,9 +53,9 @@ class PowerCutsOf : public testing::TestWithParam<ImageName> {
     ++booted_;
   }
 
-  /// Checks all contents that the cuts have left, and starts the image from up to `by_the_image` of them.
-  /// `unfinished` contains the settings that an earlier, interrupted command would have stored; see the tests
-  /// with two cuts.
+  /// Checks all contents that the cuts have left, and starts the image from up to `by_the_image` of them. If
+  /// `unfinished` is not null, the contents may also store these settings, which an earlier, interrupted
+  /// command would have stored; see the tests with two cuts.
   void judge(const Cuts& cuts, const Settings& before, const Settings& done, std::size_t by_the_image,
              const Settings* unfinished = nullptr) {
     points_ += cuts.points;
@@ -86,8 +89,8 @@ class PowerCutsOf : public testing::TestWithParam<ImageName> {
     }
   }
 
-  /// Starts from the states in which a store programs several pages. Without EX9000_CUTS=all, uses three
-  /// commands for each state.
+  /// Calls `what` for commands in the two states in which every store programs several pages. With
+  /// EX9000_CUTS=all, uses all commands that store something from the state; otherwise three random ones.
   template <class Do>
   void for_some_commands_of_several_pages(Do what) {
     constexpr std::size_t kSome = 3;
@@ -109,17 +112,18 @@ class PowerCutsOf : public testing::TestWithParam<ImageName> {
   }
 
   /// Returns whether the command changes the settings in `contents`. A copy of an old layout lacks the newer
-  /// settings, so a command that clears one of them changes nothing.
+  /// settings, so a command that gives one of them its factory value changes nothing.
   [[nodiscard]] bool stores_from(const Contents& contents, const StoringCommand& command) const {
     const Settings settings = settings_in(model_, contents);
     return command.stores_from(settings, bench_.outputs_before(settings));
   }
 
-  /// Checks up to `pairs` pairs. A pair consists of the contents that a cut during `first` may leave, and of
-  /// a second command, which is cut everywhere. If `first` was the first store after an update, the module
-  /// finishes the update before the second command, and the test cuts the power everywhere during that time.
-  /// If `pairs` is SIZE_MAX, uses each second command that changes the settings; otherwise one for each
-  /// contents.
+  /// Checks up to `pairs` pairs. A pair consists of contents that a cut during `first` may leave, and of a
+  /// second command, during which the test cuts the power at every point. If `first` is the first store after
+  /// an update and the cut has left the update unfinished, the module finishes it before the second command,
+  /// and the test also cuts the power at every point of that time. If `pairs` is SIZE_MAX, each of the
+  /// contents forms pairs with all commands that change its settings; otherwise it forms a pair with a random
+  /// one.
   void cut_twice(const State& state, const StoringCommand& first, std::size_t pairs) {
     const Cuts cuts = bench_.cut_everywhere(state.contents, state.settings, first);
     const Settings unfinished = first.done_to(state.settings, cuts.outputs);
@@ -150,7 +154,8 @@ class PowerCutsOf : public testing::TestWithParam<ImageName> {
     return contents;
   }
 
-  /// Returns all commands that can be sent to a module with these settings and change them.
+  /// Returns, in random order, all commands and timeouts that are possible in a module with these settings
+  /// and that change them.
   std::vector<const StoringCommand*> storing_from(const Settings& settings) {
     std::vector<const StoringCommand*> commands;
     for (const StoringCommand& command : commands_) {
@@ -194,8 +199,7 @@ TEST_P(PowerCutsOf, LeaveEachCommandCompletelyStoredOrNotAtAll) {
   });
 }
 
-/// Tests the first store after an update, and the store of a record of four pages, with some commands or all
-/// of them.
+/// Tests the first store after an update, and the store of a record of four pages.
 TEST_P(PowerCutsOf, DuringAMultiPageStoreLeaveEachCommandCompletelyStoredOrNotAtAll) {
   for_some_commands_of_several_pages([this](const State& state, const StoringCommand& command) {
     const Cuts cuts = bench_.cut_everywhere(state.contents, state.settings, command);
@@ -204,11 +208,13 @@ TEST_P(PowerCutsOf, DuringAMultiPageStoreLeaveEachCommandCompletelyStoredOrNotAt
   });
 }
 
-/// Cuts a second command everywhere, from all contents that a first cut may leave, or from some of them.
+/// Cuts the power at every point of a second command. With EX9000_CUTS=all, the second command starts from
+/// all contents that a cut during the first command may leave; otherwise from two of them.
 ///
-/// After the second cut, the settings of the first command may be valid although they were not after the
-/// first cut: a page with a single wrong byte becomes valid as soon as the next store writes that byte with
-/// the same value. The first command is then done completely, and no command with a reply is lost.
+/// After the second cut, the settings of the first command may be valid although they were not valid after
+/// the first cut. For example, the first cut left a single wrong byte in the copy, and the second store wrote
+/// the byte that the first store would have written. The first command is then done completely, and no
+/// command with a reply is lost.
 TEST_P(PowerCutsOf, DuringTwoSuccessiveCommandsLeaveEachCommandCompletelyStoredOrNotAtAll) {
   for_each_command([this](const State& state, const StoringCommand& first) {
     cut_twice(state, first, all_cases_requested() ? SIZE_MAX : 2);
@@ -216,15 +222,15 @@ TEST_P(PowerCutsOf, DuringTwoSuccessiveCommandsLeaveEachCommandCompletelyStoredO
 }
 
 /// The number of pairs grows with the square of the number of written bytes. Therefore this test uses a
-/// random sample, also in tests/long.
+/// random sample even with EX9000_CUTS=all.
 TEST_P(PowerCutsOf, DuringTwoSuccessiveMultiPageStoresLeaveEachCommandStoredOrNotAtAll) {
   for_some_commands_of_several_pages([this](const State& state, const StoringCommand& first) {
     cut_twice(state, first, all_cases_requested() ? 200 : 2);
   });
 }
 
-/// Resets only the microcontroller, during traffic on the bus. After the reset, the EEPROM may be busy with
-/// programming.
+/// Resets only the microcontroller, at events of the EEPROM (EepromChip::on_event). After the reset, the
+/// EEPROM may still be programming a page.
 TEST_P(PowerCutsOf, AResetOfTheMicrocontrollerLeavesEachCommandStoredOrNotAtAll) {
   const std::size_t one_in = all_cases_requested() ? 1 : 28;
   for_each_command([this, one_in](const State& state, const StoringCommand& command) {

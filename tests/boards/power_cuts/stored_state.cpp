@@ -19,7 +19,7 @@ void put(const Model& model, const Settings& settings, std::uint16_t sequence, s
 }
 
 /// Returns settings that differ from the factory settings as far as the model and the command permit. Of the
-/// extensions, only the line format and what the command requires differ.
+/// settings in firmware/extensions.md, only the line format and those that the command requires differ.
 Settings full_settings(const Model& model, const StoringCommand& command) {
   Settings settings = Settings::factory(model);
   settings.protocol = command.init == Init::SinceReset ? Protocol::Ascii : command.protocol;

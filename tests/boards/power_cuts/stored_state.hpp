@@ -1,4 +1,5 @@
-// The contents of an EEPROM before a command that stores.
+// The contents of an EEPROM before a command that stores, and the state of a module that starts from given
+// contents.
 #pragma once
 
 #include <cstdint>
@@ -11,10 +12,10 @@
 namespace ex9000::registers {
 
 enum class Beginning : std::uint8_t {
-  Factory,  ///< blank
-  Full,     ///< both copies are in use
-  Updated,  ///< two copies of layout 2, written by firmware before layout 3
-  Longer,   ///< the newest record comes from newer firmware, with 96 bytes of settings
+  Factory,  ///< blank, unless the command requires other settings
+  Full,     ///< two copies of layout 3
+  Updated,  ///< two copies of layout 2, as firmware before layout 3 writes them
+  Longer,   ///< as Full, but the newer record has 96 bytes of settings, as from newer firmware
 };
 
 struct State {
@@ -22,13 +23,15 @@ struct State {
   Contents contents;
 };
 
-/// Returns a state from which `command` stores something. In the factory state the EEPROM is blank, unless
-/// the command requires other settings. In all other states the newer copy has the last sequence number
-/// before the wrap, and the settings that the manuals describe differ from the factory settings as far as the
-/// model and the command permit.
+/// Returns a state from which `command` stores something. There is one exception: the state Updated lacks the
+/// settings that layout 2 does not have, so a command that gives one of them its factory value stores
+/// nothing. In all states except Factory, the newer copy has the last sequence number before the wrap, and
+/// the settings that the manuals describe differ from the factory settings as far as the model and the
+/// command permit.
 State begin_at(Beginning beginning, const Model& model, const StoringCommand& command);
 
-/// Returns the settings with which a module must start. The code is independent of the firmware.
+/// Returns the settings with which a module must start. StoredCopy, which has no code of the firmware, reads
+/// them. If there is no good copy, returns the factory settings.
 Settings settings_in(const Model& model, const Contents& contents);
 
 /// Returns the outputs of a module after its start (wire.md section 2).

@@ -1,7 +1,7 @@
 // Tests a worn-out EEPROM: it acknowledges everything, but some bits of one byte keep a fixed value. The
 // firmware reads back every write, so wire.md section 8 still applies: "If a write fails, the module replies
-// `?AA` or exception 04, and nothing changes." As wire.md D15 requires, the firmware tries the store three
-// times.
+// `?AA` or exception 04, and nothing changes." As wire.md D15 requires, the firmware tries each store three
+// times before it refuses the command.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -22,22 +22,23 @@ constexpr unsigned kTries = 3;
 struct Stuck {
   std::uint16_t place;  ///< offset in the page
   std::uint8_t bits;
-  std::uint8_t at;
+  std::uint8_t at;  ///< the value that these bits keep
 };
 /// In a record of one page, these bytes belong to the sequence number (2), the address (4), the name (14) and
 /// the check (23 to 25). One bit, several bits or all bits of the byte are stuck.
 constexpr Stuck kStuck[] = {{23, 0xFF, 0x00}, {4, 0x80, 0x80},  {25, 0xFF, 0xFF},
                             {2, 0x03, 0x03},  {24, 0x55, 0xAA}, {14, 0xFF, 0x00}};
 
-/// Returns the number of pages of a record with these settings. A record that contains settings of
-/// firmware/extensions.md has two pages.
+/// Returns the number of pages of a record with these settings. A record of 19 bytes of settings, the
+/// minimum, has one page.
 unsigned pages_of(const Settings& settings) { return bytes_of_settings(settings) > 19 ? 2 : 1; }
 
 class WornPageOf : public testing::TestWithParam<ImageName> {
  protected:
   WornPageOf() : bench_(image_of(GetParam().board, GetParam().model), model_) {}
 
-  /// Checks that the reply and the outputs match `done`, which says whether the command was stored.
+  /// Checks the reply, the outputs, the contents of the EEPROM, and the next start of the module. `done`
+  /// says whether the command must be stored.
   void judge(const State& state, const StoringCommand& command, const Attempt& attempt, bool done) {
     const Settings wanted = command.done_to(state.settings, attempt.outputs_before);
     const Settings found = done ? wanted : state.settings;
@@ -59,7 +60,7 @@ class WornPageOf : public testing::TestWithParam<ImageName> {
         ASSERT_TRUE(ascii ? attempt.reply[0] == '?' : attempt.reply[2] == 4U);
       }
     }
-    // A timeout takes effect whether or not it is stored.
+    // A timeout changes the outputs even if it cannot be stored.
     const bool drives = command.drive && (done || command.is_timeout());
     ASSERT_EQ(attempt.outputs,
               drives ? command.drive(wanted, attempt.outputs_before) : attempt.outputs_before);
@@ -74,7 +75,7 @@ class WornPageOf : public testing::TestWithParam<ImageName> {
   CutBench bench_;
 };
 
-TEST_P(WornPageOf, CausesARefusalAndLeavesTheStoredSettingsIntact) {
+TEST_P(WornPageOf, StoresEachCommandCompletelyOrRefusesIt) {
   const StoringModel storing = storing_model(model_);
   unsigned refused = 0;
   unsigned accepted = 0;
@@ -83,8 +84,8 @@ TEST_P(WornPageOf, CausesARefusalAndLeavesTheStoredSettingsIntact) {
     for (const StoringCommand& command : storing_commands(model_)) {
       const State state = begin_at(beginning, model_, command);
       const bool second_counts = place_that_counts(storing, state.contents.data()) == kStoredPlaces[1];
-      // Wear of the newest copy has no effect, because a store never overwrites it. Wear of the other copy
-      // has no effect if the stuck bits already have their new values.
+      // Wear of the place that the store does not use has no effect. Wear of the other place has no effect if
+      // the stuck bits have the values that the store writes.
       for (const bool of_the_one_that_counts : {false, true}) {
         const Stuck& stuck = kStuck[number++ % std::size(kStuck)];
         const std::size_t page = kStoredPlaces[second_counts == of_the_one_that_counts ? 1 : 0];
@@ -107,7 +108,8 @@ TEST_P(WornPageOf, CausesARefusalAndLeavesTheStoredSettingsIntact) {
   EXPECT_GT(accepted, number / 3);
 }
 
-/// wire.md section 3: a reply to a command that stores begins at most 200 ms after the request.
+/// wire.md sections 3 and 7: the latest start of a reply to a command that stores is 200 ms after the end of
+/// the frame.
 TEST_P(WornPageOf, CausesARefusalInTimeWithTheLongestRecordAndTheSlowestPages) {
   constexpr std::uint8_t kLongest = 120;
   constexpr std::uint16_t kInTheLastPage = 0x60 + 5;

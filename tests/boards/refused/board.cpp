@@ -1,5 +1,6 @@
-// A board whose numbers of pins come from the command line of the compiler. The board does not suit the model
-// from that command line, or there are fewer images than models.
+// A board whose numbers of pins come from the command line of the compiler. The board has too few pins for
+// the model from that command line, or EX9000_IMAGES, the number of images from the command line, is not the
+// number of models.
 #include <array>
 
 namespace ex9000::board {

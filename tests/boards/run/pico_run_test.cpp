@@ -1,5 +1,5 @@
-// Tests what only boards/pico/run does: the file of the EEPROM, the baud rate of the master, and the error if
-// Node.js is missing.
+// Tests the functions of boards/pico/run that run_test.cpp does not test: the file of the EEPROM, the baud
+// rate of the master, and the error if Node.js is missing.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -19,7 +19,8 @@ TEST(PicoRun, AnImageWithAnEepromStoresItsSettingsInTheEepromFile) {
   EXPECT_EQ(RunningImage::of_file(image).ask("$01M"), "!019043D");
 }
 
-/// After the next start, the master uses the new rate of the module without an option.
+/// The program has no option for the baud rate of the emulated master. In the second run, the master must use
+/// the new rate of the module.
 TEST(PicoRun, TheMasterUsesTheStoredBaudRateOfTheModule) {
   const Directory directory;
   const Arguments options{"--flash", directory / "flash"};

@@ -1,4 +1,6 @@
-// Tests what only boards/lm3s6965evb/run does: resets through a debugger, and the errors of QEMU.
+// Tests the functions of boards/lm3s6965evb/run that run_test.cpp does not test: a master that never reads,
+// resets by a fault and by the watchdog, an image for the LaunchPad, the errors of QEMU, and the error if
+// QEMU is missing.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -20,7 +22,7 @@ TEST(QemuRun, AMasterThatNeverReadsDoesNotStopTheModule) {
     Terminal terminal(image.tty(), 9600);
     for (int request = 0; request < 1000; ++request) {  // the replies fill the buffer of a terminal twice
       terminal.type("$01M\r");
-      // Leaves time for a reply. The expectations do not depend on requests that are lost.
+      // The pause leaves time for a reply. The test also passes if some requests are lost.
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }
   }
@@ -106,12 +108,12 @@ TEST(QemuRun, InitStaysReleasedWhenTheModuleResetsItself) {
   const std::string port = std::to_string(free_port());
   const RunningImage image("EX9042D", {"--gdb", port});
   EXPECT_EQ(image.ask("$015"), "!011");
-  // The first address causes a fault; the others make the program hang until the watchdog resets it.
+  // The first address causes a fault. The other two make the image hang until the watchdog resets the module.
   for (const std::uint32_t address : {kNothingThere, kLoop, kDeafLoop}) {
     EXPECT_EQ(image.ask("$015"), "!010");
     EXPECT_EQ(image.ask("@010005"), ">");
     Debugger debugger(static_cast<std::uint16_t>(std::stoi(port)));
-    // The code is `cpsid i`, `b .`; neither data nor stack uses its address.
+    // The code is `cpsid i`, `b .`. Neither the data nor the stack of the image uses its address.
     debugger.write_memory(kDeafLoop, "72b6fee7");
     debugger.send_processor_to(address);
     debugger.leave();

@@ -88,8 +88,8 @@ class Visits {
   int fd_;
 };
 
-/// Sends a command, waits for the whole reply, and leaves it unread. Returns when the program has emptied the
-/// terminal.
+/// Sends a command, waits for the whole reply, and leaves it unread. Returns when the program
+/// boards/BOARD/run has emptied the terminal.
 void leave_reply_unread(const std::string& tty, const std::string& command, const std::string& reply) {
   std::optional<Visits> visits;
   {
@@ -104,7 +104,7 @@ void leave_reply_unread(const std::string& tty, const std::string& command, cons
       there = static_cast<std::size_t>(count);
     }
     EXPECT_EQ(there, reply.size() + 1);
-    visits.emplace(tty);  // not earlier: the program may have emptied the terminal after an earlier visit
+    visits.emplace(tty);  // not earlier: the program may still have emptied it after an earlier master
     close(fd);
   }
   // This function has closed the terminal. Then the program opens and closes it in order to empty it.
@@ -139,7 +139,7 @@ TEST(Run, SettingsPersistInTheFileOfTheMemory) {
     EXPECT_TRUE(has(written.output, "Written 1 references.")) << written.error;
     const int emulator = image.emulator();
     image.process().end(SIGKILL);
-    EXPECT_TRUE(ends(emulator));  // the emulator has locked the file until now
+    EXPECT_TRUE(ends(emulator));  // until its end, the emulator keeps the file locked
   }
   {
     const RunningImage image("EX9042D-M", options);
@@ -171,7 +171,7 @@ TEST(Run, EndsCleanlyOnASignalAndEndsTheEmulator) {
   }
 }
 
-TEST(Run, TheEmulatorEndsWhenTheProgramIsKilled) {
+TEST(Run, TheEmulatorEndsAndTheNextRunReplacesTheLinkWhenTheProgramIsKilled) {
   const Directory directory;
   const Arguments options{"--link", directory / "tty"};
   std::optional<Terminal> master;
@@ -229,7 +229,7 @@ TEST(Run, RefusesAFileOfTheMemoryThatItCannotUse) {
                  {kMemory + " " + taken + ": another run uses this file"});
 }
 
-TEST(Run, RefusesALinkIfItsPathExists) {
+TEST(Run, RefusesALinkThatItCannotCreate) {
   const Directory directory;
   const std::string image = image_of("EX9042D");
   write_file(directory / "file", "somebody's");

@@ -1,4 +1,5 @@
-// The program boards/BOARD/run, as a user starts it: the image on a pseudo-terminal.
+// Starts the program boards/BOARD/run as a user does. The program runs a firmware image and connects the
+// module's line to a pseudo-terminal.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -54,9 +55,10 @@ class RunningImage {
     return child;
   }
 
-  /// Sends a command and its CR, and returns the reply up to its CR.
+  /// Sends a command and a CR, and returns the reply without its CR.
   [[nodiscard]] std::string ask(const std::string& command) const { return ask_behind("", command); }
-  /// Works like `ask`, but first skips the replies to earlier requests, each of which is `before`.
+  /// Works like `ask`, but first skips replies that equal `before`, because they belong to earlier requests.
+  /// Skips nothing if `before` is empty.
   [[nodiscard]] std::string ask_behind(const std::string& before, const std::string& command) const {
     Terminal terminal(tty(), 9600);
     terminal.type(command + "\r");
@@ -97,7 +99,7 @@ class RunningImage {
   ChildProcess process_;
 };
 
-/// Returns whether the process has ended. Its parent may not have read its exit status yet.
+/// Returns whether the process has ended, even if its parent has not read its exit status yet.
 inline bool has_ended(int pid) {
   std::ifstream status("/proc/" + std::to_string(pid) + "/stat");
   std::string number;
@@ -107,8 +109,8 @@ inline bool has_ended(int pid) {
   return !status || state == "Z";
 }
 
-/// Waits up to kHang for the end of a process, which need not be a child of this one. Returns whether the
-/// process has ended.
+/// Waits up to kHang for the end of a process, which need not be a child of the test program. Returns whether
+/// the process has ended.
 inline bool ends(int pid) {
   const int process = static_cast<int>(syscall(SYS_pidfd_open, pid, 0));
   pollfd over{process, POLLIN, 0};
@@ -117,10 +119,10 @@ inline bool ends(int pid) {
   return ended && has_ended(pid);
 }
 
-/// Repeats a request until its reply arrives, as a master does, because a module receives nothing while it
-/// sends or hangs. Returns false if the reply does not arrive within kHang.
+/// Repeats `command` until `reply` arrives, as a master does, because a module receives nothing while it
+/// sends or hangs. Returns false if `reply` does not arrive within about kHang.
 inline bool gets(const RunningImage& image, const std::string& command, const std::string& reply) {
-  constexpr std::chrono::seconds kRepeats{1};  // a busy machine can only cause more requests
+  constexpr std::chrono::seconds kRepeats{1};  // a slow reply only causes more requests
   Terminal terminal(image.tty(), 9600);
   const auto gives_up = std::chrono::steady_clock::now() + kHang;
   while (std::chrono::steady_clock::now() < gives_up) {
@@ -135,7 +137,8 @@ inline bool gets(const RunningImage& image, const std::string& command, const st
   return false;
 }
 
-/// Expects one line of error output that contains `words`, and no new files in `directory`.
+/// Starts the program in `directory` with `arguments`. Expects the exit status `status`, one line of error
+/// output that contains all `words`, no other output, and no change in `directory`.
 inline void expect_refusal(const Directory& directory, const Arguments& arguments, const Arguments& words,
                            int status = 2) {
   const auto before = directory.contents();

@@ -77,7 +77,7 @@ TEST_F(InputFiltersTest, APulseThatIsShorterThanTheFilterTimeDoesNotCount) {
   EXPECT_TRUE(until_settled() == kLong);
 }
 
-TEST_F(InputFiltersTest, OtherChannelsCountEveryEdge) {
+TEST_F(InputFiltersTest, AChannelWithoutAFilterCountsEveryPulse) {
   use_filter(2000);
   edge(true);
   for (int i = 0; i < 7; ++i) {

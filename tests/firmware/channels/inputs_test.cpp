@@ -157,7 +157,7 @@ TEST_F(InputsTest, UpTo65535EdgesBetweenTwoCollectionsAreCounted) {
 
 // The interrupt counts rising and falling edges together. The main loop uses the previous level to find out
 // which edge came first.
-TEST_F(InputsTest, RisingAndFallingEdgesAreDistinguishedAtAnyLevelAndForAnyNumber) {
+TEST_F(InputsTest, RisingAndFallingEdgesAreDistinguishedAtEitherLevelForOneToNineEdges) {
   for (const bool count_rising : {true, false}) {
     for (const bool high : {true, false}) {
       for (unsigned edges = 1; edges <= 9; ++edges) {
@@ -234,7 +234,7 @@ TEST_F(InputsTest, AModbusCounterWrapsFrom65535To0) {
   EXPECT_EQ(inputs_.counter(0), 7U);
 }
 
-TEST_F(InputsTest, AWrapDoesNotChangeTheOtherCounters) {
+TEST_F(InputsTest, AWrapDoesNotChangeAnotherCounter) {
   inputs_.configure(Inputs::CounterRange::SixteenBits, false);
   pulse_and_collect(1, 3);
   pulse_and_collect(0, 65'536);
@@ -262,7 +262,7 @@ TEST_F(InputsTest, ClearedLatchesStayClearWhileTheLevelDoesNotChange) {
   EXPECT_EQ(inputs_.latched_low(), 0);
 }
 
-TEST_F(InputsTest, AClearedLatchIsSetByTheNextEdge) {
+TEST_F(InputsTest, AfterTheLatchesAreClearedTheNextEdgeSetsItsLatch) {
   rise(0);
   collect();
   inputs_.clear_latches();
@@ -322,7 +322,7 @@ TEST_F(InputsTest, OnlyTheCountersOfTheMaskAreCleared) {
   EXPECT_EQ(inputs_.counter(15), 3U);
 }
 
-TEST_F(InputsTest, SixteenChannelsHaveLevelsAndLatches) {
+TEST_F(InputsTest, SixteenChannelsHaveALevelAndALatchHigh) {
   for (unsigned channel = 0; channel < 16; ++channel) {
     edges_.on_edge(channel, true, now_);
     inputs_.collect(edges_, 16, now_);
@@ -340,7 +340,7 @@ TEST_F(InputsTest, EdgesOfChannelsThatNoModelHasAreIgnored) {
   EXPECT_EQ(inputs_.latched_high(), 0);
 }
 
-TEST_F(InputsTest, EdgesOfChannelsThatThisModelLacksSetNoLatchAndNoCounter) {
+TEST_F(InputsTest, EdgesOfChannelsThatThisModelLacksSetNoLatchAndAreNotCounted) {
   constexpr unsigned kFourInputs = 4;
   pulse(4, 3);
   pulse(7, 3);

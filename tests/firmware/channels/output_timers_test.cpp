@@ -7,8 +7,8 @@ namespace ex9000 {
 namespace {
 
 constexpr Duration kLong = milliseconds(10'000);
-/// A timer runs this many microseconds longer than its units, because the main loop starts the timer before
-/// it switches the output on, in the same pass.
+/// A timer runs this many microseconds longer than the requested time, because the main loop starts the timer
+/// before it switches the output on, in the same pass.
 constexpr std::uint32_t kLate = 300;
 
 class OutputTimersTest : public testing::Test {
@@ -83,7 +83,7 @@ TEST_F(OutputTimersTest, ATimerThatIsStartedAgainRunsForItsNewTime) {
   EXPECT_EQ(timers_.expire(now_), 2U);
 }
 
-TEST_F(OutputTimersTest, AStoppedTimerNeverEnds) {
+TEST_F(OutputTimersTest, AStoppedTimerDoesNotExpire) {
   timers_.start(1, 1, now_);
   timers_.start(2, 1, now_);
   timers_.stop(1U << 1U);
@@ -93,7 +93,7 @@ TEST_F(OutputTimersTest, AStoppedTimerNeverEnds) {
   EXPECT_EQ(timers_.expire(now_), 1U << 2U);
 }
 
-TEST_F(OutputTimersTest, UntilDueReturnsTheTimeToTheNextUnitOfAnyTimer) {
+TEST_F(OutputTimersTest, UntilDueReturnsTheTimeToTheEarliestEndOfAUnit) {
   timers_.start(7, 9, now_);
   pass(milliseconds(30));
   timers_.start(2, 9, now_);

@@ -1,5 +1,5 @@
-// Tests First and Second of the reply data: manuals 1.10; for models with more than eight inputs, wire.md
-// section 1.
+// Tests First and Second, the two data bytes of a reply. Sources: manuals 1.10; for models with more than
+// eight inputs, wire.md section 1.
 #include "firmware/dcon/writing.hpp"
 
 #include <gtest/gtest.h>

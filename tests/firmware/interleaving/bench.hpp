@@ -1,4 +1,4 @@
-// A module on its chip, with a clock and a main loop that a script of events controls.
+// A module on a simulated chip. The test controls the clock, the interrupts and the main loop.
 #pragma once
 
 #include <functional>
@@ -29,7 +29,8 @@ struct Board {
 
 class Bench {
  public:
-  /// Starts the module. When the constructor returns, the module is idle.
+  /// Starts the module with the factory settings, 115200 baud and the changes that `change` makes. When the
+  /// constructor returns, the module is idle.
   Bench(const char* model, const std::function<void(Settings&)>& change)
       : device_(*find_model(model), LineTiming::at) {
     chip = &chip_;
@@ -56,13 +57,14 @@ class Bench {
 
   [[nodiscard]] bool takes_bytes_for_its_echo() const { return !chip_.hears(); }
 
-  /// Runs one turn of the main loop if there is work, like an image between two sleeps.
+  /// Runs one turn of the main loop if there is work.
   void turn() {
     if (has_to_turn()) {
       turns_again_ = device_.turn();
     }
   }
-  /// Runs one complete turn of the main loop, whether or not an interrupt has woken it.
+  /// Runs the interrupt of the wake timer, and then one turn of the main loop. Because of this interrupt, the
+  /// turn also polls the panel.
   void whole_turn() {
     interrupt([&] { device_.on_wake_timer(); });
     turns_again_ = device_.turn();
@@ -114,7 +116,7 @@ class Bench {
       pass_time_until(std::min(chip_.sent_due, chip_.line_end_due));
     }
   }
-  /// Lets time pass until the current byte of a reply has been sent.
+  /// Lets time pass until the current byte of a reply has been sent. Does nothing if no byte is being sent.
   void reply_byte_leaves() {
     if (chip_.sent_due != Chip::kNever) {
       pass_time_until(chip_.sent_due);
@@ -126,16 +128,20 @@ class Bench {
     }
   }
 
-  /// For each expected reply, the time at which the last byte of its request was complete.
+  /// The time, in microseconds, at which the last byte of a request was received. The key is the expected
+  /// reply, or "host OK" if the request is a host OK. The key is empty if the test does not check this time.
   std::map<std::string, std::uint32_t> asked;
-  /// Delivers all bytes of a request, and stores in `asked` the time of the last byte for the expected reply.
+  /// Delivers all bytes of a request, and stores the time of the last byte in `asked` with the key `reply`.
   void asks(const std::string& frame, const std::string& reply) {
     bytes(frame);
     asked[reply] = chip_.now;
   }
   void is_asked(const std::string& reply) { asked[reply] = chip_.now; }
 
-  /// Lets time pass, and runs a turn of the main loop every 10 microseconds, even if there is no work.
+  // --- passing of time ---
+
+  /// Lets time pass, and runs a turn of the main loop every 10 microseconds, even if there is no work. Call
+  /// this only between turns.
   void rest_restlessly(Duration length) {
     constexpr std::uint32_t kStep = 10;
     for (std::uint32_t passed = 0; passed < length.microseconds(); passed += kStep) {
@@ -206,8 +212,8 @@ class Bench {
       serve_pending();
     }
   }
-  /// Serves the pending interrupts of the UART. The transmit interrupt for the first byte of a reply occurs
-  /// before the main loop has finished the turn.
+  /// Serves the pending interrupts of the UART, for example the transmit interrupt for the first byte of a
+  /// reply, which becomes pending during a turn.
   void serve_pending() {
     interrupt([&] { serve_uart(); });
   }

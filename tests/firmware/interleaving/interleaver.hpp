@@ -18,7 +18,7 @@ namespace ex9000::interleaving {
 
 /// Counts the points and interleavings that a test has tried, so that the test can require a minimum.
 struct Tried {
-  unsigned points = 0;
+  unsigned points = 0;  ///< counted only by Interleaver::at_every_point
   unsigned interleavings = 0;
 
   void print() const { std::printf("points: %u, interleavings: %u\n", points, interleavings); }
@@ -30,8 +30,8 @@ class Interleaver {
  public:
   Interleaver(const Scenario& scenario, Tried& counted)
       : scenario_(scenario), counted_(counted), steps_(scenario.script.size()) {
-    // Collects the permitted outcomes: those that occur if the first steps come before the turn and the
-    // others after it.
+    // Collects the permitted outcomes: for each value of `before`, the outcome if this number of steps comes
+    // before the turn and the other steps come after it.
     for (std::size_t before = 0; before <= steps_; ++before) {
       Places places(steps_, kAfterTheTurn);
       std::fill_n(places.begin(), before, kBeforeTheTurn);
@@ -60,8 +60,8 @@ class Interleaver {
     counted_.points += points_;
   }
 
-  /// Tries random pairs of points: the first steps at one point, the others at the same or a later point.
-  /// Tries nothing if there is only one step.
+  /// Tries `samples` random pairs of points: the first steps at one point, the others at the same or a later
+  /// point. A step may also come before or after the turn. Tries nothing if there are fewer than two steps.
   void at_pairs(std::mt19937& random, unsigned samples) {
     if (steps_ < 2) {
       return;
@@ -77,7 +77,8 @@ class Interleaver {
     }
   }
 
-  /// Tries all pairs of points. The script must have two steps.
+  /// Tries all pairs of points: the first step at one point, the second step at the same or a later point.
+  /// The script must have two steps.
   void at_all_pairs() {
     for (int first = 0; first < static_cast<int>(points_); ++first) {
       for (int second = first; second < static_cast<int>(points_); ++second) {

@@ -1,23 +1,25 @@
 // Tests interrupts at every point at which the main loop accesses data that it shares with interrupts.
 //
 // The core's own sources and hal/device.hpp run here with crossings, a clock and registers that report every
-// access (tests/support/interleaving/observed/). The test runs an interrupt before and after each access.
-// Each part of the outcome must be one that also occurs if no step of the script happens during the turn: the
-// first steps come before the turn, and the others after it. interleaver.hpp chooses the points, and
-// scenarios.cpp lists the scripts.
+// access of the main loop (tests/support/interleaving/). The points are before and after each access. At a
+// point, a test runs steps of a script. The steps cause interrupts. The class Interleaver tries many points.
+// It requires that each part of the outcome is one that also occurs if no step happens during the turn: the
+// first steps come before the turn, and the others after it. scenarios.cpp contains the scenarios of the
+// first two tests.
 //
 // The interrupts and the main loop also share the following data outside the crossings:
-//  - FrameQueue::frames_: the waiting frame belongs to the main loop from `completed_` to `dropped_`;
-//  - Uart::rest_, a HandedToInterrupt: it belongs to the main loop until `begun_`, to the interrupts until
-//    `ended_`;
+//  - FrameQueue::frames_: the waiting frame belongs to the main loop from the store to `completed_` until the
+//    store to `dropped_`;
+//  - Uart::rest_, a HandedToInterrupt: it belongs to the main loop until the store to `begun_`, then to the
+//    interrupts until the store to `ended_`;
 //  - Uart::bit_ and character_: `open` writes them before the UART may interrupt;
 //  - Receiver::protocol_, DconAssembler::checksum_, RtuAssembler::timing_: `listen` writes them before
 //    `open`;
-//  - InputEdges::levels_: `begin` writes them before interrupts are enabled;
+//  - InputEdges::levels_: `begin` writes this value before interrupts are enabled;
 //  - the driver's pin: the mask in the address selects the pin, so that a write needs no read.
 // Only the main loop uses EventTally::collected_; the interrupt uses only `total_`.
 //
-// Time passes as on a line: a byte takes 87 us even if it arrives in the middle of a turn, so interrupts may
+// Time passes as on a line: a byte takes 87 us even if it arrives in the middle of a turn, so the steps may
 // delay a turn by milliseconds.
 #include <gtest/gtest.h>
 
@@ -53,9 +55,9 @@ TEST(Interleaving, InterruptsAtRandomPairsOfPointsHaveAPermittedOutcome) {
   EXPECT_GT(all.interleavings, 4000U);
 }
 
-TEST(Interleaving, ASilenceBelongsToTheFrameBeforeIt) {
-  // The silence after a frame without a reply ends while the frame is processed, and the next frame arrives
-  // while that silence is not yet processed.
+TEST(Interleaving, TheEndOfTheTurnAroundOfAFrameDoesNotCauseAnEarlyReplyToTheNextFrame) {
+  // The turn-around time of a frame without a reply ends during the turn. The next frame arrives at the same
+  // or a later point of this turn.
   Scenario scenario = dcon(
       "a silence, and one more frame", [](Bench& bench) { bench.bytes("#**\r"); },
       {silence, [](Bench& bench) { bench.asks("$01M\r", "!019055\r"); }}, {{"!019055\r"}, {}}, no_matter);
@@ -65,8 +67,10 @@ TEST(Interleaving, ASilenceBelongsToTheFrameBeforeIt) {
   EXPECT_GT(all.interleavings, 200U);
 }
 
-/// Sends a whole frame at each point of the turn that replies to an earlier frame. The new frame must not be
-/// lost if it arrives after the earlier frame has been processed and before the driver is switched on.
+/// Sends a whole frame at each point of the turn that replies to an earlier frame. While the earlier frame
+/// waits in the queue, the new frame is lost. From the first point at which the new frame is not lost until
+/// the driver is switched on, the module must reply to the new frame at every point. While the driver is on,
+/// the module must ignore the new frame.
 void expect_one_more_is_kept(Scenario scenario, const std::string& request, const std::string& reply) {
   bool driving = false;
   std::size_t answered = 0;
@@ -93,7 +97,7 @@ void expect_one_more_is_kept(Scenario scenario, const std::string& request, cons
   EXPECT_GT(kept, 1) << scenario.name;
 }
 
-TEST(Interleaving, TheNextFrameIsKeptUntilTheDriverIsSwitchedOn) {
+TEST(Interleaving, AfterAFrameIsJudgedTheNextOneIsKeptUntilTheDriverIsSwitchedOn) {
   expect_one_more_is_kept(dcon("a frame after one that is answered", asked("$01F\r", "!01D01.00\r"), {},
                                {{"!01D01.00\r", "!019055\r"}, {"!01D01.00\r"}}, no_matter),
                           "$01M\r", "!019055\r");

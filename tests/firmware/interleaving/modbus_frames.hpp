@@ -1,4 +1,4 @@
-// The Modbus requests and replies of the scenarios. The module has the address 1.
+// Modbus requests and replies for the scenarios. The module has the address 1.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// Tests that interrupts at every point reveal typical errors in code that shares data between the main loop
-// and interrupts.
+// Tests that interrupts at every point reveal two typical errors in code that shares data between the main
+// loop and interrupts.
 #include "tests/support/interleaving/points.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Events that happen to a module during one turn of its main loop, and the expected outcome.
+// Events that happen to a module before, during or after one turn of its main loop, and the expected outcome.
 #pragma once
 
 #include <functional>
@@ -15,11 +15,13 @@ using Step = std::function<void(Bench&)>;
 struct Scenario {
   const char* name;
   const char* model;
+  /// Changes the settings with which the module starts: the factory settings with 115200 baud.
   std::function<void(Settings&)> settings;
   Step before;               ///< prepares the module for the turn
   std::vector<Step> script;  ///< the events in their order; each occurs before, during or after the turn
   /// The permitted lists of replies, from the start of `before` until the module is idle.
   std::vector<std::vector<std::string>> replies;
+  /// Returns the parts of the outcome; may throw std::logic_error. See outcomes.hpp.
   std::function<std::vector<std::string>(Bench&)> comes_to;
   std::string probe;          ///< a request that is sent at the end
   std::string probe_reply;    ///< the expected reply to `probe`
@@ -76,7 +78,8 @@ inline void require_distances(const Bench& bench, const Chip& hardware, const Sc
   }
 }
 
-/// Plays `scenario`. Throws std::logic_error if a condition fails that must hold for every order of events.
+/// Plays `scenario` with its steps at `places`. Throws std::logic_error if a condition fails that must hold
+/// for every order of events.
 inline Run play(const Scenario& scenario, const Places& places) {
   Bench bench(scenario.model, scenario.settings);
   Chip& hardware = bench.hardware();

@@ -157,7 +157,7 @@ std::vector<Scenario> scenarios() {
           },
           frame(kRtuHostOk, "host OK"), {{kRtuStore, kRtuReadReply}}, modbus_restarted)),
   };
-  // One of these turns ends the store and applies the filter.
+  // In one of these scenarios, the turn ends the store and applies the filter.
   for (unsigned jobs = 0; jobs < 6; ++jobs) {
     all.push_back(dcon("an edge while a filter is switched on",
                        storing_until(jobs, "~01X02400001\r", "!01\r"), {edge(0, true)}, {{"!01\r"}},

@@ -1,4 +1,4 @@
-// The steps of scenarios: the events during a turn, and the preparations of a turn.
+// The steps of scenarios: the events of a script, and the preparations of a turn.
 #pragma once
 
 #include <cstddef>
@@ -22,7 +22,8 @@ inline Step edge(unsigned channel, bool level) {
   return [=](Bench& bench) { bench.edge(channel, level); };
 }
 
-/// Returns one step for each byte of a request, and a last step for the silence after the request.
+/// Returns one step for each byte of a request, and a last step that waits until the silence timer expires.
+/// The step of the last byte stores its time in Bench::asked with the key `reply`.
 inline std::vector<Step> frame(const std::string& request, const std::string& reply) {
   std::vector<Step> steps;
   for (std::size_t i = 0; i < request.size(); ++i) {
@@ -44,14 +45,14 @@ inline std::vector<Step> operator+(std::vector<Step> steps, const std::vector<St
 
 // --- preparations ---
 
-/// Prepares a turn that begins when a request and the silence after it have been received.
+/// Prepares a turn that begins when a request has been received and the silence timer has expired.
 inline Step asked(const std::string& request, const std::string& reply) {
   return [=](Bench& bench) {
     bench.asks(request, reply);
     bench.silence();
   };
 }
-/// Prepares a turn that begins while a store is in progress.
+/// Prepares a turn that begins while the module stores the settings that `request` changes.
 inline Step storing(const std::string& request, const std::string& reply) {
   return [=](Bench& bench) {
     bench.asks(request, reply);
@@ -59,7 +60,8 @@ inline Step storing(const std::string& request, const std::string& reply) {
     bench.whole_turn();
   };
 }
-/// Prepares a turn that begins after `jobs` further jobs of the memory.
+/// Prepares a turn that begins when the memory has finished `jobs` + 1 jobs of a store. The module has not
+/// processed the end of the last job yet. If the store has fewer jobs, it is complete before the turn.
 inline Step storing_until(unsigned jobs, const std::string& request, const std::string& reply) {
   return [=](Bench& bench) {
     storing(request, reply)(bench);
@@ -70,10 +72,10 @@ inline Step storing_until(unsigned jobs, const std::string& request, const std::
     bench.memory_done();
   };
 }
-/// Prepares a turn that begins while a reply is being sent.
+/// Prepares a turn that begins while a reply is being sent. `request` must not change settings.
 inline Step replying(const std::string& request, const std::string& reply) { return storing(request, reply); }
 
-/// Prepares a turn that begins when the host watchdog has `before` left until it expires.
+/// Prepares a turn that begins when the time until the host watchdog expires is `before`.
 inline Step until_expiry(Duration before) {
   return [=](Bench& bench) {
     const Duration remaining = bench.module().host_watchdog_expiry().remaining(Time(bench.hardware().now));
@@ -81,7 +83,8 @@ inline Step until_expiry(Duration before) {
   };
 }
 
-/// Prepares a turn that begins while a reply is being sent and the next request waits.
+/// Prepares a turn that begins while a reply is being sent and the next request waits. `request` must change
+/// settings.
 inline Step replying_with_one_more(const std::string& request, const std::string& reply,
                                    const std::string& next, const std::string& next_reply) {
   return [=](Bench& bench) {

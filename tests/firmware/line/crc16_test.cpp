@@ -1,4 +1,4 @@
-// Tests CRC-16/MODBUS with the worked examples of wire.md section 7 and of Modbus over Serial Line V1.02.
+// Tests CRC-16/MODBUS. Sources of the examples: wire.md section 7 and Modbus over Serial Line V1.02.
 #include "firmware/line/crc16.hpp"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ using FrameBytes = std::vector<std::uint8_t>;
 
 Crc16 crc_of(const FrameBytes& bytes) { return crc16({bytes.data(), bytes.size()}); }
 
-/// The worked examples of wire.md section 7, CRC included.
+/// The example frames of wire.md section 7, with their CRCs.
 const std::vector<FrameBytes> kWorkedFrames{
     {0x01, 0x05, 0x00, 0x00, 0xFF, 0x00, 0x8C, 0x3A},
     {0x01, 0x85, 0x04, 0x43, 0x53},
@@ -76,7 +76,7 @@ TEST(Crc16, IsNotZeroWithTheHighByteFirst) {
   EXPECT_NE(crc_of({0x01, 0x05, 0x00, 0x00, 0xFF, 0x00, 0x3A, 0x8C}).value(), 0);
 }
 
-TEST(Crc16, DetectsEverySingleAndDoubleBitError) {
+TEST(Crc16, DetectsEverySingleAndDoubleBitErrorInAFrameOf8Bytes) {
   const FrameBytes frame = kWorkedFrames[0];
   const std::size_t bits = frame.size() * 8;
   const auto flip = [](FrameBytes& bytes, std::size_t bit) {

@@ -1,5 +1,5 @@
 // Tests the states of the DCON assembler, and framing: wire.md section 3, "The receiver" and "Judging a
-// frame" 1.
+// frame", rule 1.
 #include "firmware/line/dcon_assembler.hpp"
 
 #include <gtest/gtest.h>
@@ -14,6 +14,7 @@ namespace ex9000 {
 namespace {
 
 constexpr std::string_view kDelimiters = "#$%@~";
+/// The first characters of replies.
 constexpr std::string_view kLeads = "!>?";
 
 // --- waiting for a delimiter ---
@@ -151,7 +152,7 @@ TEST_F(DconAssemblerTest, ADelimiterWithALineErrorWithinAFrameSpoilsTheFrame) {
   expect_hunting();
 }
 
-TEST_F(DconAssemblerTest, ASpoiledFrameStaysSpoiledWhateverFollows) {
+TEST_F(DconAssemblerTest, ASpoiledFrameStaysSpoiledUntilTheCarriageReturn) {
   put("$0");
   put('1', ByteStatus::Break);
   EXPECT_EQ(put('\r', ByteStatus::FramingError), Verdict::Open);
@@ -177,7 +178,7 @@ TEST_F(DconAssemblerTest, AReplyWithAllDelimitersAndLeadsIsSkippedWhole) {
   expect_hunting();
 }
 
-TEST_F(DconAssemblerTest, AReplyOfAnyLengthIsSkippedWhole) {
+TEST_F(DconAssemblerTest, ALongReplyIsSkippedWhole) {
   EXPECT_EQ(put("!" + std::string(1000, '$') + "\r"), Verdict::Open);
   expect_hunting();
 }

@@ -17,12 +17,13 @@ inline constexpr std::uint8_t kOwn = 0x01;
 class DconAssemblerTest : public testing::Test {
  protected:
   Verdict put(char character, ByteStatus status = ByteStatus::Good) {
-    now_ = now_ + Duration(1042);
+    now_ = now_ + Duration(1042);  // one character at 9600 baud
     assembler_.answer_to(own_);
     return assembler_.byte(queue_, static_cast<std::uint8_t>(character), status, now_);
   }
 
-  /// Sends all characters. Only the last one may end a frame.
+  /// Passes all characters to the assembler and returns the last verdict. Only the last character may end a
+  /// frame.
   Verdict put(std::string_view text) {
     Verdict last = Verdict::Open;
     for (const char character : text) {
@@ -55,7 +56,8 @@ class DconAssemblerTest : public testing::Test {
   Time now_;
 };
 
-/// Returns a frame of `characters` characters that begins with `$01`, without checksum and CR.
+/// Returns a frame of `characters` characters that begins with `$01`, without checksum and CR. The
+/// minimum of `characters` is 3.
 inline std::string frame_of(std::size_t characters) { return "$01" + std::string(characters - 3, 'X'); }
 
 }  // namespace ex9000

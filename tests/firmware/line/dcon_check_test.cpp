@@ -1,4 +1,4 @@
-// Tests checksum, address and broadcasts of DCON frames: wire.md section 3, "Judging a frame" 2 to 4.
+// Tests checksum, address and broadcasts of DCON frames: wire.md section 3, "Judging a frame", rules 2 to 4.
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 namespace ex9000 {
 namespace {
 
-/// Appends the checksum of wire.md section 3, computed without the firmware's code.
+/// Returns `text` with the checksum of wire.md section 3, which is computed without the firmware's code.
 std::string with_checksum(std::string text) {
   unsigned sum = 0;
   for (const char character : text) {
@@ -149,7 +149,7 @@ TEST_F(DconAssemblerTest, BroadcastsCarryTheChecksumToo) {
   EXPECT_EQ(put("~**D2\r"), Verdict::HostOk);
 }
 
-TEST_F(DconAssemblerTest, ABroadcastWithoutOrWithAWrongChecksumIsDropped) {
+TEST_F(DconAssemblerTest, ABroadcastWithAMissingOrWrongChecksumIsDropped) {
   assembler_.use_checksum(true);
   EXPECT_NE(put("~**\r"), Verdict::HostOk);
   EXPECT_EQ(put("~**D3\r"), Verdict::BadCheck);
