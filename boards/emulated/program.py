@@ -45,11 +45,11 @@ def parser_for(emulator: str, preset: str) -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="run",
         description=f"Runs a firmware image in {emulator}. The first line that it prints is the path of the "
-        "pseudo-terminal that is the module's RS-485 line. Press Ctrl-C or send SIGTERM to end it.",
+        "pseudo-terminal that is the module's RS-485 line. Press Ctrl-C or send SIGTERM to end the program.",
     )
     parser.add_argument("image", metavar="IMAGE.elf", type=Path, help=f"an image of the preset {preset}")
     parser.add_argument(
-        "--link", metavar="PATH", type=Path, help="make a symbolic link to the pseudo-terminal"
+        "--link", metavar="PATH", type=Path, help="create a symbolic link to the pseudo-terminal"
     )
     parser.add_argument("--init", action="store_true", help="tie INIT* to GND: ASCII, address 00, 9600 baud")
     return parser

@@ -57,7 +57,7 @@ void idle_line(benchmark::State& state) {
   }
   if (line.module(0).module().led_pattern() != StatusLed::Pattern::HostTimeout ||
       line.module(1).module().state().settings.timeout_status) {
-    state.SkipWithError("one module must flash, and no other");
+    state.SkipWithError("module 1 must flash, and module 2 must not");
   }
   state.counters["figure"] = benchmark::Counter(seconds(ran), benchmark::Counter::kIsRate);
   state.counters["at_least"] = 1000;

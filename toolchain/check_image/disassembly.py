@@ -145,7 +145,7 @@ def stack_of(code: list[Instruction]) -> int:
             depth += pushed_by(instruction)
             deepest = max(deepest, depth)
             if depth > _MAX_DEPTH:
-                raise StackPointerUnknown("push in a loop")
+                raise StackPointerUnknown("push beyond 64 KiB, for example in a loop")
             target = instruction.branch_target
             if target is not None and not instruction.is_call:
                 ways.append((target, depth))

@@ -45,7 +45,8 @@ def main(arguments: list[str]) -> int:
 def _parse(arguments: list[str]) -> argparse.Namespace:
     parser = argparse.ArgumentParser(
         prog="check-image",
-        description="Size, worst-case stack and symbols of a firmware image, and what has changed since the record.",
+        description="Prints the sizes and the worst-case stack of a firmware image and the changes since the record, "
+        "and checks the contents of the image.",
     )
     parser.add_argument(
         "image", type=Path, help="the linked ELF file, with a vector table in its section .vectors"

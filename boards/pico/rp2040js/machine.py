@@ -141,7 +141,7 @@ class Machine:
         state, _, result = reply.rstrip("\n").partition(" ")
         if state != "ok":
             raise Ended(
-                f"rp2040js: an RP2040 rejects an operation of the image: {result}; name an image of this firmware"
+                f"rp2040js: the emulator rejects an operation of the image: {result}; name an image of this firmware"
             )
         return result
 

@@ -40,8 +40,9 @@ def main(words: list[str]) -> int:
         "--eeprom",
         metavar="FILE",
         type=Path,
-        help="keep the contents of the EEPROM, where images of pico-eeprom store the settings, in this file of 8192 "
-        "bytes; if the file is missing, create it with the memory of a factory-fresh module",
+        help="keep the contents of the EEPROM, where images that are built with EX9000_MEMORY=eeprom store "
+        "the settings, in this file of 8192 bytes; if the file is missing, create it with the memory of a "
+        "factory-fresh module",
     )
     arguments = parser.parse_args(words)
 

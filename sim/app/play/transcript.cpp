@@ -56,7 +56,7 @@ unsigned channel(const std::string& text) {
 const Model& model_named(const std::string& name) {
   const Model* model = find_model(name);
   if (model == nullptr) {
-    fail("'" + name + "' is not a model; 'ex9000-sim --models' lists them");
+    fail("'" + name + "' is not a model; 'ex9000-sim --models' lists all models");
   }
   return *model;
 }

@@ -121,7 +121,7 @@ std::string shared_addresses(const std::vector<ModuleSummary>& modules) {
   for (const auto& [address, count] : users) {
     if (count > 1) {
       text += std::to_string(count) + " modules are at address " + hex_byte_text(address) +
-              " and will reply at the same time; use MODEL@ADDR to give them different addresses\n";
+              " and may reply at the same time; use MODEL@ADDR to give them different addresses\n";
     }
   }
   return text;

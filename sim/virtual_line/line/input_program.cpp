@@ -93,7 +93,8 @@ void check(const InputProgram& program) {
     fail("expected a bounce of at least " + time_text(kShortest));
   }
   if (program.high < kShortest || program.high < program.bounce) {
-    fail("expected to be on for at least " + time_text(kShortest) + ", and not shorter than its bounce");
+    fail("expected the input to be on for at least " + time_text(kShortest) +
+         ", and at least as long as the bounce");
   }
   const bool periodic = program.kind != InputProgram::Kind::KeyOnce;
   if (periodic && program.time < program.high + program.bounce + kShortest) {

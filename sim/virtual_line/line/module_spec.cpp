@@ -28,7 +28,7 @@ const Model& model_called(const std::string& name) {
     model = find_model("EX" + wanted);
   }
   if (model == nullptr) {
-    fail("'" + name + "' is not a model; 'ex9000-sim --models' lists them");
+    fail("'" + name + "' is not a model; 'ex9000-sim --models' lists all models");
   }
   return *model;
 }

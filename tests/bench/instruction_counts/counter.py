@@ -110,7 +110,7 @@ class Counter:
         """Waits until execution.follow has read the line that Emulator.write_sync_line has written. Call
         write_sync_line first. Raises RuntimeError if this takes longer than `patience` seconds."""
         if not self._seen.wait(patience):
-            raise RuntimeError("the emulator's log has ended")
+            raise RuntimeError("the emulator's log does not continue")
         self._seen.clear()
 
     # --- events from execution.follow ---

@@ -111,7 +111,7 @@ inline Run play(const Scenario& scenario, const Places& places) {
   }
   require(foreseen, "replies " + all_of(replies));
   require(!hardware.driving(), "the driver is still on");
-  require(hardware.feeds > feeds_before, "the watchdog was not fed");
+  require(hardware.feeds > feeds_before, "the hardware watchdog was not fed");
   run.outcome = scenario.comes_to(bench);
   require_distances(bench, hardware, scenario);
 
@@ -119,7 +119,7 @@ inline Run play(const Scenario& scenario, const Places& places) {
   bench.rest(milliseconds(10));
   require(hardware.sent.size() == replies.size() + 1, "expected exactly one reply to the probe");
   require(hardware.sent.back().bytes == scenario.probe_reply,
-          "probed: " + all_of({hardware.sent.back().bytes}));
+          "the reply to the probe was " + all_of({hardware.sent.back().bytes}));
   return run;
 }
 

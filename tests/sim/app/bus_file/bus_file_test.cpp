@@ -263,7 +263,7 @@ INSTANTIATE_TEST_SUITE_P(
                           "bus.json:2: lines[0].modules[0].model: expected a text in quotes"},
                     Wrong{"{\"lines\": [{\"modules\": [{\n\"model\": \"EX1\"}]}]}",
                           "bus.json:2: lines[0].modules[0].model: 'EX1' is not a model; 'ex9000-sim "
-                          "--models' lists them"}));
+                          "--models' lists all models"}));
 
 TEST(WrongModuleOfABusFile, IsRefusedWithFileLineKeyAndRemedy) {
   for (const auto& [members, why] : std::vector<std::pair<std::string, std::string>>{
