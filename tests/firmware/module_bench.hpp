@@ -82,12 +82,13 @@ class ModuleBench {
     return reply;
   }
 
-  /// Returns all characters received since the last `ask` or `forget_heard` began.
+  /// Returns all characters that the master has received since the beginning of the last call of `ask` or
+  /// `forget_heard`. If there was no such call, returns all characters since power-on.
   [[nodiscard]] std::string heard_text() const { return {heard_.begin(), heard_.end()}; }
   void forget_heard() { heard_.clear(); }
 
-  /// Appends every change of the outputs to `changes` until the next call. `changes` must exist as long as
-  /// the outputs can change.
+  /// Appends every change of the outputs to `changes` until the next call. `changes` must exist until the
+  /// next call. If there is no next call, it must exist as long as the outputs can change.
   void watch_outputs(std::vector<OutputChange>& changes) {
     module().output_pins().on_change([this, &changes](std::uint16_t channels) {
       changes.push_back({now(), channels});

@@ -1,5 +1,5 @@
-// Tests, on a whole module, the extensions that depend on exact times, stores and resets:
-// firmware/extensions.md.
+// Tests extensions on a whole module: timed outputs, input filters, what restarts the host watchdog, reset
+// reason, uptime, counts, origin of the settings, and line tallies (firmware/extensions.md).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,13 +21,15 @@ using std::chrono::microseconds;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
+/// A timed output, a filter time and the timeout of the host watchdog may end at most this time too late
+/// (firmware/extensions.md; wire.md section 6).
 constexpr milliseconds kTick{1};
 
 std::uint16_t outputs_of(ModuleBench& bench) { return bench.module().outputs(); }
 
 // --- timed outputs ---
 
-TEST(TimedOutput, IsSwitchedOffAfterItsTimeNeverEarlyAndAtMostATickLate) {
+TEST(TimedOutput, IsSwitchedOffAfterItsTimeNeverEarlyAndAtMost1MsLate) {
   for (const unsigned units : {1U, 2U, 7U, 600U}) {
     ModuleBench bench("EX9043D,baud=115200");
     std::vector<OutputChange> changes;
@@ -90,7 +92,7 @@ TEST(TimedOutput, StoresNothing) {
 
 // --- filters ---
 
-TEST(InputFilter, ALevelCountsAfterItsTimeNeverEarlyAndAtMostATickLate) {
+TEST(InputFilter, ALevelCountsAfterItsTimeNeverEarlyAndAtMost1MsLate) {
   for (const unsigned time : {1U, 30U, 2000U}) {
     ModuleBench bench("EX9052D,baud=115200");
     ASSERT_EQ(bench.ask("~01X0243" + hex_word_text(time)), "!01");
@@ -115,7 +117,7 @@ TEST(InputFilter, TheLevelAtResetIsTheBaselineWithoutFilterTime) {
   EXPECT_EQ(bench.ask("$01L1"), "!000000");
 }
 
-// The module reads its settings, with the filters, only some milliseconds after the reset.
+// The module reads its settings, including the filter times, only some milliseconds after the reset.
 TEST(InputFilter, ALevelThatChangesWhileTheModuleStartsCountsAfterItsTime) {
   constexpr milliseconds kFilter{30};
   for (int offset = 1; offset < 40; ++offset) {
@@ -134,7 +136,7 @@ TEST(InputFilter, ALevelThatChangesWhileTheModuleStartsCountsAfterItsTime) {
   }
 }
 
-// --- feeding the host watchdog by requests ---
+// --- requests that restart the host watchdog ---
 
 TEST(FedByRequests, ARequestRestartsTheHostWatchdogAtItsEnd) {
   ModuleBench bench("EX9043D,baud=115200");
@@ -168,7 +170,7 @@ TEST(FedByRequests, OnlyARequestBeforeTheExpiryRestartsTheHostWatchdog) {
   }
 }
 
-// The frame ends T3.5 after its last byte, 1.75 ms at 115200 baud.
+// A frame ends T3.5 after its last byte. T3.5 is 1.75 ms at 115200 baud.
 TEST(FedByRequests, AModbusRequestRestartsTheHostWatchdogAtTheEndOfItsSilence) {
   const std::vector<std::uint8_t> request = with_crc({0x01, 0x01, 0, 0, 0, 1});
   const VirtualTime takes = VirtualTime(10'000'000'000 / 115200) * static_cast<int>(request.size());
@@ -234,7 +236,7 @@ void restart_with(ModuleBench& bench, const std::vector<std::uint8_t>& memory) {
   bench.run(milliseconds(100));
 }
 
-/// Returns the value of register 0x0306 of a module that starts with this memory.
+/// Returns the value of register 0x0306 of the module `model` after it has started with `memory`.
 std::string settings_source(const std::string& model, const std::vector<std::uint8_t>& memory) {
   ModuleBench bench(model);
   restart_with(bench, memory);
@@ -322,7 +324,8 @@ TEST(LineTallyRegisters, CountRequestsLostDuringAStoreUntilTheRegistersAreCleare
     bench.send(with_crc({0x01, 0x01, 0, 0, 0, 1}));
   }
   bench.run(milliseconds(100));
-  const std::size_t replied = (bench.recorder().sent_by(1).size() - 8) / 6;  // after the reply to the store
+  // The reply to the request that stores has 8 bytes, and each reply to a read request has 6.
+  const std::size_t replied = (bench.recorder().sent_by(1).size() - 8) / 6;
   ASSERT_LT(replied, 3U);
   EXPECT_EQ(bench.ask(read_word(0x03, 0x0F)),
             (std::vector<std::uint8_t>{0x01, 0x03, 2, 0, static_cast<std::uint8_t>(3 - replied)}));

@@ -1,5 +1,5 @@
-// Tests a module and its memory: stores and their duration, power cuts, and the frames that the module keeps
-// during a store.
+// Tests a module and its memory: stores, failed stores, power cuts, unreadable settings, and the frames that
+// the module keeps during a store.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@ using Bytes = ModuleBench::Bytes;
 using std::chrono::microseconds;
 using std::chrono::milliseconds;
 
-// --- wire.md 8: a reply to a command means that its settings are stored ---
+// --- wire.md section 8: a valid reply to a command means that its settings are stored ---
 
 TEST(Storing, ACommandThatCannotBeStoredIsRefusedAndChangesNothing) {
   const std::vector<std::string> commands{"%0102400680", "~01OABC", "~013164", "~015P", "~015S"};
@@ -54,8 +54,9 @@ TEST(Storing, ABroadcastThatCannotBeStoredGetsNoReplyAndHasNoEffect) {
   EXPECT_EQ(bench.module().outputs(), 0);
 }
 
-/// Sends each command twice. The first execution may store something; the second one must not. `ask` returns
-/// whether the command was executed.
+/// Sends each command twice. The first execution may store something, but the second execution must not. More
+/// than half of the commands must store something the first time. `ask` returns whether the command was
+/// executed.
 template <class Command, class Ask>
 void expect_nothing_written_the_second_time(ModuleBench& bench, const std::vector<Command>& commands,
                                             Ask ask) {
@@ -151,7 +152,7 @@ TEST(Storing, ATimeoutStatusIsClearedOnceAndNotAgain) {
   }
 }
 
-TEST(Storing, ReadingAndRefusedCommandsWriteNothing) {
+TEST(Storing, ReadingRefusedAndOutputCommandsWriteNothing) {
   ModuleBench bench("EX9055D");
   for (const char* command :
        {"$012", "$016", "@01", "#010", "~010", "~012", "~014P", "$01F", "$01M", "$015", "~01O", "~013000",
@@ -265,8 +266,8 @@ TEST(Storing, ARefusedStoreIsNotInForceAfterTheNextResetEvenIfItWasWritten) {
 }
 
 TEST(Storing, AStoringCommandIsRefusedWhileAnEarlierTimeoutCannotBeStored) {
-  // The timeout has disabled the watchdog, but this is not stored yet. The module must not accept the command
-  // that disables the watchdog before this is stored.
+  // The timeout has disabled the watchdog, but the module has not stored this change yet. The module must
+  // refuse the command that disables the watchdog until the change is stored.
   ModuleBench bench("EX9042D");
   ASSERT_EQ(bench.ask("~013103"), "!01");
   bench.module().memory().fail(true);
@@ -292,7 +293,7 @@ TEST(Storing, AnotherModelsSettingsAreNotUsed) {
   EXPECT_TRUE(bench.module().module().settings_unreadable());
 }
 
-// --- wire.md 8: while one command is executed or stored, the module keeps one more frame ---
+// --- wire.md section 8: while a command is executed or stored, the module keeps at least one more frame ---
 
 TEST(Queueing, WhileACommandIsStoredOnlyTheFirstOfTwoFramesIsKept) {
   ModuleBench bench("EX9042D,baud=115200");
@@ -305,14 +306,14 @@ TEST(Queueing, WhileACommandIsStoredOnlyTheFirstOfTwoFramesIsKept) {
 TEST(Queueing, AHostOkIsNotLostWhileTheQueueIsFull) {
   ModuleBench bench("EX9042D,baud=115200");
   ASSERT_EQ(bench.ask("~013105"), "!01");
-  bench.run(milliseconds(200));  // together with the wait in `ask`, 450 ms of the 500 ms are over
+  bench.run(milliseconds(200));  // together with the wait in `ask`, about 450 ms of the 500 ms are over
   bench.send("~01ONEW\r$01M\r~**\r");
   bench.run(milliseconds(300));
   EXPECT_FALSE(bench.module().module().state().settings.timeout_status);
 }
 
 TEST(Queueing, ACompleteModbusFrameIsNotLostWhenThePreviousReplyStarts) {
-  // The host OK is complete, except for its silence, when the driver is switched on.
+  // The host OK is complete, except for its silence, when the module switches its driver on.
   ModuleBench bench("EX9068D-M");
   bench.ask(Bytes{1, 0x06, 0x01, 0xE8, 0x00, 0x05});
   bench.ask(Bytes{1, 0x05, 0x01, 0x04, 0xFF, 0x00});
@@ -346,7 +347,7 @@ TEST(Queueing, TwoRepliesAreAtLeastT35Apart) {
   EXPECT_GE(on[1].at - off[0].at, microseconds(1750));
 }
 
-// wire.md section 8: a reply means that the settings are stored. Settings that could not be read may be
+// wire.md section 8: a valid reply means that the settings are stored. Settings that could not be read may be
 // readable again after the next reset, so the module must store even the factory values.
 TEST(Storing, ACommandWithFactoryValuesIsStoredIfTheSettingsWereUnreadable) {
   ModuleBench bench("EX9042D");

@@ -1,4 +1,5 @@
-// Tests the timing of a module: its reset, INIT*, its replies, its driver, and its clock after long pauses.
+// Tests the timing of a module: its reset, INIT*, its replies, its driver, and its clock when it wraps and
+// after long pauses.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,7 +20,7 @@ using std::chrono::microseconds;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-// --- wire.md 2: reset and INIT* ---
+// --- wire.md section 2: reset and INIT* ---
 
 TEST(Reset, OutputsGoFromDeEnergisedToThePowerOnValueWithoutAGlitch) {
   ModuleBench bench("EX9043D");
@@ -36,7 +37,7 @@ TEST(Reset, OutputsGoFromDeEnergisedToThePowerOnValueWithoutAGlitch) {
   EXPECT_LT(changes[1].at - changes[0].at, milliseconds(100));
 }
 
-TEST(Reset, ABouncingInitSwitchIsReadOnlyAfterItIsStable) {
+TEST(Reset, ABouncingInitSwitchIsReadAsItsStableLevel) {
   ModuleBench bench("EX9042D");
   for (int i = 0; i < 20; ++i) {
     bench.module().set_init(i % 2 == 0);
@@ -55,7 +56,7 @@ TEST(Reset, ABouncingInitSwitchIsReadOnlyAfterItIsStable) {
   EXPECT_EQ(bench.ask("$002"), "!01400600");
 }
 
-// --- wire.md 3 and 7: start of a reply; 9: the driver; firmware/extensions.md: line formats ---
+// --- wire.md sections 3 and 7: start of a reply; section 9: driver; firmware/extensions.md: line formats ---
 
 /// A baud rate, a line format, and the duration of a character.
 struct LineMode {

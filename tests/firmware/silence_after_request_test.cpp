@@ -1,6 +1,6 @@
-// Tests that the module processes a request when the silence after it is over, and that events during that
-// silence still affect the request: wire.md sections 3, 7 and 8. In this file, silence means T3.5 in Modbus
-// and the turn-around in ASCII.
+// In this file, the silence after a request means T3.5 in Modbus and the turn-around in ASCII. These tests
+// check that the module processes a request only at the end of this silence, and that events during the
+// silence still affect the request: wire.md sections 3, 7 and 8.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -16,7 +16,7 @@ using std::chrono::microseconds;
 using std::chrono::milliseconds;
 using Bytes = ModuleBench::Bytes;
 
-/// Shorter than both silences at 9600 baud. The shorter one is the turn-around, one character.
+/// Shorter than both silences at 9600 baud. The shorter one is the turn-around of one character.
 constexpr microseconds kWithinAnySilence{300};
 constexpr milliseconds kLong{50};
 
@@ -128,7 +128,7 @@ TEST(SilenceAfterRequest, AFrameWithAnExtraByteAfterItsCrcIsNotExecuted) {
 }
 
 TEST(SilenceAfterRequest, TheInitSwitchIsEvaluatedAtTheEndOfTheSilence) {
-  // At 1200 baud the turn-around takes 8.3 ms. The switch changes so early that its debounce time of 10 ms
+  // At 1200 baud the turn-around takes 8.3 ms. INIT* changes so early that its debounce time of 10 ms
   // ends in the middle of the turn-around.
   constexpr microseconds kCharacter{10'000'000 / 1200};
   constexpr milliseconds kMovedBeforeTheEnd{6};

@@ -1,5 +1,4 @@
-// Tests that the tables of models, commands, functions and registers are consistent, each in itself and with
-// the others.
+// Tests that the tables of models, commands, functions and registers are consistent.
 #include <gtest/gtest.h>
 
 #include <set>
@@ -31,13 +30,13 @@ TEST(Tables, EveryRowHasItsOwnId) {
   expect_unique(modbus::kFunctions, [](const modbus::Function& row) { return row.name; });
 }
 
-TEST(Tables, EveryModelIsWithinTheLimitsAndHasPossibleFactorySettings) {
+TEST(Tables, EveryModelHasPossibleChannelsAndFactorySettingsAndTheCorrectModbusCode) {
   for (const Model& model : kModels) {
     EXPECT_LE(model.inputs, kMaxInputs) << model.designation;
     EXPECT_LE(model.outputs, kMaxOutputs) << model.designation;
     EXPECT_TRUE(model.has_inputs() || model.has_outputs()) << model.designation;
     EXPECT_TRUE(Settings::factory(model).possible_for(model)) << model.designation;
-    // Only -M models have a Modbus code. Its hex digits are the four digits of the designation.
+    // Only -M models have a Modbus code. The hex digits of the code are the four digits of the designation.
     const bool m = model.designation.substr(model.designation.size() - 2) == "-M";
     EXPECT_EQ(model.speaks_modbus(), m) << model.designation;
     if (m) {

@@ -39,7 +39,7 @@ TEST(Time, ReturnsTheMicrosecondsOfItsConstructor) {
   EXPECT_EQ(Time(kLast).microseconds(), kLast);
 }
 
-TEST(Time, GivesTheDurationSinceAnEarlierTime) {
+TEST(Time, GivesTheDurationSinceAnEarlierOrEqualTime) {
   EXPECT_EQ(Time(500).since(Time(200)).microseconds(), 300U);
   EXPECT_EQ(Time(500).since(Time(500)).microseconds(), 0U);
 }
@@ -53,7 +53,7 @@ TEST(Time, TheLongestDurationIsOneMicrosecondShortOfTheWholeRange) {
   EXPECT_EQ(Time(4999).since(Time(5000)).microseconds(), kLast);
 }
 
-TEST(Time, WrapsWhenADurationIsAdded) {
+TEST(Time, AddsADurationAlsoAcrossTheWrap) {
   EXPECT_EQ((Time(200) + Duration(300)).microseconds(), 500U);
   EXPECT_EQ((kShortlyBeforeTheWrap + Duration(100)).microseconds(), 0U);
   EXPECT_EQ((kShortlyBeforeTheWrap + Duration(130)).microseconds(), 30U);
@@ -106,7 +106,7 @@ TEST(Deadline, GivesTheRemainingTime) {
   EXPECT_EQ(deadline.remaining(Time(999)).microseconds(), 1U);
 }
 
-TEST(Deadline, HasNoRemainingTimeAfterItIsReached) {
+TEST(Deadline, HasNoRemainingTimeIfItIsReached) {
   Deadline deadline;
   deadline.set(Time(1000));
   EXPECT_EQ(deadline.remaining(Time(1000)).microseconds(), 0U);

@@ -1,4 +1,5 @@
-// Tests a module before `start`: the compiler initialises it, so it is valid before any code runs.
+// Tests a module for which `start` has not been called. The compiler initialises the module, so the module is
+// valid before any code of the program runs.
 #include <gtest/gtest.h>
 
 #include "firmware/module.hpp"
@@ -19,7 +20,7 @@ TEST(UntouchedModule, HasTheModelOfItsConstructor) {
   EXPECT_EQ(&untouched_device.module().state().model(), &kModel);
 }
 
-TEST(UntouchedModule, DrivesNothingAndDoesNotListen) {
+TEST(UntouchedModule, DrivesNoOutputDoesNotListenHasNoRequestAndLightsItsLed) {
   EXPECT_EQ(untouched_module.outputs(), 0);
   EXPECT_FALSE(untouched_module.listening());
   EXPECT_FALSE(untouched_module.request_waits());

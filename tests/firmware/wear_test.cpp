@@ -1,5 +1,5 @@
-// Tests how often a module in use writes its EEPROM, and compares the result with the manufacturer's
-// guarantee.
+// Tests how often a module in use writes its EEPROM, and compares the result with the number of write cycles
+// that the manufacturer of the EEPROM guarantees.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -20,9 +20,9 @@ constexpr double kCycles = 1'000'000;
 constexpr double kMinutesAYear = 525'600;
 constexpr double kDaysAYear = 365;
 
-/// Returns the number of writes per repetition of `use`, averaged over a hundred repetitions. Checks that no
-/// page has more writes than the average of the pages in use plus one. Sets `pages` to the number of pages in
-/// use.
+/// Calls `use` a hundred times and returns the average number of writes per call. `use` must cause at least
+/// one write. Sets `pages` to the number of pages that have been written. Checks that no page has more writes
+/// than the average of these pages plus one.
 double writes_of(ModuleBench& bench, const std::function<void(unsigned round)>& use, unsigned& pages) {
   constexpr unsigned kRounds = 100;
   PageWrites writes{};
@@ -47,7 +47,7 @@ double writes_of(ModuleBench& bench, const std::function<void(unsigned round)>& 
 
 double years(double writes_a_year, unsigned pages) { return kCycles * pages / writes_a_year; }
 
-TEST(Wear, EnablingExpiryAndClearingOfTheHostWatchdogCauseThreeWrites) {
+TEST(Wear, EnablingAndExpiryOfTheHostWatchdogAndClearingItsStatusCauseThreeWrites) {
   ModuleBench bench("EX9042D-M@01,protocol=ascii");
   unsigned pages = 0;
   const double writes = writes_of(
@@ -93,7 +93,7 @@ TEST(Wear, PollingAndSwitchingWriteNothing) {
   EXPECT_EQ(bench.module().memory().writes(), 0U);
 }
 
-TEST(Wear, CountingWritesNothing) {
+TEST(Wear, CountersLatchesAndSamplesWriteNothing) {
   ModuleBench ascii("EX9052D,edge=rising");
   ModuleBench modbus("EX9052D-M");
   for (ModuleBench* bench : {&ascii, &modbus}) {

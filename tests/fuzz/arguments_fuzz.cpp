@@ -58,7 +58,7 @@ void check_line(const LineSetup& line) {
   }
   const auto is_rate = [&](std::uint32_t rate) { return rate == *line.baud; };
   require(!line.baud || std::any_of(kBaudRates.begin(), kBaudRates.end(), is_rate),
-          "the line's rate is one of eight");
+          "the line's baud rate is one of the eight baud rates");
   require(!line.tcp || !line.tcp->host.empty(), "a TCP address has a host");
   require(!line.modbus_tcp || !line.modbus_tcp->host.empty(), "an address of Modbus TCP has a host");
   for (const sim::Fault& fault : line.faults) {
@@ -73,7 +73,7 @@ void check_setup(const Setup& setup) {
   for (const LineSetup& line : setup.lines) {
     check_line(line);
     require(!setup.speed.max() || (!line.pty && !line.tcp && !line.modbus_tcp && !line.serial),
-            "maximum speed has no port for a master");
+            "maximum speed excludes ports for a master");
   }
   require(!setup.speed.max() || setup.lasts, "maximum speed requires a duration");
   require(setup.speed.factor > 0, "the speed is greater than 0");
@@ -105,10 +105,10 @@ void parse_file(const std::string& text) {
     const std::string place = "bus.json:";
     const auto end = what.find_first_not_of("0123456789", place.size());
     require(what.rfind(place, 0) == 0 && end > place.size() && what.compare(end, 2, ": ") == 0,
-            "an error in a file names its line");
+            "an error in a bus file begins with the path and a line number");
     const auto lines = std::count(text.begin(), text.end(), '\n') + 1;
     const auto line = std::stol(what.substr(place.size(), end - place.size()));
-    require(line >= 1 && line <= lines, "the line exists in the file");
+    require(line >= 1 && line <= lines, "the line with this number exists in the file");
   }
 }
 
@@ -132,10 +132,10 @@ void parse(const std::string& text) {
   if (parsed.setup) {
     require(parsed.output.empty() && parsed.error.empty() && parsed.exit_status == 0,
             "a setup comes without text and error");
-    require(parsed.setup->lines.size() == 1, "a command line has one line");
+    require(parsed.setup->lines.size() == 1, "a command line sets up one line");
     const LineSetup& line = parsed.setup->lines[0];
     require(parsed.setup->speed.max() || line.pty || line.tcp || line.modbus_tcp || line.serial,
-            "the line has a port");
+            "the line has a port, except at maximum speed");
     check_setup(*parsed.setup);
   } else if (parsed.task) {
     require(parsed.output.empty() && parsed.error.empty() && parsed.exit_status == 0,

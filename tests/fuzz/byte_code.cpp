@@ -61,7 +61,7 @@ class Life {
     }
   }
 
-  /// Requires that the module still replies to requests to its own address, regardless of the earlier events.
+  /// Requires that the module still replies to a request to its own address, whatever has happened before.
   void ends() {
     session_.wait_for_quiet();
     const std::uint8_t& address = session_.in_force().address;
@@ -71,7 +71,7 @@ class Life {
               "a module replies if its line is quiet");
       return;
     }
-    session_.byte('\r', ByteStatus::Good);  // ends any open command; this can also change the address
+    session_.byte('\r', ByteStatus::Good);  // ends a command in progress; it can change the address
     session_.wait_for_quiet();
     const std::array<std::uint8_t, 4> name{'$', upper_hex(address / 16U), upper_hex(address), 'M'};
     require(session_.ask({name.data(), name.size()}).size > 3, "a module replies if its line is quiet");
@@ -167,7 +167,7 @@ class Life {
   std::size_t frame_size_ = 0;
 };
 
-/// Returns the index after the code at `at`.
+/// Returns the index after the plain byte or the code at `at`.
 std::size_t behind(const std::uint8_t* data, std::size_t size, std::size_t at) {
   if (data[at] != kEscape || at + 1 == size) {
     return at + 1;
@@ -183,7 +183,7 @@ bool is_code(const std::uint8_t* data, std::size_t size, std::size_t at, char co
 /// In ASCII, inserts `\c` before each CR that follows at least three plain bytes, as long as the input may
 /// grow. Returns the new size in bytes.
 std::size_t mend(std::uint8_t* data, std::size_t size, std::size_t most, bool modbus) {
-  std::size_t plain = 0;  // consecutive bytes on the line before `at`
+  std::size_t plain = 0;  // consecutive plain bytes directly before `at`
   for (std::size_t at = kHeader; at < size;) {
     const std::size_t next = behind(data, size, at);
     const bool gap =

@@ -1,4 +1,4 @@
-// The format in which the input of a fuzz target describes the events that a module experiences.
+// The format in which the input of rtu_stream and dcon_stream describes the events that a module experiences.
 #pragma once
 
 #include <cstddef>
@@ -14,17 +14,19 @@ namespace ex9000::fuzz {
 /// The caller selects `model` by byte 0. Byte 1 selects the settings that the module has stored and its state
 /// at start:
 ///
-///     bits 0-2   baud code, 0: 06 (9600), 1: 07, and so on up to 0A, then 03
+///     bits 0-2   baud code. 0 to 4: 06 (9600) to 0A; 5 to 7: 03 to 05
 ///     bit 3      checksum
 ///     bit 4      counters count rising edges; -M models also require strict gaps
 ///     bit 5      host watchdog enabled with 0.3 s, outputs: power-on value 3, safe value 4
 ///     bit 6      on a model with two protocols, the protocol that is not `usual`
 ///     bit 7      INIT* connected to GND
 ///
-/// The other bytes are bytes on the line without gaps between them. Only `\` has a special meaning:
+/// The other bytes are bytes on the line without gaps between them. Only `\` has a special meaning. N is the
+/// value of one byte, or 0 if the input ends before this byte.
 ///
 ///     \\      the byte 5C
-///     \c      the CRC, or the checksum if enabled, of the bytes since the last gap, reset or (in ASCII) CR
+///     \c      in Modbus the CRC, in ASCII the checksum if it is enabled, of the bytes since the last gap,
+///             reset or (in ASCII) CR
 ///     \s      250 ms without a byte
 ///     \g N    a gap of N/64 times T3.5
 ///     \w N    N times N ms without a byte
@@ -32,7 +34,8 @@ namespace ex9000::fuzz {
 ///     \y      the next byte arrives with wrong parity
 ///     \b      the next byte arrives as a break
 ///     \o      the next byte arrives with an overrun
-///     \p N    the previous byte arrives N more times
+///     \p N    the previous byte arrives N more times; 00 arrives if there was no byte since the last gap,
+///             reset or (in ASCII) CR
 ///     \h N    the main loop does nothing for the next N times 0.1 ms
 ///     \0-\7   input 0 to 7 changes its level
 ///     \t      a tick
@@ -43,7 +46,8 @@ namespace ex9000::fuzz {
 /// `\` and any other byte after it have no effect.
 void live(const Model& model, Protocol usual, const std::uint8_t* data, std::size_t size);
 
-/// Mutates the input with libFuzzer. One mutation in four also corrects the checks before gaps or CRs.
+/// Mutates the input with libFuzzer. If `seed` is a multiple of four, also puts `\c` before gaps (if
+/// `modbus`) or before CRs (otherwise). `most`: the greatest permitted size. Returns the new size in bytes.
 std::size_t mutate(std::uint8_t* data, std::size_t size, std::size_t most, unsigned seed, bool modbus);
 
 }  // namespace ex9000::fuzz

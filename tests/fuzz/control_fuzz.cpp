@@ -1,6 +1,8 @@
-// Sends commands of the control socket, one on each line, to three modules. A line `+N` lets N times 10 ms
-// pass. The target decides independently whether a command is valid. An invalid command must receive a reply
-// of one line and must change nothing.
+// Carries out commands of the control socket for a simulated line with three modules. Each line of the input
+// text is one command, unless it begins with `+`: `+N` lets N times 10 ms pass if N is 0 to 99, and any other
+// text after `+` lets 10 ms pass. RunTimeLimit limits these times and the commands with many pulses. The
+// target decides independently of the simulator whether a command is valid. Each command must receive a reply
+// of one line. An invalid command must receive an error and must change nothing.
 #include <array>
 #include <chrono>
 #include <optional>
@@ -113,7 +115,8 @@ bool is_of_the_line(const Watched& watched, Words words, sim::VirtualTime now) {
   return is_fault(words, Whose::AnyModules, now);
 }
 
-/// Removes a leading `line NAME`. Returns no words if NAME is not `hall`, or if no command follows.
+/// Returns the words without a leading `line NAME`. Returns no words if NAME is not `hall`, or if no command
+/// follows.
 Words of_the_line(const Words& words) {
   if (words[0] != "line") {
     return words;
@@ -121,7 +124,8 @@ Words of_the_line(const Words& words) {
   return words.size() >= 3 && words[1] == "hall" ? Words(words.begin() + 2, words.end()) : Words();
 }
 
-/// Returns whether the words are a command according to the table of commands in sim/docs/control-socket.md.
+/// Returns whether the words are a valid command according to sim/docs/control-socket.md. `advance` is never
+/// valid here, because it requires stepped time.
 bool is_command(Watched& watched, const Words& words) {
   Line& line = watched.line;
   const sim::VirtualTime now = line.clock().virtual_now();
@@ -161,12 +165,13 @@ bool is_command(Watched& watched, const Words& words) {
   return args == 0 && (verb == "inputs" || verb == "outputs" || verb == "led" || verb == "status");
 }
 
-/// Checks the reply to a command that adds, removes or lists faults, and updates the expected faults.
+/// Checks the reply to a command that adds or lists faults. Updates the expected faults after a command that
+/// adds or removes faults.
 void check_faults(Watched& watched, const Words& words, const std::string& reply) {
   if (words[0] == "faults") {
     const std::size_t number = watched.faults.size();
     require(reply.rfind("ok " + std::to_string(number) + (number == 1 ? " fault:" : " faults:"), 0) == 0,
-            "all faults are listed");
+            "the reply begins with the number of faults");
   } else if (words[1] != "off") {
     require(reply == "ok " + std::to_string(++watched.numbers), "faults are numbered one after the other");
     watched.faults.insert(watched.numbers);
@@ -204,7 +209,7 @@ void check_effect(Watched& watched, const Words& words, const std::string& reply
   if (words[1] == "fault") {
     check_faults(watched, Words(words.begin() + 1, words.end()), reply);
   } else if (words[1] == "power") {
-    // An active fault may interrupt the supply although its switch is on.
+    // An active fault may interrupt the supply of a module that is switched on.
     require(module.powered() ? words[2] == "on" : words[2] == "off" || !watched.faults.empty(),
             "the supply has the requested state");
   } else if (words[1] == "input") {
@@ -247,15 +252,16 @@ void carry_out(Watched& watched, sim::Control& control, const std::string& comma
 /// Limits the run time, because slow inputs find few errors.
 class RunTimeLimit {
  public:
-  /// Lets up to `steps` steps of 10 ms pass, and at most 2 s in total: a watchdog requires 1.6 s to reset the
-  /// module. Lets no more time pass after the master has received 200 bytes.
+  /// Lets up to `steps` steps of 10 ms pass, but at most 2 s in all calls together. This is enough for the
+  /// module watchdog, which resets a module after 1.6 s. Lets no more time pass after the master has received
+  /// 200 bytes.
   void pass(Watched& watched, unsigned long steps) {
     constexpr unsigned long kMostHeard = 200;
     for (; steps != 0 && steps_left_ != 0 && watched.heard < kMostHeard; --steps, --steps_left_) {
       watched.line.bus().run_for(std::chrono::milliseconds(10));
     }
   }
-  /// Returns whether the command may run. Each fuzzer input may run one command with 100 to 99,999 pulses,
+  /// Returns whether the command may run. Each input may run at most one command with 100 to 99,999 pulses,
   /// and no valid command with more.
   bool permits(const Words& words) {
     const bool pulses = words.size() == 4 && words[1] == "pulse" && is_number(words[3], 100, 1'000'000);

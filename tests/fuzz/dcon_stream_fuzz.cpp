@@ -1,5 +1,5 @@
-// Fuzzes all models with characters, pauses and line errors. -M models use ASCII unless the input selects
-// Modbus. For the input format see byte_code.hpp.
+// Fuzzes all models with characters, pauses, line errors and other events. -M models use ASCII unless the
+// input selects Modbus. For the input format see byte_code.hpp; byte 0 selects the model.
 #include "tests/fuzz/byte_code.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -34,8 +34,9 @@ inline bool is_probability(const std::string& text) {
 }
 
 inline std::optional<nanoseconds> time(const std::string& text) {
+  // "s" is last, because "us" and "ms" also end with "s".
   constexpr std::array<std::pair<const char*, double>, 5> kUnits{
-      {{"us", 1e3}, {"ms", 1e6}, {"min", 60e9}, {"h", 3600e9}, {"s", 1e9}}};  // "us" and "ms" before "s"
+      {{"us", 1e3}, {"ms", 1e6}, {"min", 60e9}, {"h", 3600e9}, {"s", 1e9}}};
   for (const auto& [unit, length] : kUnits) {
     const std::string ending = unit;
     if (text.size() > ending.size() && text.substr(text.size() - ending.size()) == ending) {
@@ -69,7 +70,7 @@ inline bool is_ordinal(const std::string& text) {
   return (ending == "st" || ending == "nd" || ending == "rd" || ending == "th") && value && *value != 0;
 }
 
-/// The time at which a fault occurs, and its duration.
+/// When a fault occurs and how long it lasts. `right` is false if the words are invalid.
 struct When {
   bool right = true;
   bool given = false;

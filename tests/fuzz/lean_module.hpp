@@ -1,6 +1,6 @@
-// Runs the device on peripherals that are plain values, in virtual microseconds. The module of the simulator
-// also has a bus, logs and real ports, which makes it too slow: the fuzz targets must run a hundred million
-// modules in an hour.
+// Runs hal::Device on peripherals that are plain values, in virtual microseconds. The module of the simulator
+// also has a bus, logs and real ports, which makes it too slow: a fuzz target must run a hundred million
+// modules in about an hour.
 #pragma once
 
 #include <algorithm>
@@ -25,9 +25,9 @@ using judges::Microseconds;
 /// Observes the effects of a module on its surroundings when they occur.
 class ModuleObserver {
  public:
-  /// Called when the driver has been switched on.
+  /// Called when the module has switched its RS-485 driver on. `reply`: the complete reply.
   virtual void reply_begins(Bytes reply) = 0;
-  /// Called when the driver has been switched off.
+  /// Called when the RS-485 driver has been switched off.
   virtual void reply_ends() = 0;
   virtual void outputs_change(std::uint16_t channels) = 0;
   /// Called when the main loop has completed one turn. After the start, settings and outputs change only in a
@@ -114,7 +114,7 @@ struct LeanBoard {
     }
   };
 
-  /// An EEPROM on a bus with 100 kHz that takes 5 ms to program a page.
+  /// An EEPROM on a 100 kHz bus. The EEPROM takes 5 ms to program a page.
   struct Memory {
     Surroundings& around;
     Microseconds ends = kNever;
@@ -161,8 +161,9 @@ struct LeanBoard {
         std::copy_n(around.memory.begin() + at, destination.size, destination.data);
       }
     }
-    /// Simulates a supply failure. A write in progress has stored the bytes that its elapsed time allows, and
-    /// may have corrupted the next byte.
+    /// Simulates a supply failure. A write in progress has stored its first bytes, in proportion to the
+    /// elapsed time, and may have corrupted the next byte. If the memory does not acknowledge, changes
+    /// nothing.
     void cut() {
       if (!busy() || source.size == 0 || !around.memory_answers) {
         return;
@@ -224,7 +225,7 @@ class LeanModule {
     }
   }
 
-  /// Runs all events up to and including `until`.
+  /// Lets time pass until `until`. Runs all events up to and including this time.
   void advance_to(Microseconds until) {
     for (Microseconds next = next_event(); next <= until; next = next_event()) {
       around_.now = std::max(around_.now, next);
@@ -253,7 +254,7 @@ class LeanModule {
     device_->on_tick();
     main_loop();
   }
-  /// Stops the main loop, or lets it continue. Interrupts still occur.
+  /// Stops the main loop, or lets it continue. Interrupts also occur while the main loop is stopped.
   void hold(bool held) {
     held_ = held;
     main_loop();

@@ -1,6 +1,6 @@
 // Lets four clients of Modbus TCP send any bytes to one line, split and joined in any way. The target finds
-// the requests in the bytes of each client independently: each request except a broadcast must get exactly
-// one reply, and nothing else may arrive.
+// the requests in the bytes of each client independently. Each request except a broadcast must get exactly
+// one reply, unless its client leaves first, and nothing else may arrive.
 //
 // The input is a sequence of events:
 //
@@ -8,7 +8,8 @@
 //     4-7               client 0 to 3 leaves, and another one takes its place
 //     8    N            N times 4 ms pass
 //
-// Other values have no effect.
+// If the input has fewer than N bytes left, the piece contains the bytes that are left. Other values, and an
+// event in the last byte of the input, have no effect.
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -55,7 +56,8 @@ class Client {
     std::uint8_t function;
   };
 
-  /// Finds complete frames from the definition of the header: transaction, protocol 0, length 2 to 254, unit.
+  /// Finds the complete frames in the sent bytes by the definition of the header: transaction, protocol 0,
+  /// length 2 to 254, unit.
   void find_requests() {
     while (!broken_ && sent_.size() >= kHeader - 1) {
       const unsigned length = word(sent_, 4);
@@ -91,7 +93,7 @@ class Client {
               "a unit above 247 gets exception 0A");
     } else if (asked.unit > 2) {
       require(reply.size() == kHeader + 2 && reply[kHeader + 1] == 0x0B,
-              "a unit without module gets exception 0B");
+              "a unit without a Modbus module gets exception 0B");
     }
   }
 

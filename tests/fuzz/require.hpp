@@ -1,4 +1,4 @@
-// Reports that a property does not hold.
+// Makes a fuzz target abort if a property does not hold.
 #pragma once
 
 #include <cstdio>

@@ -1,5 +1,5 @@
-// Fuzzes -M models with bytes, gaps and line errors. They use Modbus unless the input selects ASCII. For the
-// input format see byte_code.hpp.
+// Fuzzes -M models with bytes, gaps, line errors and other events. The models use Modbus unless the input
+// selects ASCII. For the input format see byte_code.hpp; byte 0 selects the model.
 #include "tests/fuzz/byte_code.hpp"
 
 namespace {

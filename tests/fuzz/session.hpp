@@ -1,5 +1,6 @@
-// Connects a module to the witness. The witness decides independently how the module must react to each
-// received byte, and compares this with all actions of the module.
+// Connects a module to a witness (tests/oracles/judges/witness.hpp). The witness receives the same bytes as
+// the module, and decides independently which replies and which changes of outputs and settings are
+// permitted.
 #pragma once
 
 #include <algorithm>
@@ -24,9 +25,9 @@ using judges::crc16;
 using judges::dcon_sum;
 using judges::upper_hex;
 
-/// Aborts if the witness reports an error, or if the outputs do not start with the stored values. The witness
-/// takes only two states from the module without a check: the settings in force after a reset, and the values
-/// with which the module starts.
+/// Aborts if the witness reports an error. Also aborts if the outputs do not start with the power-on value,
+/// or with the safe value after a timeout. Without a check, the witness takes only two things from the
+/// module: the settings in force after a reset, and the values with which the module starts.
 class Session final : public ModuleObserver {
  public:
   Session(const Model& model, bool strict_gaps)
@@ -41,7 +42,7 @@ class Session final : public ModuleObserver {
   /// Returns whether the module uses Modbus from the last reset to the next one.
   [[nodiscard]] bool speaks_modbus() const { return witness_.hears_modbus(); }
   [[nodiscard]] const InForce& in_force() const { return state().in_force; }
-  /// Returns T3.5 in microseconds. In DCON the function returns a value too, but T3.5 has no meaning there.
+  /// Returns T3.5 in microseconds. In ASCII the function returns a value too, but T3.5 has no meaning there.
   [[nodiscard]] Microseconds silence() const { return witness_.silence(); }
 
   void reset() {
@@ -60,7 +61,7 @@ class Session final : public ModuleObserver {
   }
 
   void wait(Microseconds time) { advance_to(module_.now() + time); }
-  /// Stops the main loop for this time.
+  /// Stops the main loop for `time`, which begins now. Returns immediately.
   void hold(Microseconds time) {
     witness_.is_held(true, module_.now());
     held_until_ = module_.now() + time;
@@ -69,7 +70,9 @@ class Session final : public ModuleObserver {
   void toggle_input(unsigned channel) { module_.toggle_input(channel); }
   void tick() { module_.tick(); }
 
-  /// Sends a byte that begins `gap` from now, or a little later.
+  /// Waits for `gap` and then sends a byte. Waits a little longer if rounding of `gap` to microseconds could
+  /// change whether the gap ends or spoils a frame. Drops the byte if the module is sending when the byte
+  /// ends.
   void byte(std::uint8_t byte, ByteStatus status, Microseconds gap = 0) {
     const Microseconds end = witness_.beyond_doubt(module_.now() + gap + witness_.character());
     advance_to(end);
@@ -87,8 +90,9 @@ class Session final : public ModuleObserver {
     } while (module_.sending());
   }
 
-  /// Adds the check to a request, sends it, and returns the reply without its check. Returns nothing if there
-  /// is no reply. The line must be quiet. The result is valid until the next call.
+  /// Adds the check, and in ASCII the CR, to a request and sends it. Returns the reply without its check and
+  /// CR, or no bytes if there is no reply. The line must be quiet. The result is valid until the next reply
+  /// begins.
   Bytes ask(Bytes request) {
     reply_size_ = 0;
     for (const std::uint8_t each : request) {

@@ -1,5 +1,5 @@
 // The compiler checks the requirements of hal/: it rejects a driver that lacks a required function or
-// declares the function differently. refused/ tests the messages of the compiler.
+// declares it with a wrong signature. refused/ tests the messages of the compiler.
 #include <gtest/gtest.h>
 
 #include "hal/board.hpp"
@@ -11,7 +11,8 @@
 namespace ex9000::hal {
 namespace {
 
-/// Each type below whose assertion begins with `!` has at least one missing or wrong member.
+// Each type below whose assertion begins with `!` has at least one missing or wrong member.
+
 struct ClockWithoutItsSecond {
   [[nodiscard]] static Time now();
 };

@@ -1,4 +1,4 @@
-// Tests the recovery of an I2C bus on recorded wires. Source: NXP UM10204, 3.1.16 (nine clocks), 3.1.4 (START
+// Tests the recovery of an I2C bus on wires that record their levels. Source: NXP UM10204, 3.1.16 (nine clocks), 3.1.4 (START
 // and STOP), table 10 (times of the standard mode).
 #include "hal/i2c_bus_recovery.hpp"
 
@@ -11,9 +11,9 @@ namespace {
 
 Time now;
 
-/// Records the levels of the wires after each change: `C` and `D` if the clock and the data line are high,
-/// `c` and `d` if they are low. The device holds the data line low until the clock has risen `held_for`
-/// times.
+/// Records the levels of the wires after each call of `take` and `pull`: `C` and `D` if the clock and the data
+/// line are high, `c` and `d` if they are low. A device on the bus holds the data line low until the clock has
+/// risen `held_for` more times.
 struct RecordedWires {
   static inline std::string levels;
   static inline int held_for = 0;
@@ -55,8 +55,9 @@ std::string levels_of_recovery(int clock) {
   return RecordedWires::levels;
 }
 
-/// The longest time for which the result of `Deadline::reached` is correct is 35 minutes.
-TEST(I2cBusRecoveryTest, ARecoveryLongAfterTheLastOneBeginsImmediately) {
+/// The result of `Deadline::reached` is correct only within 35 minutes of the deadline. In this test, 40
+/// minutes pass between two recoveries.
+TEST(I2cBusRecoveryTest, ARecoveryLongAfterThePreviousOneBeginsImmediately) {
   I2cBusRecovery<RecordedWires> recovery;
   for (int pass = 0; pass < 2; ++pass) {
     RecordedWires::levels.clear();

@@ -1,5 +1,5 @@
-// Tests interrupts at every point of the drivers that share a counter with their interrupt, and edges at
-// every point of the driver that handles edges.
+// Tests the SysTick driver and the I2C driver, which share a counter with their interrupts, with an interrupt
+// at each point between two accesses. Tests the input driver with an edge at each such point.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -23,7 +23,8 @@ namespace bus = hal::bus;
 constexpr unsigned kMegahertz = 50;
 constexpr unsigned kPeriod = 10'000 * kMegahertz;
 
-/// Each access takes some cycles. The interrupt occurs when the counter restarts, or some accesses later.
+/// Simulates SysTick. Each read takes `cycles_an_access` cycles. When the counter has restarted, the interrupt
+/// runs `accesses_late` calls of `pass` after the next one, but not while it is `held`.
 class SysTick final : public bus::Peripherals {
  public:
   SysTick(unsigned cycles, unsigned cycles_an_access, unsigned accesses_late)
@@ -104,8 +105,9 @@ class I2cController final : public bus::Peripherals {
   static constexpr std::uint32_t kControl = 0x4002'0004;
 };
 
-/// Sends a byte that is complete at the point `completes` of the turn in which the driver stops waiting for
-/// the byte. Returns the number of points of that turn.
+/// Begins to send a byte, waits until its timeout has expired, and completes the byte at point `completes` of
+/// the next call of `poll`. If the driver has aborted the transfer, checks that it does not use this
+/// completion for the next transfer. Returns the number of points of that call.
 unsigned give_up_a_byte_that_completes(unsigned completes) {
   I2cController controller;
   hal::stellaris::I2c<hal::stellaris::Family::Lm3s, 50'000'000> i2c;
@@ -182,7 +184,7 @@ using hal::stellaris::Port;
 
 /// Simulates ports of input pins. LM3S6965 data sheet, 8.3.2 and 8.5: a change to which the pin is sensitive
 /// sets its raw flag, which stays set until it is cleared. The pin is sensitive to both edges if GPIOIBE is
-/// set, otherwise to the falling edge. The masked flags cause interrupts.
+/// set, otherwise to the falling edge. A flag that is enabled in GPIOIM causes an interrupt.
 class InputPorts final : public bus::Peripherals {
  public:
   InputPorts() { bus::peripherals = this; }
@@ -250,7 +252,7 @@ constexpr std::array<PinGroup, 3> kInputGroups{PinGroup{Port::B, 4, 2}, PinGroup
                                                PinGroup{Port::B, 0, 1}};
 constexpr unsigned kChannels = 5;
 
-/// Channels 0, 1 and 4 are on one port, in two groups, and 2 and 3 are on another port.
+/// Channels 0, 1 and 4 are on one port, in two groups, and channels 2 and 3 are on another port.
 template <bool active_high>
 class InputBench {
  public:
@@ -292,14 +294,14 @@ class InputBench {
     }
   }
 
-  /// Returns the number of edges counted on `channel`. Checks that the level computed from them equals the
-  /// level of the wire.
+  /// Returns the number of edges counted on `channel`. Checks that the level computed from the initial level
+  /// and these edges equals the present level of the channel.
   unsigned counted(unsigned channel) {
     const unsigned count = edges_.collect(channel);
     const bool told = ((baseline_ >> channel ^ count) & 1U) != 0;
     EXPECT_EQ(told, level(channel))
         << "channel " << channel
-        << ": the level computed from the counted edges differs from the level of the wire";
+        << ": the level computed from the counted edges differs from the present level";
     return count;
   }
 
@@ -323,8 +325,9 @@ class Inputs : public testing::Test {};
 using Polarities = testing::Types<InputBench<true>, InputBench<false>>;
 TYPED_TEST_SUITE(Inputs, Polarities);
 
-/// Serves an edge on channel 0. `later`: points of the interrupt that serves this edge, and for each point
-/// the channel on which one more edge occurs. Returns the number of points of the interrupt.
+/// Starts the inputs and serves an edge on channel 0. `later`: points of the interrupt that serves this edge,
+/// and for each point the channel on which one more edge occurs. Returns the number of points of the
+/// interrupt.
 template <class Bench>
 unsigned serve_an_edge(Bench& bench, const std::vector<std::pair<unsigned, unsigned>>& later) {
   bench.start();
@@ -347,7 +350,7 @@ TYPED_TEST(Inputs, AnEdgeAtAnyPointOfTheInterruptIsCountedInAdditionToTheServedE
     for (unsigned second = 0; second < kChannels; ++second) {
       TypeParam undisturbed(levels);
       const unsigned points = serve_an_edge(undisturbed, {});
-      ASSERT_GE(points, 8U) << "four accesses have a point before and after each";
+      ASSERT_GE(points, 8U) << "each of four accesses has a point before and after it";
       for (unsigned point = 0; point < points; ++point) {
         SCOPED_TRACE("levels " + std::to_string(levels) + ", channel " + std::to_string(second) + ", point " +
                      std::to_string(point));
@@ -362,7 +365,7 @@ TYPED_TEST(Inputs, AnEdgeAtAnyPointOfTheInterruptIsCountedInAdditionToTheServedE
   }
 }
 
-TYPED_TEST(Inputs, TheReportedLevelIsTheLastOneIfTwoMoreEdgesOccurAtAnyPoints) {
+TYPED_TEST(Inputs, TheComputedLevelIsTheLastOneIfUpToTwoMoreEdgesOccurAtAnyPoints) {
   for (const unsigned levels : {0U, 1U}) {
     unsigned points = 1;
     for (unsigned first = 0; first < points; ++first) {

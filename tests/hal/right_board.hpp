@@ -1,4 +1,5 @@
-// A board that has exactly the members that hal/ requires, and does nothing.
+// A board that has exactly the members that hal/board.hpp requires. Its functions are only declared, because
+// tests only compile it.
 #pragma once
 
 #include <cstdint>

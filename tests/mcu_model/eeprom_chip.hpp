@@ -19,31 +19,31 @@ class EepromChip {
   static constexpr std::size_t kSize = 8192;
   static constexpr std::size_t kPage = 32;
 
-  /// Connects to these wires, with a pull-up on each. `contents` holds the stored bytes and must outlive this
-  /// object.
+  /// Connects the chip to `clock` and `data`, with a pull-up on each. `contents` holds the stored bytes and
+  /// must outlive this object.
   EepromChip(Timeline& timeline, Net& clock, Net& data, std::vector<std::uint8_t>& contents);
 
-  /// Sets how long a page write takes: at most 10 ms, typically 5 ms.
+  /// Sets how long the chip programs a page. The default is 5 ms; the data sheet permits at most 10 ms.
   void set_programming_time(Instant time) { programming_time_ = time; }
   /// Removes the chip from its wires, with or without the pull-ups.
   void remove(bool pull_ups_too);
   /// Makes the supply fail. If a page is being programmed, the elapsed time determines how many of its first
-  /// bytes are complete; the next byte is spoiled, and the rest keep their old values. The chip loses the
-  /// state of the bus.
+  /// bytes are complete; the next byte is spoiled, and the rest keep their old values. The chip abandons a
+  /// transfer in progress.
   void lose_power();
-  /// Makes the chip acknowledge at most `bytes` bytes of each transfer from now on, including the address
-  /// bytes.
+  /// From now on, makes the chip acknowledge at most `bytes` bytes after each START, including the device
+  /// address and the memory address.
   void refuse_after(unsigned bytes) { patience_ = bytes; }
 
-  /// Makes a byte worn out: from its next write on, `bits` keep the value that they have in `stuck`. The chip
-  /// still acknowledges every byte.
+  /// Makes a byte worn out: from its next write on, the bits that are set in `bits` have their value in
+  /// `stuck`. The chip still acknowledges writes to the byte.
   void wear_out(std::uint16_t place, std::uint8_t bits, std::uint8_t stuck) { worn_[place] = {bits, stuck}; }
   void renew() { worn_.clear(); }
   /// Returns the number of times that a worn-out byte did not take the programmed value.
   [[nodiscard]] unsigned spoiled() const { return spoiled_; }
 
-  /// Sets the function to call after each START, byte and STOP on the bus, and when a page has been
-  /// programmed. Only one function can be set; it may be null.
+  /// Sets the function to call after each START and STOP on the bus, after each byte that the chip receives
+  /// or sends, and when a page has been programmed. Replaces the previous function; null removes it.
   void on_event(std::function<void()> act) { on_event_ = std::move(act); }
 
   [[nodiscard]] bool programming() const { return programmed_.is_set(); }
@@ -52,11 +52,12 @@ class EepromChip {
     std::uint16_t place;
     std::uint8_t value;
   };
-  /// Returns the bytes of the page write in progress, in the order in which they were sent; empty if none is
-  /// in progress.
+  /// Returns the bytes of the page write in progress, each once, in the order in which they were first sent;
+  /// empty if no page write is in progress.
   [[nodiscard]] std::vector<Cell> being_programmed() const;
   [[nodiscard]] bool pulls_data() const { return data_.driven_by(End::Device) == Drive::Low; }
-  /// A page write: its first address, its number of bytes, and the time at which it began.
+  /// A completed page write: its first address, the number of bytes that were programmed, and the time at
+  /// which the programming began.
   struct Programmed {
     std::uint16_t address;
     std::size_t size;
@@ -80,7 +81,7 @@ class EepromChip {
       on_event_();
     }
   }
-  /// Programs the first `size` bytes of the received page into the array.
+  /// Programs the first `size` bytes of the received page into the memory.
   void commit(std::size_t size);
   void program(std::uint16_t place, std::uint8_t value);
 

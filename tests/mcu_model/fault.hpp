@@ -7,8 +7,8 @@
 
 namespace ex9000::registers {
 
-/// Reports an action that the data sheet forbids or leaves undefined, that causes a bus fault, or that the
-/// model does not implement.
+/// Reports one of these: an action that the data sheet forbids or leaves undefined, that causes a bus fault,
+/// or that the model does not implement; a sleep that no event can end; an exception without a handler.
 class Fault : public std::runtime_error {
  public:
   Fault(std::uint32_t address, const std::string& what) : std::runtime_error(hex(address) + ": " + what) {}

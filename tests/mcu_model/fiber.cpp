@@ -6,7 +6,7 @@
 #include <system_error>
 #include <utility>
 
-// The code must report each switch of stacks to AddressSanitizer.
+// Fiber must report each switch of stacks to AddressSanitizer.
 #if defined(__has_feature)
 #if __has_feature(address_sanitizer)
 #define EX9000_ADDRESS_SANITIZER
@@ -22,7 +22,7 @@ namespace ex9000::registers {
 
 namespace {
 
-/// Sanitizers make stack frames several times larger.
+/// 1 MiB, because sanitizers make stack frames larger.
 constexpr std::size_t kStackSize = std::size_t{1} << 20U;
 
 thread_local Fiber* the_beginning = nullptr;
@@ -73,8 +73,8 @@ void Fiber::begin() {
   go(self.inside_, self.outside_, true);
 }
 
-/// Replaces swapcontext(3). AddressSanitizer warns about that function, and does not know the stack to which
-/// that function switches.
+/// Switches from one side to the other. If `for_good` is true, `from` does not run again. Replaces
+/// swapcontext(3), which AddressSanitizer does not fully support.
 void Fiber::go(Side& from, Side& to, bool for_good) {
   leave_stack(for_good ? nullptr : &from.fake_stack, to.stack, to.stack_size);
   volatile bool left = false;  // volatile: getcontext returns a second time when the other side switches back

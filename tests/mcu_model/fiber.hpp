@@ -1,5 +1,5 @@
-// A function with its own stack in the caller's thread. Both sides choose when to switch. A switch takes a
-// fraction of the time of a switch between threads.
+// A function that runs on its own stack in the thread of its caller. The function runs only while the caller
+// waits in `resume`. A switch takes a fraction of the time of a switch between threads.
 #pragma once
 
 #include <ucontext.h>
@@ -11,26 +11,27 @@ namespace ex9000::registers {
 
 class Fiber {
  public:
-  /// `body` begins with the first `resume`. It must not throw.
+  /// Allocates the stack; throws std::system_error if this fails. The first `resume` starts `body`, which
+  /// must not throw.
   explicit Fiber(std::function<void()> body);
   /// Requires that `body` has returned or has never begun, because its stack is not unwound.
   ~Fiber();
   Fiber(const Fiber&) = delete;
   Fiber& operator=(const Fiber&) = delete;
 
-  /// Runs `body` until it suspends itself or returns. Must not be called from `body` or after `body` has
+  /// Runs `body` until it calls `suspend` or returns. Must not be called from `body` or after `body` has
   /// returned.
   void resume();
   /// Returns to the caller of `resume`. Must be called from `body`.
   void suspend();
 
  private:
-  /// One of the two sides while it does not run.
+  /// The state of one side, the caller or `body`, while that side does not run.
   struct Side {
     ucontext_t context{};
-    const void* stack = nullptr;  ///< its lowest byte
+    const void* stack = nullptr;  ///< the lowest address of its stack
     std::size_t stack_size = 0;
-    void* fake_stack = nullptr;  ///< AddressSanitizer's
+    void* fake_stack = nullptr;  ///< a value that AddressSanitizer keeps for this side
   };
 
   static void begin();

@@ -123,7 +123,8 @@ void GpioPort::write(std::uint32_t offset, std::uint32_t value) {
   std::uint32_t& place = stored(offset);
   check_lock(offset, place ^ value);
   place = value;
-  // Setting a pin in one strength register clears it in the others; the same applies to the pulls.
+  // A bit that is set in one drive strength register is cleared in the other two. The pull-up register and
+  // the pull-down register clear each other's bits in the same way.
   for (const std::uint32_t other : {kDrive2, kDrive4, kDrive8}) {
     if (other != offset && (offset == kDrive2 || offset == kDrive4 || offset == kDrive8)) {
       stored(other) &= ~value;

@@ -42,13 +42,14 @@ class GpioPort final : public Peripheral {
   std::uint32_t read(std::uint32_t offset) override;
   void write(std::uint32_t offset, std::uint32_t value) override;
 
-  /// Sets the level that a peripheral outputs. The level takes effect while GPIOAFSEL and GPIODEN are
-  /// set for the pin, whatever GPIOPCTL contains.
+  /// Sets how a peripheral drives the pin. The setting has an effect while GPIOAFSEL and GPIODEN are set for
+  /// the pin, whatever GPIOPCTL contains.
   void alternate(unsigned pin, Drive drive) {
     alternate_drive_.at(pin) = drive;
     drive_pin(pin);
   }
-  /// Returns whether the pin is assigned to the peripheral that has `function` in GPIOPCTL.
+  /// Returns whether GPIOAFSEL and GPIODEN are set for the pin and, on a chip with GPIOPCTL, whether the
+  /// pin's field in GPIOPCTL contains `function`.
   [[nodiscard]] bool given_to(unsigned pin, std::uint32_t function) const;
   /// Returns the value of a register without a bus access.
   [[nodiscard]] std::uint32_t peek(std::uint32_t offset) const {
@@ -88,7 +89,7 @@ class GpioPort final : public Peripheral {
   std::uint32_t enable_;
   std::uint32_t analog_ = 0;
   std::uint32_t control_ = 0;
-  std::uint32_t input_ = 0;  ///< the levels that the enabled pins show
+  std::uint32_t input_ = 0;  ///< the levels of the enabled pins; 0 for the other pins
   std::array<Drive, 8> alternate_drive_{};
 };
 

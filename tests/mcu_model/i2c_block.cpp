@@ -19,7 +19,7 @@ constexpr std::uint32_t kBusBusy = 1U << 6U;
 
 constexpr std::uint32_t kMaster = 1U << 4U;
 
-// The parts of a bit, in tenths of a bit: SCL_LP and SCL_HP of the data sheets.
+// How long the clock is low and high in a bit, in tenths of a bit: SCL_LP and SCL_HP of the data sheets.
 constexpr int kLowTime = 6;
 constexpr int kHighTime = 4;
 
@@ -54,7 +54,7 @@ std::uint32_t I2cBlock::read(std::uint32_t offset) {
       return target_;
     case kControl:
       if (busy_) {
-        return kBusy | kError | kArbitrationLost;  // the other bits are not valid while busy
+        return kBusy | kError | kArbitrationLost;  // the other bits are not valid while BUSY is set
       }
       return status_ | (owns_bus_ ? kBusBusy : kIdle);
     case kData:
@@ -173,8 +173,8 @@ void I2cBlock::clock(bool high) {
 }
 void I2cBlock::data(bool high) { port_.alternate(kDataPin, high ? Drive::High : Drive::Low); }
 
-/// Begins the next move, for example a START or a bit. Each move begins and ends with the clock low, except
-/// that the bus is free before a START and after a STOP.
+/// Begins the next move, for example a START or a bit; if there is none, finishes the command. Each move
+/// begins and ends with the clock low, except that the bus is free before a START and after a STOP.
 void I2cBlock::begin_move() {
   phase_ = 0;
   if (moves_.empty()) {
@@ -185,7 +185,7 @@ void I2cBlock::begin_move() {
   if (move == Move::Start) {
     if (!clock_high() || !data_high()) {
       if (behaviour_.waits_for_free_bus) {
-        return;  // until a reset: the driver must free the bus
+        return;  // waits until a reset of the block: the driver must free the bus
       }
       fail(kArbitrationLost);
       return;
@@ -219,7 +219,7 @@ void I2cBlock::go_on() {
       end_bit();
       break;
     default:
-      move_is_over();  // the time between STOP and START
+      move_is_over();  // the required time after a STOP has passed
       break;
   }
 }

@@ -11,7 +11,7 @@ const Image& load_image(const std::string& path) {
   void* image = object == nullptr ? nullptr : dlsym(object, "ex9000_image");
   if (image == nullptr) {
     throw std::runtime_error(
-        dlerror());  // NOLINT(concurrency-mt-unsafe): tests load before they start threads
+        dlerror());  // NOLINT(concurrency-mt-unsafe): tests load images before they start threads
   }
   return *static_cast<const Image*>(image);
 }

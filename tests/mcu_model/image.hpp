@@ -1,7 +1,7 @@
 // A firmware image that a host can run: the unchanged composition of a board, a model and the board's
 // drivers. The bus accesses of the drivers go to registers::Microcontroller. Each image is its own shared
-// object: the code of features that a model does not have is not compiled, so the types of the core differ
-// between images.
+// object, because the types of the core differ between images: the code of features that a model does not
+// have is not compiled.
 #pragma once
 
 #include <array>
@@ -32,7 +32,7 @@ struct Image {
   PinPlace receive;
   PinPlace transmit;
 
-  /// Sets the image's RAM to the state after a reset.
+  /// Constructs the image's `device` (boards/stellaris/composition.hpp) again, as after a reset.
   void (*clear)();
   /// Calls the image's `main`, which does not return.
   int (*run)();

@@ -11,7 +11,8 @@ ImageRun::ImageRun(const Image& image, Microcontroller& microcontroller, Timelin
   image.clear();
 }
 
-/// Ends the image with an exception, so that its stack is unwound and its resources are released.
+/// If the image has begun and has not ended, ends it with an exception, so that its stack is unwound and its
+/// resources are released.
 ImageRun::~ImageRun() {
   ending_ = true;
   if (begun_ && !over_) {
@@ -48,7 +49,7 @@ void ImageRun::pass(Instant to) {
     if (ending_) {
       throw Ended();
     }
-    return;  // the test may have set alarms meanwhile
+    return;  // before `to`, because the test may have set earlier alarms
   }
   timeline_.advance(to);
 }

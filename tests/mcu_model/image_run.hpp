@@ -1,4 +1,4 @@
-// Runs an image on its own stack. Either the image or the test runs, never both.
+// Runs an image on a stack of its own. The image and the test never run at the same time.
 #pragma once
 
 #include <exception>
@@ -18,7 +18,8 @@ class ImageRun {
   ImageRun(const ImageRun&) = delete;
   ImageRun& operator=(const ImageRun&) = delete;
 
-  /// Runs the image until `when`. Throws Fault or ResetRequest if the image causes one.
+  /// Runs the image until `when`. Throws Fault or ResetRequest if the image causes one; the image does not
+  /// run again after that.
   void run_until(Instant when);
 
  private:

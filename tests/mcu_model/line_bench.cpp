@@ -26,8 +26,8 @@ LineBench::LineBench(Timeline& timeline, Net& transmit, Net& enable, Net& receiv
         heard.push_back(
             {started, last_ended_, received.byte, !received.framing_error && !received.parity_error});
       }) {
-  // While the pins float, these resistors keep transmit high and the driver off. On a board, only driver
-  // enable has a resistor.
+  // While the pins float, these resistors keep the transmit pin high and the driver off. A board has such a
+  // resistor at the driver enable pin, but not at the transmit pin.
   transmit_.drive(End::Resistor, Drive::WeakHigh);
   enable_.drive(End::Resistor, Drive::WeakLow);
   transmit_.on_change([this] { board_speaks(); });

@@ -1,5 +1,5 @@
-// The RS-485 line of a board: a transceiver and a master. The master records every character and every time
-// during which the board drives the line.
+// The RS-485 line of a board: a transceiver and a master. The bench records each character that the board
+// sends and each period during which the board drives the line.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +22,7 @@ class LineBench {
     std::uint8_t byte;
     bool good;  ///< the parity and the first stop bit were correct
   };
-  /// A time during which the board's driver was on. `to` is kNever while the driver is on.
+  /// A period during which the board's driver was on. `to` is kNever while the driver is on.
   struct Driven {
     Instant from;
     Instant to;
@@ -32,9 +32,10 @@ class LineBench {
   /// receiver. If `echo` is true, the board receives the bytes that it sends.
   LineBench(Timeline& timeline, Net& transmit, Net& enable, Net& receive, bool echo = true);
 
-  /// Sets the rate of the master.
+  /// Sets the baud rate of the master, 9600 at first.
   void set_baud(std::uint32_t baud);
-  /// Sets the format of the master, 8N1 at first. Applies to the next character.
+  /// Sets the format of the master, 8N1 at first. A character that is being sent keeps its old format; a
+  /// character that is being received continues in the new format.
   void set_format(LineFormat format);
   [[nodiscard]] Instant bit_time() const { return bit_time_; }
   [[nodiscard]] Instant character_time() const { return bits_on_wire(format_) * bit_time_; }
@@ -48,14 +49,15 @@ class LineBench {
   [[nodiscard]] bool driven() const { return enable_.level(); }
   std::vector<Heard> heard;
   std::vector<Driven> drives;
-  /// The number of times that the board's transmit pin went low while its driver was off. These bits do not
-  /// appear on the line.
+  /// The number of times that the board's transmit pin went low while the board's driver was off. Such a low
+  /// level does not appear on the line.
   unsigned bits_lost = 0;
-  /// The number of times that the driver went off before the end of the first stop bit of the last character
-  /// (with a tolerance of a tenth of a bit for the difference of the clocks), and the number of times that it
-  /// stayed on for more than a character after the last stop bit. On the wires, a second stop bit cannot be
-  /// distinguished from the idle line.
+  /// The number of times that the driver went off before the end of the first stop bit of a character. The
+  /// tolerance is a tenth of a bit, for the difference of the clocks. On the wires, a second stop bit cannot
+  /// be distinguished from the idle line.
   unsigned let_go_early = 0;
+  /// The number of times that the driver went off more than the duration of a character after the end of the
+  /// last character.
   unsigned let_go_late = 0;
 
  private:

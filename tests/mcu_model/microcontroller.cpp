@@ -63,7 +63,7 @@ Microcontroller::Microcontroller(const Chip& chip, Timeline& timeline, Pins& pin
     peripheral.on_interrupt_line([this, interrupt](bool on) { core.interrupt_line_of(interrupt, on); });
   };
   for (unsigned i = 0; i < ports_.size(); ++i) {
-    leads_to(*ports_[i], i < 5 ? i : i + 25);  // A to E, F and G
+    leads_to(*ports_[i], i < 5 ? i : i + 25);  // ports A to E: 0 to 4; ports F and G: 30 and 31
   }
   leads_to(uart0, 5);
   leads_to(uart1, 6);
@@ -172,8 +172,8 @@ void Microcontroller::pass_all(Instant to) {
   }
 }
 
-/// If the test has requested that the firmware hangs here, lets time pass without end. Only an exception, for
-/// example a ResetRequest, ends this.
+/// If the test has requested that the firmware hangs here, lets time pass until a C++ exception, for example
+/// a ResetRequest, ends it.
 void Microcontroller::hang_if_requested() {
   if (hangs_ == Hangs::MainLoop && !core.in_handler()) {
     run_until(kNever);

@@ -40,7 +40,7 @@ struct Pins {
   Pins& operator=(const Pins&) = delete;
 
   Net& at(char letter, unsigned pin) { return ports.at(static_cast<unsigned>(letter - 'A')).at(pin); }
-  /// Returns whether two ends have ever driven a pin to opposite levels.
+  /// Returns whether two ends have ever driven a pin to opposite levels at the same time.
   [[nodiscard]] bool any_was_shorted() const {
     return std::any_of(ports.begin(), ports.end(), [](const PortNets& port) {
       return std::any_of(port.begin(), port.end(), [](const Net& net) { return net.was_shorted(); });
@@ -66,8 +66,8 @@ struct ResetRequest {
 /// The part of the firmware that stops.
 enum class Hangs : std::uint8_t {
   Nothing,
-  MainLoop,  ///< from its next access on; interrupts are still served
-  Handler,   ///< the next handler that is served, from its next access on; nothing preempts it
+  MainLoop,  ///< at its next access; interrupts are still served
+  Handler,   ///< at the next access in a handler; no interrupt preempts this handler
 };
 
 /// An object exists from one reset to the next. The bus accesses of the drivers go to the latest object.
@@ -80,7 +80,7 @@ class Microcontroller {
 
   static Microcontroller& current();
 
-  // --- called by the drivers; these functions throw Fault and ResetRequest ---
+  // --- called by the drivers; all except disable_interrupts can throw Fault and ResetRequest ---
 
   std::uint32_t read(std::uint32_t address);
   void write(std::uint32_t address, std::uint32_t value);
@@ -96,12 +96,13 @@ class Microcontroller {
 
   /// Sets the function that serves each exception; see Core.
   void on_exception(std::function<void(unsigned exception)> act) { core.on_exception(std::move(act)); }
-  /// Sets the function that lets time pass until `to`. It may return earlier. Default: Timeline::advance.
+  /// Sets the function that lets time pass until `to`. The function may return before `to`. The default, also
+  /// for null, is Timeline::advance.
   void pass_time_by(std::function<void(Instant to)> pass) { pass_ = std::move(pass); }
 
   /// Sets the number of clock cycles of each access. The default is 2, the minimum of a bus access. The model
   /// does not count the instructions between two accesses, so a delay that consists of accesses has its
-  /// shortest length. A greater value makes long waits cheap to simulate.
+  /// shortest length. A greater value makes the simulation faster if the firmware makes many accesses.
   void set_clocks_an_access(int clocks) { clocks_an_access_ = clocks; }
   [[nodiscard]] std::uint64_t accesses() const { return accesses_; }
   void record(bool on) { recording_ = on; }
@@ -145,7 +146,7 @@ class Microcontroller {
  private:
   struct Place {
     Peripheral* peripheral;
-    unsigned gate_index;  ///< of RCGC; SRCR has the same bits
+    unsigned gate_index;  ///< the number of the word of RCGC; SRCR has the same layout
     unsigned gate_bit;
   };
 

@@ -1,4 +1,4 @@
-// A wire and everything that drives it.
+// A wire and the ends that can drive it.
 #pragma once
 
 #include <array>
@@ -17,10 +17,10 @@ enum class Drive : std::uint8_t { Nothing, WeakLow, WeakHigh, Low, High };
 enum class End : std::uint8_t {
   Microcontroller,  ///< the output stage of the microcontroller
   WeakPull,         ///< the weak pull-up or pull-down of the microcontroller
-  Board,            ///< the parts that the board connects to the wire
+  Board,            ///< a signal from outside, for example of a switch or of the transceiver
   Resistor,         ///< a pull-up or pull-down on the board; stronger than the microcontroller's own
-  Device,           ///< another chip on the board
-  Fault,            ///< a defect: a short circuit, a chip that hangs
+  Device,           ///< the EEPROM
+  Fault,            ///< a defect, for example a short circuit or a chip that hangs
 };
 
 class Net {
@@ -38,11 +38,11 @@ class Net {
   [[nodiscard]] Drive driven_by(End end) const { return ends_[static_cast<std::size_t>(end)]; }
   [[nodiscard]] bool level() const { return level_; }
 
-  /// Adds a function to call after each change of the level. The function lives as long as the wire;
-  /// everything it refers to must live as long.
+  /// Adds a function to call after each change of the level. Everything that the function refers to must live
+  /// until the last change of the level.
   void on_change(std::function<void()> act) { on_change_.push_back(std::move(act)); }
 
-  /// Returns whether two ends have ever driven the wire to opposite levels (Low and High).
+  /// Returns whether two ends have ever driven the wire to opposite levels (Low and High) at the same time.
   [[nodiscard]] bool was_shorted() const { return was_shorted_; }
 
  private:

@@ -1,4 +1,4 @@
-// Plays transcripts on an image that runs on a simulated microcontroller and its board.
+// A target for transcripts: an image that runs on a simulated microcontroller and its board.
 #pragma once
 
 #include <optional>

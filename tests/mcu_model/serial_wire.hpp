@@ -1,5 +1,5 @@
-// Characters as levels on a wire: a start bit, 8 data bits with the lowest first, a parity bit in some
-// formats, one or two stop bits. The line is idle high.
+// Characters as levels on a wire: a start bit, 8 data bits with the least significant bit first, a parity bit
+// in some formats, and one or two stop bits. The idle line is high.
 #pragma once
 
 #include <cstdint>
@@ -11,8 +11,8 @@
 
 namespace ex9000::registers {
 
-/// The parts of a format. They are defined here again, so that the model shares only the names of the formats
-/// with the firmware.
+/// The parity bit and the stop bits of a format. The firmware defines them too. The model uses only the
+/// firmware's names of the formats, so that it does not share other errors with the firmware.
 struct Form {
   bool parity_bit;
   bool odd;
@@ -31,7 +31,7 @@ constexpr unsigned bits_on_wire(LineFormat format) {
   return first_stop_bit(format) + form_of(format).stop_bits;
 }
 
-/// Returns the correct level of the parity bit. `format` must have one.
+/// Returns the correct level of the parity bit. `format` must have a parity bit.
 constexpr bool parity_of(std::uint8_t byte, LineFormat format) {
   bool level = form_of(format).odd;
   for (unsigned bit = 0; bit < 8; ++bit) {
@@ -40,18 +40,18 @@ constexpr bool parity_of(std::uint8_t byte, LineFormat format) {
   return level;
 }
 
-/// One character, and its faults.
+/// One character to send, and its faults.
 struct Character {
   std::uint8_t byte = 0;
-  bool stop = true;           ///< false: the last stop bit is low
-  unsigned low_bits = 0;      ///< if not 0: a break of this many low bits instead of a character
-  bool wrong_parity = false;  ///< for formats with a parity bit
+  bool stop = true;           ///< false: the last bit is low
+  unsigned low_bits = 0;      ///< if not 0: a break of this many low bits, then `stop`, instead of a character
+  bool wrong_parity = false;  ///< no effect in a format without a parity bit
 };
 
 /// Puts characters on a wire, one at a time.
 class SerialSender {
  public:
-  /// Calls `level` with each bit when the bit begins, and `done` when the last stop bit ends.
+  /// Calls `level` with each bit when the bit begins, and `done` when the last bit ends.
   SerialSender(Timeline& timeline, std::function<void(bool)> level, std::function<void()> done)
       : level_(std::move(level)), done_(std::move(done)), next_bit_(timeline, [this] { go_on(); }) {}
 
@@ -108,8 +108,8 @@ class SerialReceiver {
   struct Received {
     std::uint8_t byte;
     bool parity_error;
-    bool framing_error;  ///< the stop bit was low
-    bool was_break;      ///< all other bits were low too
+    bool framing_error;  ///< the first stop bit was low
+    bool was_break;      ///< all bits were low
   };
 
   /// Calls `deliver` in the middle of the first stop bit.

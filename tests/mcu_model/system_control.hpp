@@ -13,7 +13,7 @@
 
 namespace ex9000::registers {
 
-/// The bits of RESC.
+/// Causes of a reset; the values are bits of RESC.
 enum class ResetCause : std::uint32_t {
   Pin = 0x01,
   PowerOn = 0x02,
@@ -40,14 +40,14 @@ class SystemControl final : public Peripheral {
   void was_reset_by(ResetCause cause, std::uint32_t before);
   [[nodiscard]] std::uint32_t causes() const { return causes_; }
 
-  /// Returns one period of the system clock.
+  /// Returns the period of the system clock.
   [[nodiscard]] Instant cycle() const { return cycle_; }
   /// Adds a function that receives the new period before it takes effect.
   void on_clock_change(std::function<void(Instant cycle)> act) { on_clock_change_.push_back(std::move(act)); }
-  /// Sets a function to call when the processor must wait until `until`.
+  /// Sets the function to call when the processor must wait for the crystal until `until`.
   void on_standstill(std::function<void(Instant until)> act) { on_standstill_ = std::move(act); }
-  /// Sets a function to call for each bit of SRCR`index` that is set. The bit holds its peripheral in reset
-  /// until it is cleared.
+  /// Sets the function to call when software sets a bit of SRCR`index`. The bit holds its peripheral in reset
+  /// until software clears the bit.
   void on_software_reset(std::function<void(unsigned index, unsigned bit)> act) {
     on_software_reset_ = std::move(act);
   }
@@ -60,9 +60,9 @@ class SystemControl final : public Peripheral {
   enum class Gate : std::uint8_t { Shut, TooFresh, Open };
   [[nodiscard]] Gate gate(unsigned index, unsigned bit) const;
 
-  /// Sets how long the crystal takes to start, about 2 to 18 ms.
+  /// Sets how long the crystal takes to start. The default is 2 ms.
   void set_crystal_start(Instant time) { crystal_start_ = time; }
-  /// Sets how long the PLL takes to lock. With kNever, it does not lock.
+  /// Sets how long the PLL takes to lock; with kNever, the PLL does not lock. The default is 500 us.
   void set_lock_time(Instant time) { lock_time_ = time; }
 
  private:

@@ -1,5 +1,5 @@
-// Virtual time, and alarms that call a function at a set time. The unit is a picosecond, which is fine enough
-// for the clock cycles of any crystal.
+// Virtual time, and alarms that call a function at a set time. The unit is a picosecond; each clock cycle of
+// a simulated microcontroller lasts at least 20,000 of them.
 #pragma once
 
 #include <chrono>
@@ -26,8 +26,8 @@ class Timeline {
   [[nodiscard]] Instant now() const { return now_; }
   /// Returns the time at which the next alarm is due; kNever if none is set.
   [[nodiscard]] Instant next();
-  /// Calls all alarms that are due up to `to`, each at its time. Afterwards the time is `to`, or later if it
-  /// was already later.
+  /// Calls all alarms that are due up to `to`, each at its time, or immediately if that time has passed.
+  /// Afterwards the time is `to`, or later if it was already later.
   void advance(Instant to);
 
  private:
@@ -36,12 +36,12 @@ class Timeline {
   Instant now_{0};
   std::vector<Alarm*> alarms_;
   bool next_known_ = false;
-  Alarm* next_ = nullptr;  ///< null if none is set
+  Alarm* next_ = nullptr;  ///< null if no alarm is set; valid only if `next_known_` is true
   Instant next_at_ = kNever;
 };
 
-/// Calls its function once, at the time that the last `set` specifies, unless the alarm is cancelled before
-/// that time. The timeline must outlive the alarm.
+/// Calls its function once, at the time that the last `set` or `set_after` specifies, unless the alarm is
+/// cancelled or destroyed before that time. The timeline must outlive the alarm.
 class Alarm {
  public:
   Alarm(Timeline& timeline, std::function<void()> ring);
@@ -50,7 +50,7 @@ class Alarm {
   Alarm& operator=(const Alarm&) = delete;
 
   void set(Instant when) {
-    // The known next alarm stays valid only if this alarm was not the next one and does not become it.
+    // The timeline must search for the next alarm again if this alarm was the next one or may become it.
     timeline_.next_known_ = timeline_.next_known_ && timeline_.next_ != this && when > timeline_.next_at_;
     when_ = when;
   }

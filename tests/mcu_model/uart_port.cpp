@@ -132,7 +132,8 @@ void UartPort::transmit(std::uint8_t byte) {
   }
 }
 
-/// Begins to send a byte. The start bit begins at a tick of the baud rate generator, which runs continuously.
+/// Begins to send a byte. The start bit begins at the first tick of the baud rate generator that is not
+/// before `not_before`. The generator runs continuously.
 void UartPort::begin_character(std::uint8_t byte, Instant not_before) {
   const Instant tick = bit_time_ / 16;
   shifting_ = true;

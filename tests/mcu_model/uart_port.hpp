@@ -1,5 +1,6 @@
-// A UART without its FIFOs. Data sheets: LM3S6965 12.3 to 12.5, TM4C123GH6PM 14.3 to 14.5. The manual of
-// their common block, ARM's PL011 (DDI 0183), specifies when its interrupts are raised and cleared.
+// A UART without its FIFOs. Data sheets: LM3S6965 12.3 to 12.5, TM4C123GH6PM 14.3 to 14.5. Both
+// microcontrollers contain ARM's PL011, and its manual (DDI 0183) specifies when the interrupts are raised
+// and cleared.
 #pragma once
 
 #include <cstdint>
@@ -49,7 +50,7 @@ class UartPort final : public Peripheral {
   [[nodiscard]] LineFormat format() const { return format_; }
   [[nodiscard]] std::uint32_t line_control() const { return line_control_; }
   [[nodiscard]] bool enabled() const { return (control_ & 1U) != 0; }
-  /// Returns the number of bytes that were lost because the receiver was not read in time.
+  /// Returns the number of bytes that were lost because the data register was not read in time.
   [[nodiscard]] unsigned overruns() const { return overruns_; }
 
  private:

@@ -76,7 +76,7 @@ class WatchdogTimer final : public Peripheral {
   [[nodiscard]] bool locked() const { return locked_; }
   [[nodiscard]] bool running() const { return end_.is_set(); }
   [[nodiscard]] unsigned feeds() const { return feeds_; }
-  /// Returns whether the first of the two countdowns has ended.
+  /// Returns whether the first countdown after the start or the last feed has ended.
   [[nodiscard]] bool flagged() const { return flagged_; }
 
  private:

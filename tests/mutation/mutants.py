@@ -1,8 +1,8 @@
-"""Applies rules that make small changes to C++ source which a test should detect.
+"""Applies rules that make small changes to C++ source. A test should detect each change.
 
-The module divides a source into tokens, and each rule lists the changes that it can make: other operators and
-constants, removed statements, swapped branches. The rules skip comments, preprocessor lines and static_assert, because
-no test at run time can detect changes there. They also skip strings.
+Each rule lists the changes that it can make: other operators and constants, removed statements, swapped branches. No
+rule changes a static_assert, because no test at run time can detect a change there. The rules for operators and
+constants divide the source into tokens, and skip comments, preprocessor lines, strings and character literals.
 """
 
 import dataclasses
@@ -19,7 +19,7 @@ TOKEN = re.compile(
     re.VERBOSE | re.MULTILINE | re.DOTALL,
 )
 
-# The replacement of each operator. Operators that can also be part of a declaration or a template are checked below.
+# The replacement of each operator. The operators in BETWEEN_OPERANDS are replaced only between spaces.
 OPERATORS = {
     "==": "!=",
     "!=": "==",
@@ -47,7 +47,8 @@ OPERATORS = {
     "&=": "|=",
     "^=": "|=",
 }
-# clang-format puts spaces around a binary operator, but not around the operator of a type.
+# Most of these operators can also be unary or part of a type. clang-format puts a space on each side only of a binary
+# operator.
 BETWEEN_OPERANDS = {"<", ">", "+", "-", "*", "/", "%", "&", "|", "^", "<<", ">>", "&&"}
 
 STATEMENT = re.compile(r"^[ ]+(?P<statement>[a-z_][\w.>\[\]:+\- ]*(?:\(.*\)| [-+|&^]?= .*|\+\+|--);)$", re.MULTILINE)
@@ -148,11 +149,12 @@ def all_of(file, source):
 
 
 def spread(sources, seed):
-    """Yields all mutants of {file: source}, from each file in turn. The order depends on `seed`."""
+    """Yields all mutants of `sources` ({file: source}), from each file in turn. The order depends on `seed`."""
     chance = random.Random(seed)
     heaps = []
     for file, source in sorted(sources.items()):
-        # Also takes the rules in turn, because constants have many mutants, which rarely reveal a missing test.
+        # The rules of a file are also taken in turn, because the rule for constants makes many mutants, and these rarely
+        # reveal a missing test.
         of_rules = {}
         for mutant in all_of(file, source):
             of_rules.setdefault(mutant.rule, []).append(mutant)

@@ -33,14 +33,14 @@ class Mutants(unittest.TestCase):
         self.assertIn("return a - b;", lines)
         self.assertIn("c -= 0x10U;", lines)
 
-    def test_references_comments_and_strings_do_not_change(self):
+    def test_references_preprocessor_lines_and_strings_do_not_change(self):
         for line in changed(mutants.of_operators) | changed(mutants.of_constants):
             self.assertNotIn("|", line.replace("||", ""))
             self.assertFalse(line.startswith("#"))
             self.assertFalse(line.startswith("const char* raw"))
         self.assertNotIn('store(a, "x != y");', changed(mutants.of_operators))
 
-    def test_constants_are_increased_or_decreased_by_one(self):
+    def test_numbers_change_by_one_and_booleans_are_inverted(self):
         lines = changed(mutants.of_constants)
         self.assertIn("c += 17U;", lines)
         self.assertIn("c += 15U;", lines)
@@ -63,7 +63,7 @@ class Mutants(unittest.TestCase):
         for each in mutants.all_of("f", SOURCE):
             self.assertNotIn("static_assert", SOURCE[SOURCE.rfind("\n", 0, each.begin) : each.end])
 
-    def test_the_order_depends_only_on_the_seed_and_takes_files_in_turn(self):
+    def test_the_seed_determines_the_order_of_all_mutants_and_files_are_taken_in_turn(self):
         sources = {"a": SOURCE, "b": SOURCE, "c": SOURCE}
         order = list(mutants.spread(sources, 1))
         self.assertEqual(order, list(mutants.spread(sources, 1)))

@@ -121,7 +121,8 @@ def main(arguments):
         description="Counts the instructions that firmware images execute in an emulator for whole transactions, from "
         "the first received byte until the driver enable is off and the main loop sleeps. It counts all interrupts "
         "and the main loop without the tick, and prints the median of the passes (see --passes). For single "
-        "interrupts it prints the highest count. It also prints the difference from the record. The exit status is 1 if a count has grown by more than 5 % since it was recorded.",
+        "interrupts it prints the highest count. It also prints the difference from the record. The exit status is 1 "
+        "if a count has grown by more than 5 % since it was recorded.",
     )
     parser.add_argument("folder", help="folder with the images, as ELF files")
     parser.add_argument(

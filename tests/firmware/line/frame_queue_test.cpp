@@ -1,4 +1,4 @@
-// Tests the queue of two frames that the receive interrupt and the main loop use in turn.
+// Tests FrameQueue, which passes complete frames from interrupts to the main loop, and Frame.
 #include "firmware/line/frame_queue.hpp"
 
 #include <gtest/gtest.h>
@@ -6,7 +6,8 @@
 namespace ex9000 {
 namespace {
 
-/// Assembles a frame of one byte. Returns false if the queue has no space for the frame.
+/// Assembles a frame of one byte and queues it. Returns false if another frame is already waiting; the
+/// assembled frame is then lost.
 bool put(FrameQueue& queue, std::uint8_t byte) {
   Frame& frame = queue.assembling();
   frame.offset = 0;
@@ -36,7 +37,7 @@ TEST(FrameQueue, TheWaitingFrameDoesNotChangeWhileTheNextOneIsAssembled) {
   EXPECT_EQ(queue.waiting().bytes()[0], 0x11);
 }
 
-TEST(FrameQueue, AFrameThatIsBeingAssembledIsKeptWhenTheWaitingOneIsDropped) {
+TEST(FrameQueue, AFrameThatIsBeingAssembledKeepsItsBufferWhenTheWaitingOneIsDropped) {
   FrameQueue queue;
   ASSERT_TRUE(put(queue, 0x11));
   const Frame& open = queue.assembling();
@@ -56,7 +57,7 @@ TEST(FrameQueue, AFrameThatEndsWhileAnotherWaitsIsLost) {
   EXPECT_EQ(queue.waiting().bytes()[0], 0x44);
 }
 
-TEST(FrameQueue, HandsOverEveryFrame) {
+TEST(FrameQueue, HandsOverEveryFrameIfThePreviousOneIsDropped) {
   FrameQueue queue;
   for (unsigned i = 1; i <= 300; ++i) {
     ASSERT_TRUE(put(queue, static_cast<std::uint8_t>(i)));
@@ -65,7 +66,7 @@ TEST(FrameQueue, HandsOverEveryFrame) {
   }
 }
 
-TEST(Frame, HasItsBytesAfterATurnAroundByte) {
+TEST(Frame, ItsBytesBeginAfterATurnAroundByte) {
   Frame frame;
   frame.storage[1] = 0x55;
   frame.offset = 1;

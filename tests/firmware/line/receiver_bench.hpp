@@ -1,4 +1,4 @@
-// A receiver on a line with a clock, for tests of the receiver.
+// A receiver and a clock, for tests of the receiver.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -20,9 +20,11 @@ inline constexpr Duration kCharacter = Duration(1042);
 
 inline const FrameBytes kChannel0On{0x01, 0x05, 0x00, 0x00, 0xFF, 0x00, 0x8C, 0x3A};
 inline const FrameBytes kHostOk{0x01, 0x03, 0x30, 0x38, 0x00, 0x00, 0xCB, 0x07};
-inline const FrameBytes kGuideExample{0x02, 0x07, 0x41, 0x12};  // addressed to module 02
+/// The frame for module 02 in the CRC example of Modbus over Serial Line V1.02, 6.2.2.
+inline const FrameBytes kGuideExample{0x02, 0x07, 0x41, 0x12};
 
-/// The receiver's counters, in the order of sub-functions 0B, 0C, 0E, 0F, 12.
+/// The receiver's counters for function 08 (wire.md D1), in the order of the sub-functions 0B, 0C, 0E, 0F and
+/// 12.
 struct Counts {
   unsigned bus_messages;
   unsigned bus_errors;
@@ -62,7 +64,7 @@ class ReceiverTest : public testing::Test {
       byte(static_cast<std::uint8_t>(character));
     }
   }
-  /// Lets a silence of 50 ms pass, which ends every frame.
+  /// Lets a silence of 50 ms pass, which ends a Modbus frame. A silence does not end an ASCII frame.
   void silence() {
     now_ = now_ + milliseconds(50);
     while (!(receiver_.on_silence() == Duration())) {
@@ -92,7 +94,8 @@ class ReceiverTest : public testing::Test {
     return true;
   }
 
-  /// Returns how often the host watchdog has been restarted since the last call.
+  /// Returns the number of host OKs, and of requests that count like one, since the last call. The first call
+  /// returns the number since the start of the test.
   std::uint32_t restarts() {
     const std::uint32_t before = restarts_;
     restarts_ = receiver_.host_oks().received();

@@ -1,4 +1,5 @@
-// Tests what the receiver counts: the counters of function 08 (wire.md D1), damaged bytes and lost frames.
+// Tests what the receiver counts for Modbus function 08 (wire.md D1) and for the line tallies
+// (firmware/extensions.md).
 #include "tests/firmware/line/receiver_bench.hpp"
 
 namespace ex9000 {
@@ -15,7 +16,7 @@ TEST_F(ReceiverTest, AFrameForThisModuleIsABusAndAServerMessage) {
   EXPECT_EQ(counts(), (Counts{1, 0, 1, 0, 0}));
 }
 
-TEST_F(ReceiverTest, AFrameForAnotherModuleIsABusMessage) {
+TEST_F(ReceiverTest, AFrameForAnotherModuleIsOnlyABusMessage) {
   listen(Protocol::ModbusRtu);
   frame(kGuideExample);
   EXPECT_EQ(counts(), (Counts{1, 0, 0, 0, 0}));
@@ -47,7 +48,7 @@ TEST_F(ReceiverTest, AFrameOfMoreThan256BytesIsOneBusError) {
   EXPECT_EQ(counts(), (Counts{0, 2, 0, 0, 0}));
 }
 
-TEST_F(ReceiverTest, AFrameSpoiledByALineErrorIsOneBusError) {
+TEST_F(ReceiverTest, AFrameWithFramingErrorsOrBreaksIsOneBusError) {
   listen(Protocol::ModbusRtu);
   for (const ByteStatus status : {ByteStatus::FramingError, ByteStatus::Break}) {
     byte(0x01);
@@ -122,9 +123,11 @@ TEST_F(ReceiverTest, InAsciiEachCompleteFrameIsABusMessageOrABusError) {
   EXPECT_EQ(counts(), (Counts{1, 0, 1, 0, 0}));
   text("$02MD3\r");  // for another module
   EXPECT_EQ(counts(), (Counts{1, 0, 0, 0, 0}));
-  text("~**D2\r#**77\r$**78\r");  // host OK; sample, but the queue is full; no command
+  // A host OK, a broadcast `#**` that is lost because the queue is full, and a broadcast that is not a
+  // command.
+  text("~**D2\r#**77\r$**78\r");
   EXPECT_EQ(counts(), (Counts{3, 0, 2, 2, 1}));
-  text("$01MD3\r$0\r$01M78901234567890123456789012345\r");  // wrong checksum, none, too long
+  text("$01MD3\r$0\r$01M78901234567890123456789012345\r");  // wrong checksum; no checksum; too long
   EXPECT_EQ(counts(), (Counts{0, 3, 0, 0, 0}));
   byte('$');
   byte('0', ByteStatus::Overrun);

@@ -1,4 +1,5 @@
-// Tests the receiver: host OK, protocol selection, required silences, replies of the module (wire.md D9).
+// Tests the receiver: host OKs and requests that count like one; protocol, checksum and address; required
+// silences; the module's own replies (wire.md D9).
 #include "firmware/line/receiver.hpp"
 
 #include <gtest/gtest.h>
@@ -145,7 +146,7 @@ TEST_F(ReceiverTest, ANewAddressAppliesToModbusToo) {
   EXPECT_TRUE(took_frame());
 }
 
-// --- durations ---
+// --- required silences ---
 
 TEST_F(ReceiverTest, AsciiRequiresNoSilenceWithinAFrameOrAfterARejectedFrame) {
   listen(Protocol::Ascii, true);
@@ -158,7 +159,8 @@ TEST_F(ReceiverTest, AsciiRequiresNoSilenceWithinAFrameOrAfterARejectedFrame) {
 }
 
 TEST_F(ReceiverTest, AsciiRequiresTheFullTurnAroundAfterAnAcceptedFrame) {
-  // The turn-around is one character (wire.md section 3). A byte of 8N2 is reported a bit before its end.
+  // The turn-around is one character time (wire.md section 3). In 8N2, the UART reports a byte one bit time
+  // before the end of its last stop bit.
   const std::array<std::pair<LineFormat, unsigned>, 4> bits_of_turn_around{
       {{LineFormat::k8N1, 10}, {LineFormat::k8N2, 1 + 11}, {LineFormat::k8E1, 11}, {LineFormat::k8O1, 11}}};
   for (const auto& [format, bits] : bits_of_turn_around) {
@@ -222,10 +224,10 @@ TEST_F(ReceiverTest, ModbusRequiresNoMoreSilenceAfterACorrectCrc) {
   EXPECT_TRUE(took_frame());
 }
 
-TEST_F(ReceiverTest, ModbusWaitsOneMoreCharacterAfterAWrongCrc) {
+TEST_F(ReceiverTest, ModbusWaitsForOneMoreCharacterAfterAWrongCrc) {
   listen(Protocol::ModbusRtu);
   bytes({0x01, 0x05, 0x00});
-  // The wait lasts from T3.5, which the timer rounds up, to the end of a byte that began at T3.5.
+  // The wait is the time from the beginning of a byte to its report, rounded down. In 8N1, this is ten bits.
   constexpr double kTenBits = 10 * 1e6 / kBaud;
   constexpr double kRounding = 5;
   const std::uint32_t wanted = receiver_.on_silence().microseconds();
@@ -270,8 +272,9 @@ TEST_F(ReceiverTest, ACompleteModbusFrameIsAcceptedWhenTheModuleTransmits) {
   EXPECT_TRUE(took_frame());
 }
 
-// wire.md D9: the host OK is judged after the module's reply. The reply may end before the silence that
-// belongs to the host OK would have ended.
+// wire.md D9 and D11: if the module begins a reply during the silence of a host OK, the module still judges
+// the host OK. The host OK counts from the end of its silence, or from the end of the reply if that end is
+// earlier.
 TEST_F(ReceiverTest, AHostOkWhoseSilenceIsCutOffByAReplyCountsFromTheEndOfTheReply) {
   listen(Protocol::ModbusRtu);
   bytes(kHostOk);

@@ -1,4 +1,4 @@
-// Tests how Modbus RTU frames are assembled and judged: wire.md section 7, "Framing", and D11; Modbus over
+// Tests how Modbus RTU frames are assembled and judged: wire.md section 7, "Framing", D9 and D11; Modbus over
 // Serial Line V1.02, 2.5.1.
 #include "firmware/line/rtu_assembler.hpp"
 
@@ -22,7 +22,7 @@ class RtuAssemblerTest : public testing::Test {
     EXPECT_EQ(wire_.verdicts.size(), 1U);
     return wire_.verdicts.empty() ? Verdict::Open : wire_.verdicts.front();
   }
-  /// Does the same as the other overload, but byte `errored` has the status `status`.
+  /// Does the same as the other overload, but the byte with the index `errored` has the status `status`.
   Verdict verdict_of(const FrameBytes& bytes, std::size_t errored, ByteStatus status) {
     wire_.verdicts.clear();
     for (std::size_t i = 0; i < bytes.size(); ++i) {
@@ -50,7 +50,7 @@ TEST_F(RtuAssemblerTest, AFrameWithACorrectCrcIsAcceptedWithoutItsCrc) {
   EXPECT_EQ(wire_.frames, std::vector<FrameBytes>{without_crc(kChannel0On)});
 }
 
-TEST_F(RtuAssemblerTest, TheReceptionTimeOfAFrameIsTheEndOfItsLastByte) {
+TEST_F(RtuAssemblerTest, AFrameIsReceivedWhenTheUartReportsItsLastByte) {
   wire_.bytes(kChannel0On);
   const Time end = wire_.time();
   wire_.rest();
@@ -102,7 +102,7 @@ TEST_F(RtuAssemblerTest, AFrameOf256BytesIsAccepted) {
   EXPECT_EQ(wire_.frames.back(), without_crc(frame_of(256)));
 }
 
-TEST_F(RtuAssemblerTest, AFrameOfMoreThan256BytesIsTooLongAndTheNextOneAccepted) {
+TEST_F(RtuAssemblerTest, AFrameOfMoreThan256BytesIsTooLongAndTheNextOneIsAccepted) {
   for (const std::size_t size : {257U, 258U, 259U, 300U, 513U, 1000U}) {
     EXPECT_EQ(verdict_of(frame_of(size)), Verdict::TooLong) << size;
     EXPECT_TRUE(wire_.frames.empty());
@@ -173,7 +173,7 @@ TEST_F(RtuAssemblerTest, ALineErrorSpoilsAForeignAndAShortFrameToo) {
   EXPECT_EQ(verdict_of({0x01, 0x11}, 1, ByteStatus::FramingError), Verdict::LineError);
 }
 
-TEST_F(RtuAssemblerTest, ALineErrorInAFrameThatIsTooLongDropsIt) {
+TEST_F(RtuAssemblerTest, AFrameThatIsTooLongAndHasALineErrorIsDropped) {
   const FrameBytes frame = frame_of(300);
   EXPECT_NE(verdict_of(frame, 299, ByteStatus::FramingError), Verdict::Accepted);
   EXPECT_TRUE(wire_.frames.empty());
@@ -227,7 +227,7 @@ TEST_F(RtuAssemblerTest, ATurnAround00BeforeABroadcastIsRemoved) {
   EXPECT_EQ(wire_.frames.back(), without_crc(broadcast));
 }
 
-TEST_F(RtuAssemblerTest, TheFirst00OfABroadcastIsNotRemoved) {
+TEST_F(RtuAssemblerTest, ALineErrorInTheAddress00OfABroadcastSpoilsTheFrame) {
   const FrameBytes broadcast = with_crc({0x00, 0x05, 0x00, 0x00, 0xFF, 0x00});
   EXPECT_EQ(verdict_of(broadcast, 0, ByteStatus::FramingError), Verdict::LineError);
   EXPECT_TRUE(wire_.frames.empty());
@@ -280,7 +280,7 @@ TEST_F(RtuAssemblerTest, ReadingRegister3038WithQuantity0Or1IsAHostOk) {
   }
   EXPECT_TRUE(wire_.frames.empty());
   EXPECT_EQ(verdict_of({0x01, 0x03, 0x30, 0x38, 0x00, 0x00, 0xCB, 0x07}),
-            Verdict::HostOk);  // wire.md, worked example
+            Verdict::HostOk);  // an example frame of wire.md section 7
 }
 
 TEST_F(RtuAssemblerTest, AnotherFunctionRegisterQuantityOrLengthIsNoHostOk) {

@@ -1,4 +1,4 @@
-// A wire with a silence timer, and frames on it, for tests of the RTU assembler.
+// A simulated wire with a silence timer, and frames, for tests of the RTU assembler.
 #pragma once
 
 #include <cstdint>
@@ -16,10 +16,10 @@ using Nanoseconds = std::int64_t;
 
 inline constexpr std::uint8_t kOwn = 0x01;
 
-/// A worked example of wire.md section 7.
+/// An example frame of wire.md section 7.
 inline const FrameBytes kChannel0On{0x01, 0x05, 0x00, 0x00, 0xFF, 0x00, 0x8C, 0x3A};
 
-/// Returns a frame of `size` bytes, CRC included.
+/// Returns a frame of `size` bytes, CRC included. `size` must be at least 4.
 inline FrameBytes frame_of(std::size_t size, std::uint8_t address = kOwn) {
   FrameBytes bytes{address, 0x10};
   while (bytes.size() < size - 2) {
@@ -36,9 +36,8 @@ inline FrameBytes behind(std::uint8_t first, const FrameBytes& frame) {
   return bytes;
 }
 
-/// Returns T1.5 or T3.5 of the Modbus serial line guide, in nanoseconds. Up to 19200 baud, the time is
-/// `halves` times half a character of 11 bits. Above 19200 baud it is `fixed`, which is 750 or 1750
-/// microseconds.
+/// Returns T1.5 or T3.5 (Modbus over Serial Line V1.02, 2.5.1.1) in nanoseconds. Up to 19200 baud, the time
+/// is `halves` times half a character of 11 bits. Above 19200 baud, the time is `fixed`.
 inline Nanoseconds silence_of_half_characters(int halves, std::uint32_t baud, Nanoseconds fixed) {
   return baud <= 19200 ? Nanoseconds{halves} * 11 * 500'000'000 / baud : fixed;
 }
@@ -46,7 +45,7 @@ inline Nanoseconds t15(std::uint32_t baud) { return silence_of_half_characters(3
 inline Nanoseconds t35(std::uint32_t baud) { return silence_of_half_characters(7, baud, 1'750'000); }
 
 /// The assembler's clock counts whole microseconds, and the assembler compares rounded times. A gap that must
-/// be shorter or longer than a limit therefore differs from the limit by this time.
+/// be shorter or longer than a limit therefore differs from the limit by at least this time.
 inline constexpr Nanoseconds kClock = 5'000;
 
 /// A wire at one baud rate, with its silence timer. A byte takes ten bits in 8N1 and eleven in the other
@@ -79,7 +78,7 @@ class Wire {
   }
   /// Lets time pass between a stop bit and the next start bit.
   void silence(Nanoseconds length) { now_ += length; }
-  /// Lets time pass until no timer runs.
+  /// Lets one second pass, which ends every frame.
   void rest() {
     silence(1'000'000'000);
     run_timer();
@@ -93,10 +92,10 @@ class Wire {
   void start_at(Time time) { now_ = Nanoseconds{time.microseconds()} * 1000; }
 
   std::uint8_t own = kOwn;
-  bool collect = true;  ///< take each frame from the queue when it is complete
+  bool collect = true;  ///< whether each queued frame is moved to `frames`
   Verdicts verdicts;
   std::vector<FrameBytes> frames;
-  Time received;  ///< when the latest frame was received
+  Time received;  ///< when the last byte of the latest frame in `frames` was reported
 
  private:
   void run_timer() {
@@ -127,9 +126,10 @@ class Wire {
   FrameQueue& queue_;
   Nanoseconds bit_;
   Nanoseconds bits_;
-  Nanoseconds second_stop_bit_;  ///< in bits
+  Nanoseconds second_stop_bit_;  ///< 1 if a byte has a second stop bit, otherwise 0
   Nanoseconds now_ = 1'000'000'000;
-  std::optional<Nanoseconds> due_;  // microseconds
+  /// When the silence timer expires, in microseconds. Empty if the timer does not run.
+  std::optional<Nanoseconds> due_;
 };
 
 }  // namespace ex9000

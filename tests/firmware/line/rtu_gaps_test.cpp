@@ -1,5 +1,6 @@
-// Tests the silences between RTU frames and the gaps within them. T3.5 and T1.5 are measured from a stop bit
-// to the next start bit: wire.md section 7, "Framing", and D11; Modbus over Serial Line V1.02, 2.5.1.
+// Tests the silences between RTU frames and the gaps within them. T3.5 and T1.5 count from the end of the
+// last stop bit of a byte to the next start bit: wire.md section 7, "Framing", and D11; Modbus over Serial
+// Line V1.02, 2.5.1.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -17,7 +18,7 @@ namespace {
 
 class RtuGaps : public testing::TestWithParam<std::tuple<std::uint32_t, LineFormat>> {
  protected:
-  /// Sends the first `split` bytes, a gap, and the other bytes.
+  /// Sends the first `split` bytes of `frame`, a gap, the other bytes, and the silence that ends the frame.
   void with_gap(const FrameBytes& frame, std::size_t split, Nanoseconds gap) {
     const auto middle = frame.begin() + static_cast<std::ptrdiff_t>(split);
     wire_.bytes({frame.begin(), middle});
@@ -31,8 +32,8 @@ class RtuGaps : public testing::TestWithParam<std::tuple<std::uint32_t, LineForm
   Wire wire_{assembler_, queue_, baud_, format_};
 };
 
-// A simulated line can have other baud rates than a module, up to 4 Mbaud.
-TEST(LineTimingAt, FourMegabaudHasAGraceOfAtLeastOneMicrosecond) {
+// The master of a simulated line can have other baud rates than a module, up to 4 Mbaud.
+TEST(LineTimingAt, FourMegabaudHasAGraceOfOneMicrosecond) {
   EXPECT_EQ(LineTiming::at(4'000'000, LineFormat::k8N1).rtu_grace.microseconds(), 1U);
 }
 
@@ -51,7 +52,7 @@ INSTANTIATE_TEST_SUITE_P(AllRatesAndFormats, RtuGaps,
                          testing::Combine(testing::ValuesIn(kBaudRates), testing::ValuesIn(kFormats)),
                          name_of);
 
-TEST_P(RtuGaps, AGapShorterThanT35StaysWithinTheFrame) {
+TEST_P(RtuGaps, AGapShorterThanT35DoesNotEndTheFrame) {
   for (std::size_t split = 1; split < kChannel0On.size(); ++split) {
     wire_.verdicts.clear();
     with_gap(kChannel0On, split, t35(baud_) - kClock);
@@ -99,7 +100,8 @@ TEST_P(RtuGaps, AFrameT35AfterAnInvalidFrameIsSeparate) {
   EXPECT_EQ(wire_.verdicts, (Verdicts{Verdict::BadCheck, Verdict::Accepted}));
 }
 
-// A timer that is some microseconds late must not join a frame to the invalid frame before it.
+// Even if the interrupt of the silence timer is late, the assembler must not join a frame to the invalid
+// frame before it.
 TEST_P(RtuGaps, AFrameT35AfterAnInvalidFrameIsSeparateEvenIfTheTimerIsLate) {
   Time now(1'000'000);
   const auto byte = [&](std::uint8_t value) { return assembler_.byte(queue_, value, ByteStatus::Good, now); };
@@ -132,7 +134,7 @@ TEST_P(RtuGaps, AFrameWithACorrectCrcEndsAtT35EvenIfAByteIsBeingReceived) {
   EXPECT_EQ(wire_.verdicts, (Verdicts{Verdict::Accepted, Verdict::TooShort}));
 }
 
-TEST_P(RtuGaps, AWrongCrcAtT35ExtendsTheWaitForAByteBeingReceived) {
+TEST_P(RtuGaps, AWrongCrcAtT35ExtendsTheWaitOnce) {
   wire_.bytes({0x01, 0x05, 0x00});
   EXPECT_EQ(assembler_.silence(queue_), Verdict::Open);
   EXPECT_FALSE(assembler_.next_wait() == Duration());
@@ -187,8 +189,8 @@ TEST_P(RtuGaps, TheSilenceEndsT35AfterTheLastByteAndNeverEarlier) {
   }
 }
 
-// A UART that reports a byte in the stop bit reports it half a bit before its end, so a silence that begins
-// at the report is half a bit longer.
+// Some UARTs report a byte in the middle of its first stop bit, half a bit before the end of this stop bit. A
+// silence that counts from the report is therefore half a bit longer.
 TEST_P(RtuGaps, SilencesAreHalfABitLongerIfTheUartReportsBytesInTheStopBit) {
   const LineTiming end = LineTiming::at(baud_, format_);
   const LineTiming middle = LineTiming::reported_in_stop_bit(baud_, format_);
@@ -198,21 +200,22 @@ TEST_P(RtuGaps, SilencesAreHalfABitLongerIfTheUartReportsBytesInTheStopBit) {
     EXPECT_GT(longer, half_bit);
     EXPECT_LE(longer, half_bit + 1);
   }
-  // The time from the last byte to the end of the next one is the same.
+  // The time between the reports of two bytes is the same, because both reports are half a bit earlier.
   EXPECT_TRUE(middle.rtu_silence + middle.rtu_grace == end.rtu_silence + end.rtu_grace);
   EXPECT_TRUE(middle.rtu_slack == end.rtu_slack);
 }
 
-// The UART reports a byte at the end of its first stop bit; only 8N2 has a second one. A reply to a request
-// with a response delay begins this time after the delay.
+// In `LineTiming::at`, the UART reports a byte at the end of its first stop bit. Only 8N2 has a second stop
+// bit. The response delay counts from the end of the last stop bit of a request, so the module adds this time
+// to the delay.
 TEST_P(RtuGaps, TheTimeToTheEndOfTheLastStopBitIsRoundedUp) {
   const std::uint32_t rest = LineTiming::at(baud_, format_).rest_of_stop_bit.microseconds();
-  const std::uint32_t exact = format_ == LineFormat::k8N2 ? 1'000'000 : 0;  // in microseconds x baud
+  const std::uint32_t exact = format_ == LineFormat::k8N2 ? 1'000'000 : 0;  // in microseconds times baud
   EXPECT_GE(rest * baud_, exact);
   EXPECT_LE(rest * baud_, exact + baud_);
 }
 
-TEST_P(RtuGaps, StrictTimingKeepsItsGapsIfTheUartReportsBytesInTheStopBit) {
+TEST_P(RtuGaps, StrictTimingAllowsTheSameGapsIfTheUartReportsBytesInTheStopBit) {
   const LineTiming end = LineTiming::strictly_at(baud_, format_);
   const LineTiming middle = LineTiming::strictly_reported_in_stop_bit(baud_, format_);
   EXPECT_TRUE(middle.rtu_slack == end.rtu_slack);
@@ -263,7 +266,8 @@ TEST_P(RtuGaps, StrictTimingDoesNotEndAFrameAtAGapShorterThanT35) {
   EXPECT_TRUE(wire_.frames.empty());
 }
 
-// The gap would invalidate a frame that contains it, but the frame without the 00 is valid.
+// A gap of this length within a frame makes the frame invalid. This gap is before the frame, because the 00
+// does not belong to the frame.
 TEST_P(RtuGaps, StrictTimingAllowsAGapAfterATurnAround00) {
   assembler_.use(LineTiming::strictly_at(baud_, format_));
   with_gap(behind(0x00, kChannel0On), 1, t15(baud_) + kClock);

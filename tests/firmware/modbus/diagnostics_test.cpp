@@ -18,7 +18,7 @@ const FrameBytes kAllOutput0On{0x00, 0x05, 0x00, 0x00, 0xFF, 0x00};
 const FrameBytes kHostOk{0x01, 0x03, 0x30, 0x38, 0x00, 0x00};
 const FrameBytes kUnknownFunction{0x01, 0x41};
 
-/// The counters of sub-functions 0B to 0F and 12, without the requests that read them.
+/// The values of the counters of sub-functions 0B to 0F and 12, without the requests that read the counters.
 struct Counts {
   unsigned bus_messages = 0;
   unsigned bus_errors = 0;
@@ -46,7 +46,8 @@ class Diagnosed : public testing::Test, protected CoreBench {
     EXPECT_EQ(reply.size(), 8U);
     return reply.size() == 8 ? reply[4] * 256U + reply[5] : 0;
   }
-  /// Reads all counters. Each reading request counts itself as a bus message and a server message.
+  /// Reads all counters. Each request that reads a counter is itself a bus message and a server message; the
+  /// function subtracts these requests.
   Counts counts() {
     Counts told;
     told.bus_messages = (counter(0x0B) - 1U) % 65'536U;
@@ -126,7 +127,7 @@ TEST_F(Diagnosed, EveryCounterHas16BitsAndWraps) {
       silence();
     }
     const auto wrapped = [](unsigned count) { return count % 65'536U; };
-    const unsigned messages = wrapped(2 * rounds + asked);  // earlier requests that read a counter count too
+    const unsigned messages = wrapped(2 * rounds + asked);  // requests that read a counter are messages too
     EXPECT_EQ(counts(), (Counts{messages, wrapped(rounds), wrapped(rounds), messages, wrapped(rounds),
                                 wrapped(rounds)}))
         << rounds;

@@ -1,5 +1,5 @@
-// Tests the check of a record of settings, which detects errors in the stored bytes and torn writes (wire.md
-// D8).
+// Tests the check of a record of settings. The check detects errors in the stored bytes and torn writes
+// (wire.md section 8 and D8).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -30,9 +30,9 @@ std::uint32_t word_at(const Record& record, std::size_t at) {
 
 std::uint32_t check_in(const Record& record) { return word_at(record, record.size() - 4); }
 
-/// Inverts `taken_in`: returns the exclusive or of CRC and data from which `taken_in` computed `result`. The
-/// highest bit of `kReflectedPolynomial` is 1, so the highest bit of `result` shows whether the last step
-/// applied the polynomial.
+/// Inverts `taken_in`: returns the exclusive or of the CRC and the data from which `taken_in` computed
+/// `result`. The highest bit of `kReflectedPolynomial` is 1, so the highest bit of `result` shows whether the
+/// last step applied the polynomial.
 std::uint32_t undone(std::uint32_t result, int bits) {
   for (int bit = 0; bit < bits; ++bit) {
     const bool divided = result >> 31U != 0;
@@ -84,8 +84,9 @@ class OfOneKind {
 
 // --- what the check determines ---
 
-// If the check and all other bytes are known, only one value is possible for four adjacent bytes. The check
-// therefore detects every error that is limited to four adjacent bytes.
+// If the check and all other bytes are known, only one value is possible for four adjacent bytes before the
+// check. The check therefore detects every error that is limited to such four bytes and does not change the
+// length of the record.
 TEST(Record, AnyFourAdjacentBytesAreDeterminedByTheCheckAndTheOtherBytes) {
   std::mt19937 random(3);
   for (const Model& each : kModels) {
@@ -100,8 +101,8 @@ TEST(Record, AnyFourAdjacentBytesAreDeterminedByTheCheckAndTheOtherBytes) {
   }
 }
 
-// This follows from the property that the previous test checks. Here, more than 1000 records are compared for
-// each group of adjacent settings.
+// If the property that the previous test checks is true, this one is true too. This test compares more than
+// 1000 records for each of six groups of adjacent bytes.
 TEST(Record, RecordsThatDifferInUpToFourAdjacentBytesHaveDifferentChecks) {
   OfOneKind lines("address, baud code, format and protocol", 4);
   OfOneKind watchdogs("watchdog and timeout status", 8);
@@ -191,14 +192,14 @@ TEST(Record, RandomTripleBitErrorsAreDetected) {
   }
 }
 
-TEST(Record, ATornWriteToBlankMemoryIsNotARecord) {
+TEST(Record, ATornWriteToBlankMemoryLeavesNoValidRecord) {
   const Record good = record_of(changed_settings());
   for (std::size_t written = 0; written < kRecordSize; ++written) {
     EXPECT_FALSE(is_good(the_model(), torn_record(good, written, filled_with(0xFF)))) << written << " bytes";
   }
 }
 
-TEST(Record, ATornWriteOverAnotherRecordIsOneOfTheTwoOrInvalid) {
+TEST(Record, ATornWriteOverAnotherRecordLeavesOneOfTheTwoRecordsOrAnInvalidOne) {
   const Record older = record_of(factory());
   const Record newer = record_of(changed_settings());
   for (std::size_t written = 0; written <= kRecordSize; ++written) {
@@ -207,7 +208,7 @@ TEST(Record, ATornWriteOverAnotherRecordIsOneOfTheTwoOrInvalid) {
   }
 }
 
-TEST(Record, ATornWriteOverThePreviousRecordIsOneOfTheTwoOrInvalid) {
+TEST(Record, ATornWriteOverThePreviousRecordLeavesOneOfTheTwoRecordsOrAnInvalidOne) {
   Stored stored = changed_settings();
   const Record older = record_of(stored);
   ++stored.sequence;

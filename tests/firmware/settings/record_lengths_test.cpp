@@ -1,4 +1,5 @@
-// Tests records of firmware with more or fewer settings, and which of several records is the newest.
+// Tests records of different lengths, for example of firmware with more or fewer settings, and which of two
+// copies is newer.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,11 +13,12 @@
 namespace ex9000 {
 namespace {
 
-/// The number of bytes of settings that this firmware supports.
+/// The size in bytes of all settings that this firmware supports.
 constexpr std::size_t kSupported = 55;
 
-/// Returns a record of firmware that has more or fewer settings. The supported settings after the safe value
-/// have their factory values.
+/// Returns a record with `length` bytes of settings, which may be fewer or more than this firmware supports.
+/// The settings up to the safe value are those of `stored`. The other supported settings have their factory
+/// values. The bytes after them, which firmware with more settings would use, have arbitrary values.
 Record with_length(const Stored& stored, std::size_t length) {
   Record record = record_of(stored);
   Record settings(record.begin() + kSettingsAt, record.begin() + kCheckAt);
@@ -118,7 +120,7 @@ TEST(Record, ARecordWrittenOverAShorterOneIsComplete) {
   EXPECT_TRUE(std::equal(bytes.begin(), bytes.begin() + kRecordSize, record_of(changed_settings()).begin()));
 }
 
-// --- the newest of several copies ---
+// --- the newer of two copies ---
 
 TEST(Edition, ANewerLayoutIsNewerThanAnyEditionOfAnOlderLayout) {
   constexpr std::uint16_t kSequences[] = {0, 1, 0x7FFF, 0x8000, 0xFFFF};

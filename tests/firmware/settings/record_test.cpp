@@ -1,5 +1,5 @@
-// Tests the stored form of settings: a written record is read back, and other data is not accepted as
-// settings (wire.md D8).
+// Tests records of settings: a written record is read back and has the documented layout, and other data is
+// not accepted as settings (wire.md D8).
 #include "firmware/settings/record.hpp"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ void expect_round_trip(const Model& which, const Stored& stored) {
 
 // --- written records are read back ---
 
-TEST(Record, FitsAPageOfTheMemory) {
+TEST(Record, ARecordOfFactorySettingsFitsAPageOfTheMemory) {
   EXPECT_EQ(record_of(factory()).size(), kRecordSize);
   EXPECT_LE(kRecordSize, 32U);
 }
@@ -35,9 +35,9 @@ TEST(Record, FactorySettingsOfEveryModelAreReadBack) {
   }
 }
 
-TEST(Record, EveryFieldIsReadBack) { expect_round_trip(the_model(), changed_settings()); }
+TEST(Record, EveryFieldUpToTheSafeValueIsReadBack) { expect_round_trip(the_model(), changed_settings()); }
 
-TEST(Record, AnySettingsOfAnyModelAreReadBack) {
+TEST(Record, RandomSettingsOfEveryModelAreReadBack) {
   std::mt19937 random(1);
   for (const Model& each : kModels) {
     for (int i = 0; i < 1000; ++i) {
@@ -46,7 +46,7 @@ TEST(Record, AnySettingsOfAnyModelAreReadBack) {
   }
 }
 
-TEST(Record, EachFlagIsReadBackAlone) {
+TEST(Record, EachWatchdogFlagIsReadBackAlone) {
   Stored stored = factory();
   stored.settings.watchdog_enabled = true;
   expect_round_trip(the_model(), stored);
@@ -101,7 +101,7 @@ TEST(Record, HasTheDocumentedLayoutOfTheExtensions) {
   Record expected{3, 55, 1, 0, 1, 6, 0, 0, 0xFF, 0, 0, '9', '0', '5', '3', 0, 0, 0, 4, 0, 0, 0, 0};
   expected.insert(expected.end(), {0xD0, 0x07});                           // filter of input 0
   expected.resize(expected.size() + 28);                                   // inputs 1 to 14
-  expected.insert(expected.end(), {3, 0, 0x01, 0x80, 1, 30, 0, 0, 0, 0});  // input 15, the others, the check
+  expected.insert(expected.end(), {3, 0, 0x01, 0x80, 1, 30, 0, 0, 0, 0});  // input 15, other settings, check
   EXPECT_EQ(record_of(stored, sixteen_inputs), with_check(sixteen_inputs, expected));
   expect_round_trip(sixteen_inputs, stored);
 }
@@ -116,14 +116,14 @@ TEST(Record, HasTheDocumentedCheck) {
   }
 }
 
-TEST(Record, RecordsThatDifferInAnyByteAreNotEqual) {
+TEST(Record, RecordsThatDifferInOneBitAreNotEqual) {
   const Record record = record_of(changed_settings());
   for (std::size_t bit = 0; bit < kRecordBits; ++bit) {
     EXPECT_FALSE(with_flipped(record, bit) == record) << bit;
   }
 }
 
-// --- contents that are no settings of the model ---
+// --- contents that are not settings of the model ---
 
 TEST(Record, ARecordOfAnotherModelIsInvalid) {
   for (const Model& writer : kModels) {
@@ -135,7 +135,7 @@ TEST(Record, ARecordOfAnotherModelIsInvalid) {
   }
 }
 
-TEST(Record, BlankZeroedAndUniformMemoryIsNoRecord) {
+TEST(Record, MemoryWithTheSameValueInAllBytesIsNotARecord) {
   for (unsigned value = 0; value < 256; ++value) {
     const Record record = filled_with(static_cast<std::uint8_t>(value));
     EXPECT_FALSE(is_good(the_model(), record)) << value;
@@ -143,7 +143,7 @@ TEST(Record, BlankZeroedAndUniformMemoryIsNoRecord) {
   }
 }
 
-TEST(Record, ARecordWithImpossibleSettingsIsInvalidDespiteACorrectCheck) {
+TEST(Record, ARecordWithImpossibleSettingsOrAnotherLayoutIsInvalidDespiteACorrectCheck) {
   struct Bad {
     const char* what;
     std::size_t at;

@@ -1,4 +1,5 @@
-// Tests that the keeper stores changed settings and retries after a failure: wire.md section 8, D6 and D15.
+// Tests that SettingsKeeper stores changed settings, finishes an update, invalidates refused copies and
+// retries after a failure: wire.md section 8, D6 and D15.
 #include "firmware/settings/settings_keeper.hpp"
 
 #include <gtest/gtest.h>
@@ -25,7 +26,6 @@ class SettingsKeeperTest : public testing::Test {
     drive_memory();
   }
   void pass(Duration time) { now_ = now_ + time; }
-  /// Returns the number of writes to the memory.
   [[nodiscard]] std::size_t writes() const { return memory_.writes.size(); }
 
   FakeMemory memory_;
@@ -40,7 +40,7 @@ TEST(SettingsKeeperAtReset, IsLoadingAndBusyAtFirst) {
   EXPECT_TRUE(keeper.busy());
 }
 
-TEST_F(SettingsKeeperTest, ABlankMemoryHasFactorySettingsAndIsNotUnreadable) {
+TEST_F(SettingsKeeperTest, ABlankMemoryMeansFactorySettingsAndIsNotUnreadable) {
   EXPECT_FALSE(keeper_.loading());
   EXPECT_FALSE(keeper_.unreadable());
   EXPECT_TRUE(keeper_.stored() == factory());
@@ -127,8 +127,10 @@ TEST_F(SettingsKeeperTest, ACommandThatCannotBeStoredDoesNotPostponeTheRetry) {
   EXPECT_TRUE(keeper_.busy()) << "a second after the first failure";
 }
 
-// A record may take four pages of 10 ms each. Three failed attempts of the keeper and three of the command
-// would take more than the 200 ms within which the reply to the command must begin.
+// wire.md D15. A save of four pages that fails at the third attempt may write six pages and then invalidates
+// the copy. Each page may take 10 ms, and its transfers on the bus take time too. Two such saves, one without
+// a command and one for the command, could therefore take more than the 200 ms within which the reply to the
+// command must begin.
 TEST_F(SettingsKeeperTest, ASaveForWhichACommandWaitsEndsAtItsNextFailure) {
   keeper_.settings_changed();
   keeper_.poll(numbered(5), now_);
@@ -164,7 +166,7 @@ TEST_F(SettingsKeeperTest, ACopyThatMayHoldRefusedSettingsIsInvalidated) {
   EXPECT_TRUE(Boot(memory_).stored() == numbered(5));
 }
 
-// wire.md section 8: the power failed during the first store after an update, before the old copies were
+// wire.md section 8: the power failed during the first store after a firmware update, before the old copy was
 // invalidated.
 TEST_F(SettingsKeeperTest, AnUpdateIsFinishedWithoutACommandAndNotRetriedForever) {
   FakeMemory memory;
@@ -179,7 +181,7 @@ TEST_F(SettingsKeeperTest, AnUpdateIsFinishedWithoutACommandAndNotRetriedForever
   drive_it();
   EXPECT_TRUE(keeper.stored() == numbered(6));
   EXPECT_FALSE(keeper.certain());
-  memory.unanswered_writes = 4;  // three attempts, and the write that would invalidate their place
+  memory.unanswered_writes = 4;  // three attempts, and the write that would invalidate the copy
   keeper.poll(numbered(6), now_);
   ASSERT_TRUE(keeper.busy());
   drive_it();
@@ -194,8 +196,9 @@ TEST_F(SettingsKeeperTest, AnUpdateIsFinishedWithoutACommandAndNotRetriedForever
   EXPECT_FALSE(keeper.retry().armed());
   EXPECT_TRUE(keeper.certain());
   EXPECT_TRUE(Boot(memory).stored() == numbered(6));
-  // The six writes are three attempts to save, one failed attempt to invalidate their place, one write that
-  // invalidates the old copy, and one that invalidates the place a second later.
+  // The six writes are three failed attempts to save, one failed attempt to invalidate the copy of that save,
+  // one write that invalidates the old copy, and, one second later, one write that invalidates the copy of
+  // the failed save.
   EXPECT_EQ(memory.writes.size(), 6U);
   keeper.poll(numbered(6), now_ + milliseconds(5000));
   EXPECT_FALSE(keeper.busy());
@@ -270,7 +273,7 @@ TEST_F(SettingsKeeperTest, ACommandIsStoredWithoutWaitingForTheNextRetry) {
   memory_.unanswered_writes = 4;
   keeper_.poll(numbered(5), now_);
   drive_memory();
-  store(numbered(6));  // before the keeper has polled its failed save
+  store(numbered(6));  // before `poll` has processed the failed save
   EXPECT_TRUE(keeper_.saved());
   keeper_.poll(numbered(6), now_);
   EXPECT_FALSE(keeper_.busy());

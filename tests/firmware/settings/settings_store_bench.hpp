@@ -1,4 +1,4 @@
-// A memory that can fail, and a module's settings store on it, for tests of the store.
+// A simulated memory that can fail, and a settings store that uses this memory, for tests.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -18,9 +18,10 @@ using Found = SettingsStore::Found;
 
 inline constexpr std::size_t kPage = 32;
 inline constexpr std::size_t kAttempts = 3;
-/// Three reads at the first place, and one at each of the other three places.
+/// The number of reads with which a store loads from a memory that never answers: three reads at the first
+/// place, and one at each of the other three places.
 inline constexpr std::size_t kReadsOfASilentMemory = kAttempts + 3;
-inline constexpr std::size_t kStuckCell = 4;  // offset in a page; a record stores the module's address there
+inline constexpr std::size_t kStuckCell = 4;  // offset in a page; in its first page, a record contains the address there
 
 inline const Model& model(std::string_view designation) { return *find_model(designation); }
 
@@ -28,7 +29,7 @@ inline const Model& the_model() { return model("EX9042D-M"); }
 
 inline Settings factory() { return Settings::factory(the_model()); }
 
-/// Returns settings that differ for each `number`.
+/// Returns settings that differ for each `number` below 2,000,000.
 inline Settings numbered(unsigned number) {
   Settings settings = factory();
   settings.address = static_cast<std::uint8_t>(1 + number % 247);
@@ -37,7 +38,8 @@ inline Settings numbered(unsigned number) {
   return settings;
 }
 
-/// A memory of a few pages. Its public members determine how it fails, and record what it has done.
+/// A memory of kStoredMemory bytes in pages of kPage bytes. Its public members determine how it fails, and
+/// record what it has done.
 class FakeMemory {
  public:
   enum class Garbage { None, Zeroes, Ones, MixedWithOld, MixedWithNew };
@@ -63,8 +65,8 @@ class FakeMemory {
   std::size_t noisy_reads = 0;        ///< number of the next reads that return a wrong bit
   std::size_t unanswered_writes = 0;  ///< number of the next writes that the memory does not answer
   bool unanswered_but_done = false;   ///< the memory stores the data of writes that it does not answer
-  bool stuck = false;                 ///< the settings' address cannot be written, in any page
-  std::optional<std::size_t> power;   ///< the power fails after this many more bytes are written
+  bool stuck = false;                 ///< the byte at kStuckCell cannot be written in any page
+  std::optional<std::size_t> power;   ///< if set, the power fails after this many more bytes are written
   Garbage garbage = Garbage::None;    ///< content of the byte that is being written when the power fails
   std::vector<std::uint16_t> reads;   ///< addresses of all reads
   std::vector<std::uint16_t> writes;  ///< addresses of all writes
@@ -109,7 +111,7 @@ class FakeMemory {
       ++bytes_written;
     }
     if (power && *power == 0) {
-      return std::nullopt;  // all bytes are written, but the firmware gets no answer
+      return std::nullopt;  // all bytes of the job are written, but the firmware gets no answer
     }
     return answers;
   }
@@ -131,7 +133,8 @@ class FakeMemory {
   }
 };
 
-/// Runs all memory jobs of the store. Returns false if the power failed.
+/// Runs all memory jobs of the store. Returns false if the power failed, or if the store is still busy after
+/// 100 jobs, which is a failure of the test.
 inline bool drive(SettingsStore& store, FakeMemory& memory) {
   for (int jobs = 0; store.busy(); ++jobs) {
     if (jobs == 100) {
@@ -167,7 +170,7 @@ class Boot {
   SettingsStore store_;
 };
 
-/// The addresses of the two copies, and those of older layouts.
+/// The addresses of the two copies of the present layout, and of the two copies of older layouts.
 inline constexpr std::uint16_t kCopies[] = {0x080, 0x100};
 inline constexpr std::uint16_t kOldCopies[] = {0x000, 0x020};
 
@@ -184,7 +187,7 @@ inline void put_old(FakeMemory& memory, std::size_t copy, const Settings& settin
   put_layout_2(the_model(), settings, sequence, memory.cells.data(), kOldCopies[copy]);
 }
 
-/// Stores a record of newer firmware that has `length` bytes of settings.
+/// Stores a record with `length` bytes of settings, which may be more than this firmware supports.
 inline void put_longer(FakeMemory& memory, std::size_t copy, const Settings& settings, std::uint16_t sequence,
                        std::uint8_t length) {
   put(memory, copy, settings, sequence);
@@ -193,7 +196,7 @@ inline void put_longer(FakeMemory& memory, std::size_t copy, const Settings& set
 
 inline void corrupt(FakeMemory& memory, std::size_t copy) { memory.cells[kCopies[copy] + 5U] ^= 0x01U; }
 
-/// Each function makes at least the next three attempts of a save fail, each function in another way.
+/// Functions that make at least the next three attempts of a save fail, each in a different way.
 inline const std::vector<void (*)(FakeMemory&)> kFailures{
     [](FakeMemory& memory) { memory.noisy_reads = kAttempts; },
     [](FakeMemory& memory) { memory.failing_reads = kAttempts; },

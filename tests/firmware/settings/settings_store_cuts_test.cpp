@@ -108,7 +108,7 @@ TEST_F(PowerCuts, ACutAtAnyByteOfAFailingSaveLeavesTheOldOrTheNewSettings) {
         fail(memory);
         return memory;
       };
-      // Only the save fails; the load before it succeeded.
+      // Only the save fails; the load before the save succeeds.
       const auto cut_at = [&](std::optional<std::size_t> cut) {
         FakeMemory memory = beginning;
         Boot run(memory);

@@ -12,7 +12,7 @@
 namespace ex9000 {
 namespace {
 
-TEST(SettingsStore, AWriteThatReadsBackDifferentlyIsTriedUpToThreeTimes) {
+TEST(SettingsStore, AWriteThatReadsBackDifferentlyOnceOrTwiceIsRepeated) {
   for (std::size_t noisy = 1; noisy < kAttempts; ++noisy) {
     FakeMemory memory;
     Boot run(memory);
@@ -23,7 +23,7 @@ TEST(SettingsStore, AWriteThatReadsBackDifferentlyIsTriedUpToThreeTimes) {
   }
 }
 
-TEST(SettingsStore, AWriteThatIsNotAnsweredIsTriedUpToThreeTimes) {
+TEST(SettingsStore, AWriteThatIsNotAnsweredOnceOrTwiceIsRepeated) {
   for (std::size_t unanswered = 1; unanswered < kAttempts; ++unanswered) {
     FakeMemory memory;
     Boot run(memory);
@@ -102,8 +102,8 @@ TEST(SettingsStore, AFailedSaveDoesNotWriteTheCopyThatHoldsTheOldSettings) {
   }
 }
 
-/// Ends `count` jobs of the store, one after the other. If `answered` is true, reads return garbage; if it is
-/// false, the memory does not answer.
+/// Ends `count` jobs of the store, one after the other. If `answered` is true, the memory answers, and reads
+/// return garbage. If `answered` is false, the memory does not answer.
 void end_jobs(SettingsStore& store, bool answered, int count) {
   for (int i = 0; i < count; ++i) {
     const MemoryJob job = store.job();
@@ -114,13 +114,13 @@ void end_jobs(SettingsStore& store, bool answered, int count) {
   }
 }
 
-TEST(SettingsStore, TheUncertainCopyIsInvalidatedAndNotTheLastReadCopy) {
+TEST(SettingsStore, TheCopyOfAFailedSaveIsInvalidatedAndNotTheLastReadCopy) {
   constexpr int kAllReads = 4 * static_cast<int>(kAttempts);
   SettingsStore store(the_model());
   end_jobs(store, false, static_cast<int>(kReadsOfASilentMemory));
   ASSERT_EQ(store.found(), SettingsStore::Found::Unreadable);
   store.begin_saving(numbered(1));
-  end_jobs(store, true, kAllReads);  // all copies are garbage
+  end_jobs(store, true, kAllReads);  // three reads of each of the four places return garbage
   const std::uint16_t invalidated = store.job().address;
   for (std::size_t attempt = 0; attempt < kAttempts; ++attempt) {
     end_jobs(store, true, 1);   // the write succeeds
@@ -131,7 +131,7 @@ TEST(SettingsStore, TheUncertainCopyIsInvalidatedAndNotTheLastReadCopy) {
 
   store.begin_saving(numbered(2));
   end_jobs(store, true, 3);
-  end_jobs(store, false, 3);  // the second copy does not answer
+  end_jobs(store, false, 3);  // the memory does not answer at the second place
   ASSERT_FALSE(store.busy());
   ASSERT_TRUE(store.needs_invalidation());
   store.begin_invalidating();

@@ -20,7 +20,7 @@ TEST(SettingsStore, ReadsTheFirstPageOfEachPlaceOfABlankMemoryOnce) {
   EXPECT_EQ(memory.reads, (std::vector<std::uint16_t>{kCopies[0], kCopies[1], kOldCopies[0], kOldCopies[1]}));
 }
 
-TEST(SettingsStore, LoadsFromTheBeginningUntilAllCopiesAreRead) {
+TEST(SettingsStore, IsLoadingUntilAllCopiesAreRead) {
   FakeMemory memory;
   SettingsStore store(the_model());
   EXPECT_TRUE(store.loading());
@@ -41,7 +41,7 @@ TEST(SettingsStore, RequestsTheSameJobUntilItIsDone) {
   EXPECT_EQ(first.bytes.size, second.bytes.size);
 }
 
-TEST(SettingsStore, FindsFactorySettingsOfEveryModelInABlankMemory) {
+TEST(SettingsStore, UsesTheFactorySettingsOfEachModelIfTheMemoryIsBlank) {
   for (const Model& each : kModels) {
     FakeMemory memory;
     const Boot run(memory, each);
@@ -51,7 +51,7 @@ TEST(SettingsStore, FindsFactorySettingsOfEveryModelInABlankMemory) {
   }
 }
 
-TEST(SettingsStore, FindsTheOnlyGoodCopyBesideABlankOne) {
+TEST(SettingsStore, FindsTheOnlyGoodCopyBesideABlankPlace) {
   for (const std::size_t copy : {0U, 1U}) {
     FakeMemory memory;
     put(memory, copy, numbered(5), 7);
@@ -104,7 +104,7 @@ TEST(SettingsStore, TwoCorruptedCopiesAreUnreadableAndStayAsTheyAre) {
   EXPECT_TRUE(memory.writes.empty());
 }
 
-TEST(SettingsStore, ACorruptedCopyBesideABlankOneIsUnreadable) {
+TEST(SettingsStore, ACorruptedCopyBesideABlankPlaceIsUnreadable) {
   for (const std::size_t copy : {0U, 1U}) {
     FakeMemory memory;
     put(memory, copy, numbered(5), 7);
@@ -124,7 +124,7 @@ TEST(SettingsStore, SettingsOfAnotherModelAreUnreadable) {
   EXPECT_TRUE(run.stored() == factory());
 }
 
-TEST(SettingsStore, AReadThatFailsIsTriedUpToThreeTimes) {
+TEST(SettingsStore, AReadThatFailsOnceOrTwiceIsRepeated) {
   for (std::size_t failing = 1; failing < kAttempts; ++failing) {
     FakeMemory memory;
     put(memory, 0, numbered(5), 8);
@@ -137,7 +137,7 @@ TEST(SettingsStore, AReadThatFailsIsTriedUpToThreeTimes) {
   }
 }
 
-TEST(SettingsStore, AReadOfInvalidDataIsTriedUpToThreeTimes) {
+TEST(SettingsStore, AReadThatReturnsInvalidDataOnceOrTwiceIsRepeated) {
   for (std::size_t noisy = 1; noisy < kAttempts; ++noisy) {
     FakeMemory memory;
     put(memory, 0, numbered(5), 8);
@@ -171,7 +171,7 @@ TEST(SettingsStore, AfterAnUnreadableCopyANoisyReadOfTheOtherIsRetried) {
   EXPECT_TRUE(store.stored() == numbered(6));
 }
 
-TEST(SettingsStore, EachCopyIsReadUpToThreeTimesAfterABadOneToo) {
+TEST(SettingsStore, AfterACorruptedCopyAReadOfTheOtherThatFailsTwiceIsRepeated) {
   FakeMemory memory;
   put(memory, 0, numbered(5), 8);
   corrupt(memory, 0);
@@ -282,7 +282,7 @@ TEST(SettingsStore, SequenceNumbersWrapWithoutLosingASave) {
   }
 }
 
-TEST(SettingsStore, ManySavesFromOneResetWrapTheSequenceToo) {
+TEST(SettingsStore, SeveralSavesWithoutAResetBetweenThemWrapTheSequenceToo) {
   FakeMemory memory;
   put(memory, 1, numbered(1000), 0xFFFE);
   Boot run(memory);
@@ -292,8 +292,8 @@ TEST(SettingsStore, ManySavesFromOneResetWrapTheSequenceToo) {
   }
 }
 
-// A reply means that the settings are stored, even if the memory did not answer at reset.
-TEST(SettingsStore, SettingsSavedAfterASilentMemoryAtResetAreFoundAtTheNextLoad) {
+// A valid reply means that the settings are stored, even if the memory did not answer at reset.
+TEST(SettingsStore, SettingsSavedAfterTheMemoryDidNotAnswerAtResetAreFoundAtTheNextLoad) {
   FakeMemory memory;
   put(memory, 0, numbered(5), 700);
   put(memory, 1, numbered(6), 701);
@@ -318,7 +318,7 @@ TEST(SettingsSource, ReportsTheStateOfTheCopies) {
   FakeMemory memory;
   EXPECT_EQ(source_of(memory), Source::Blank);
   put(memory, 0, numbered(5), 7);
-  EXPECT_EQ(source_of(memory), Source::Good);  // the other copy is blank
+  EXPECT_EQ(source_of(memory), Source::Good);  // the other place is blank
   put(memory, 1, numbered(6), 8);
   EXPECT_EQ(source_of(memory), Source::Good);
   corrupt(memory, 0);

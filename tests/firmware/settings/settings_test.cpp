@@ -1,5 +1,5 @@
-// Tests the factory settings, the settings that are possible for a model, and changes by commands (wire.md
-// sections 2, 4, 7 and 8).
+// Tests the factory settings, names, the settings that are possible for a model, changes of settings, and
+// comparisons (wire.md sections 1, 2, 4, 7 and 8, and firmware/extensions.md).
 #include "firmware/settings/settings.hpp"
 
 #include <gtest/gtest.h>
@@ -76,7 +76,7 @@ TEST(Name, EqualsOnlyANameWithTheSameCharacters) {
   EXPECT_FALSE(Name("9042") == Name("9042 "));
 }
 
-TEST(Name, ConsistsOfCharactersFrom20To7E) {
+TEST(Name, NameCharactersAreThoseFrom20To7E) {
   for (unsigned character = 0; character < 256; ++character) {
     EXPECT_EQ(Name::is_name_character(static_cast<std::uint8_t>(character)),
               character >= 0x20 && character <= 0x7E);
@@ -151,7 +151,7 @@ TEST_F(Possible, OutputValuesHaveOnlyTheModelsChannels) {
   }
 }
 
-TEST_F(Possible, ANameHas1To6Characters) {
+TEST_F(Possible, ANameOfAnEX9042DMHas1To6Characters) {
   settings_.name = Name();
   EXPECT_FALSE(possible());
   settings_.name = Name("A");
@@ -200,7 +200,7 @@ TEST_F(Possible, TheTimeoutStatusIsPossibleWithAnEnabledAndADisabledWatchdog) {
 
 // --- changes ---
 
-/// Returns the change that `name` makes, starting from an empty change.
+/// Calls the function `name` with an empty change, and returns the change with the values that `name` has set.
 template <class Naming>
 SettingsChange change(Naming name) {
   SettingsChange change;
@@ -265,7 +265,7 @@ TEST(SettingsChange, AChangeOfOneFieldChangesThatFieldAlone) {
   }
 }
 
-TEST(SettingsChange, AChangeOfAnyFieldMakesTheSettingsUnequal) {
+TEST(SettingsChange, AChangeOfOneFieldMakesTheSettingsUnequal) {
   const Settings factory = Settings::factory(model("EX9042D-M"));
   for (const FieldChange& each : changes_of_each_field(factory)) {
     EXPECT_TRUE(each.change.applied_to(factory) != factory) << each.field;
@@ -362,7 +362,7 @@ TEST(SettingsChange, AClearedChangeChangesOnlyWhatIsSetAfterwards) {
 
 // --- comparison ---
 
-TEST(Settings, DifferIfAnyFieldDiffers) {
+TEST(Settings, AreUnequalIfDifferentFieldsWereChanged) {
   const Settings factory = Settings::factory(model("EX9042D-M"));
   const std::vector<FieldChange> changes = changes_of_each_field(factory);
   for (const FieldChange& one : changes) {
@@ -372,7 +372,7 @@ TEST(Settings, DifferIfAnyFieldDiffers) {
   }
 }
 
-TEST(Settings, AreAllZerosAtFirst) {
+TEST(Settings, UpToTheSafeValueAreZeroOrEmptyAtFirst) {
   const Settings untouched;
   EXPECT_EQ(untouched.address, 0);
   EXPECT_EQ(untouched.baud_code, 0);
@@ -386,7 +386,8 @@ TEST(Settings, AreAllZerosAtFirst) {
   EXPECT_EQ(untouched.safe_value, 0);
 }
 
-// firmware/extensions.md.
+// --- extensions: firmware/extensions.md ---
+
 TEST_F(Possible, AFilterTimeIsAtMost2000MsAndOnlyForAnInputOfTheModel) {
   use("EX9052D");
   for (const unsigned channel : {0U, 7U}) {

@@ -1,5 +1,5 @@
-// Tests power cuts during the first save after an update, and during the save of a long record: wire.md
-// section 8, "The power may fail at any time, also during a write."
+// Tests power cuts during the first save after a firmware update, and during the save of a long record:
+// wire.md section 8, "The power may fail at any time, also during a write."
 #include <gtest/gtest.h>
 
 #include <cstddef>
@@ -100,8 +100,8 @@ TEST(UpdateCuts, ACutAtAnyPointOfTheFirstStoreLeavesTheOldOrTheNewSettings) {
   std::printf("power cuts: %zu\n", cuts);
 }
 
-// The number of pairs grows with the square of the bytes written, so this is a random sample with a fixed
-// seed.
+// The number of pairs of cuts grows with the square of the number of written bytes, so this test uses a random
+// sample with a fixed seed.
 TEST(UpdateCuts, TwoCutsInARowLeaveTheOldOrTheNewSettings) {
   constexpr int kPairs = 4000;
   std::mt19937 random(kSeed);
@@ -117,8 +117,8 @@ TEST(UpdateCuts, TwoCutsInARowLeaveTheOldOrTheNewSettings) {
       ASSERT_TRUE(between == numbered(200) || (!saved && between == beginning.settings));
       const bool saved_again = cut(memory, numbered(300), second, garbage());
       const Settings found = come_up(memory);
-      // The first cut may leave a page with a single wrong byte. This page becomes valid when the second
-      // store writes that byte, so the settings of the first store may be found.
+      // If the power fails in two successive stores, the module may use the settings of the first of them
+      // (wire.md section 8).
       ASSERT_TRUE(found == numbered(300) || (!saved_again && (found == between || found == numbered(200))))
           << beginning.what << ", cut after byte " << first << ", then " << second << " (seed " << kSeed
           << ")";
@@ -128,7 +128,7 @@ TEST(UpdateCuts, TwoCutsInARowLeaveTheOldOrTheNewSettings) {
   }
 }
 
-/// Cuts the power at every byte of a save, with each file in stored_bytes/ as the memory before the save.
+// The power fails at every byte of a save. Each file in stored_bytes/ is the memory before the save.
 TEST(UpdateCuts, ACutWithDataOfEarlierFirmwareLeavesTheOldOrTheNewSettings) {
   for (const StoredBytes& stored : all_stored_bytes()) {
     Settings changed = stored.settings;

@@ -89,8 +89,8 @@ TEST(SettingsAfterAnUpdate, AFirstStoreThatFailsKeepsTheOldCopies) {
   }
 }
 
-/// The power failed after the new copy was written, and perhaps verified, but before the old copies were
-/// invalidated.
+// The power failed after the new copy was written, and perhaps verified, but before the old copies were
+// invalidated.
 TEST(SettingsAfterAnUpdate, OldCopiesStayValidUntilTheSettingsAreSavedAgain) {
   FakeMemory memory = updated();
   put(memory, 0, numbered(9), 9);
@@ -123,8 +123,9 @@ TEST(SettingsAfterAnUpdate, NothingIsUnfinishedInAMemoryWithoutACopy) {
   EXPECT_FALSE(store.update_unfinished());
 }
 
-/// The new copy was written with too little charge, so it can be read only once.
-TEST(SettingsAfterAnUpdate, OldCopiesAreUsedIfTheNewCopyFadesBeforeItIsSavedAgain) {
+// The power failure left too little charge in the memory cells of the new copy, so the copy can be read only
+// once.
+TEST(SettingsAfterAnUpdate, OldCopiesAreUsedIfTheNewCopyBecomesUnreadableBeforeTheSettingsAreSavedAgain) {
   FakeMemory memory = updated();
   put(memory, 0, numbered(9), 9);
   SettingsStore store(the_model());
@@ -134,7 +135,8 @@ TEST(SettingsAfterAnUpdate, OldCopiesAreUsedIfTheNewCopyFadesBeforeItIsSavedAgai
   EXPECT_TRUE(Boot(memory).stored() == numbered(6));
 }
 
-/// The other place cannot be written. The old copies must not be used again even if the new copy fails later.
+// The second place for copies of layout 3 cannot be written. The old copies must not be used again even if
+// the new copy becomes unreadable later.
 TEST(SettingsAfterAnUpdate, OldCopiesAreInvalidatedIfTheSettingsCannotBeSavedAgain) {
   FakeMemory memory = updated();
   put(memory, 0, numbered(9), 9);
@@ -150,9 +152,9 @@ TEST(SettingsAfterAnUpdate, OldCopiesAreInvalidatedIfTheSettingsCannotBeSavedAga
   EXPECT_TRUE(Boot(memory).stored() == numbered(9));
 }
 
-/// No place answered at reset, so the factory settings are in force. They must never be stored unless a
-/// command requests it.
-TEST(SettingsAfterAnUpdate, NothingIsUnfinishedWhileTheMemoryCannotBeRead) {
+// The memory did not answer at reset, so the factory settings are in force. The module must not store them in
+// order to finish the update.
+TEST(SettingsAfterAnUpdate, NothingIsUnfinishedWhileTheSettingsAreUnreadable) {
   FakeMemory memory = updated();
   put(memory, 0, numbered(9), 9);
   memory.failing_reads = kReadsOfASilentMemory;
@@ -189,7 +191,7 @@ TEST(SettingsAfterAnUpdate, InvalidatingAnOldCopyIsRetried) {
   expect_no_old_copy_counts(memory);
 }
 
-TEST(SettingsAfterAnUpdate, ANewCopyIsUsedForAnySequenceNumberOfAnOldCopy) {
+TEST(SettingsAfterAnUpdate, ANewCopyWithAnySequenceNumberIsUsedInsteadOfOldCopies) {
   for (const unsigned sequence : {0U, 1U, 0x7FFFU, 0x8000U, 0xFFFFU}) {
     FakeMemory memory = updated();
     put(memory, 1, numbered(9), static_cast<std::uint16_t>(sequence));
@@ -197,7 +199,7 @@ TEST(SettingsAfterAnUpdate, ANewCopyIsUsedForAnySequenceNumberOfAnOldCopy) {
   }
 }
 
-TEST(SettingsAfterAnUpdate, OldCopiesAreNotUsedAfterAStoreEvenIfTheMemoryWasSilentAtReset) {
+TEST(SettingsAfterAnUpdate, OldCopiesAreNotUsedAfterAStoreEvenIfTheMemoryDidNotAnswerAtReset) {
   FakeMemory memory = updated();
   memory.failing_reads = kReadsOfASilentMemory;
   Boot run(memory);

@@ -1,10 +1,10 @@
 // Reads the files in stored_bytes/: memory contents that this firmware and earlier versions of it have
 // stored. Each file is committed once and never regenerated, so that it keeps the bytes that modules in the
-// field can contain, even if the firmware changes and would store other bytes.
+// field can contain, even if the firmware changes and would store other bytes. The lines of a file:
 //
 //     # comment
 //     model DESIGNATION
-//     at ADDRESS          hex; the bytes that follow begin there, all others are FF
+//     at ADDRESS          hex; the bytes that follow begin there; bytes that the file does not contain are FF
 //       BYTES
 //     settings            the settings of a module with this memory follow; values are hex, except the name
 //       NAME VALUE
@@ -80,7 +80,7 @@ inline StoredBytes read_stored_bytes(const std::filesystem::path& path) {
 }
 
 /// Reads all files. Checks that there are at least `kAtLeast` files; increase `kAtLeast` when you add files.
-/// Throws std::runtime_error if a file names an unknown model.
+/// Throws std::runtime_error if a file names an unknown model or no model.
 inline std::vector<StoredBytes> all_stored_bytes() {
   constexpr std::size_t kAtLeast = 62;
   std::vector<StoredBytes> all;

@@ -23,14 +23,15 @@ using std::chrono::nanoseconds;
 
 constexpr std::uint32_t kHertz = 50'000'000;
 
-/// The longest permitted time of a job. It consists of two pages of 10 ms each, their bytes, and the time to
-/// free the bus.
+/// The longest permitted time of a job. It allows for two pages that take 10 ms each to program, for the
+/// transfer of their bytes, and for the time to free the bus.
 constexpr milliseconds kLongestJob{40};
 /// The greatest permitted number of register accesses in a turn of the main loop.
 constexpr std::uint64_t kMostAccessesATurn = 24;
 
-/// The driver and a main loop. The main loop makes a turn after each interrupt, every millisecond, and
-/// immediately if the driver requests another turn.
+/// The driver and a main loop. The main loop makes a turn after each interrupt. Without an interrupt, it
+/// makes the next turn 1 ms after a turn, or 2 us after a turn in which the driver has requested another
+/// turn.
 template <Family family>
 class Bench {
  public:
@@ -69,7 +70,7 @@ class Bench {
     driver->start_write(address, {bytes.data(), bytes.size()}, now());
     return finish();
   }
-  /// Runs until the job is over. Returns whether it succeeded.
+  /// Runs until the job is over, but for at most about kLongestJob. Returns whether the job succeeded.
   bool finish() {
     const Instant patience = wires->timeline.now() + kLongestJob;
     while (driver->busy() && wires->timeline.now() < patience) {
@@ -114,8 +115,8 @@ class Bench {
     driver->master().start();
   }
 
-  /// Runs one turn of the main loop, and then the time until the next turn. Stops at `end` at the latest, so
-  /// that a test can continue in the middle of a byte.
+  /// Runs one turn of the main loop, and then lets time pass until the next turn. Stops at `end` at the
+  /// latest, so that a test can continue in the middle of a byte.
   void turn(Instant end = kNever) {
     woken_ = false;
     const std::uint64_t before = mcu->accesses();
@@ -138,8 +139,9 @@ class Bench {
   std::optional<EepromChip> eeprom;
   std::optional<Microcontroller> mcu;
   std::optional<Driver> driver;
-  unsigned clocks = 0;  ///< since the last reset
-  unsigned clocks_before_start = 0;
+  // Counts since the last reset.
+  unsigned clocks = 0;               ///< rising edges of the clock line
+  unsigned clocks_before_start = 0;  ///< `clocks` at the first START
   unsigned starts = 0;
   unsigned stops = 0;
 };
@@ -175,7 +177,7 @@ class Eeprom : public testing::Test {
   using TheBench = Bench<Kind::kFamily>;
   static TheBench make() { return TheBench(Kind::kBehaviour); }
 
-  /// Checks that the driver works normally.
+  /// Checks that the driver can write 40 bytes and read them back.
   static void expect_works(TheBench& bench, unsigned seed) {
     const auto bytes = some_bytes(40, seed);
     EXPECT_TRUE(bench.write(0x0150, bytes));
@@ -231,8 +233,8 @@ TYPED_TEST(Eeprom, AWriteEndsAfterTheLastPageIsProgrammed) {
   }
 }
 
-// A page is programmed from its STOP on, after the 3 ms that its bytes take at 100 kHz, for at most 10 ms
-// (tWR, doc. 0336, "AC characteristics").
+// The bytes of a page take about 3 ms at 100 kHz. After the STOP, the EEPROM takes at most 10 ms to program
+// them (tWR, doc. 0336, "AC characteristics").
 TYPED_TEST(Eeprom, PagesAreWrittenWithTheLongestProgrammingTimeOfTheDataSheet) {
   for (const std::size_t pages : {1U, 2U}) {
     typename TestFixture::TheBench bench(TypeParam::kBehaviour);
@@ -281,7 +283,7 @@ TYPED_TEST(Eeprom, AMissingEepromFailsEveryJobWithoutAHang) {
   }
 }
 
-TYPED_TEST(Eeprom, AWriteWithAnyByteNotAcknowledgedFailsAndProgramsNothing) {
+TYPED_TEST(Eeprom, AWriteWithAnyByteAfterTheFirstNotAcknowledgedFailsAndProgramsNothing) {
   for (unsigned taken = 1; taken < 20; ++taken) {
     typename TestFixture::TheBench bench(TypeParam::kBehaviour);
     bench.eeprom->refuse_after(taken);
@@ -402,7 +404,7 @@ TYPED_TEST(Eeprom, AStuckLineFailsEveryJobInBoundedTimeUntilItIsReleased) {
     }
     net.drive(End::Fault, Drive::Nothing);
     bench.run_for(milliseconds(1));
-    // The job that was in progress when the bus became free may fail; the next one must not.
+    // The first job after the release may fail; the next one must not.
     std::vector<std::uint8_t> bytes(1);
     bench.read(0, bytes);
     TestFixture::expect_works(bench, 5);
@@ -431,10 +433,11 @@ TYPED_TEST(Eeprom, ALineStuckForAShortTimeCausesNoFalseSuccessAndNoLastingFailur
         }
         bench.run_for(milliseconds(10));
         std::vector<std::uint8_t> back(20);
-        // The job that finds the bus stuck has to free it and may fail; the next one must succeed.
+        // A job that finds the bus blocked frees it and may fail; the next job must succeed.
         const bool first = bench.read(0x0200, back);
         if (first) {
-          EXPECT_TRUE(std::equal(back.begin(), back.end(), bench.memory.begin() + 0x0200)) << "read wrong";
+          EXPECT_TRUE(std::equal(back.begin(), back.end(), bench.memory.begin() + 0x0200))
+              << "reported as read, but wrong";
         }
         TestFixture::expect_works(bench, 9);
         EXPECT_FALSE(net.was_shorted());

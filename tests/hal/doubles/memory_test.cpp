@@ -1,4 +1,4 @@
-// Tests the double of an EEPROM: the file of a simulated module must have the content of its memory.
+// Tests the double of an EEPROM: after a power failure, the bytes that it has saved must equal its contents.
 #include "hal/doubles/memory.hpp"
 
 #include <gtest/gtest.h>

@@ -40,10 +40,11 @@ inline Page numbered(unsigned number) {
   return page;
 }
 
-/// A page store from a reset on. `read`, `write` and `page` run the main loop until their result is
+/// A page store with its main loop. `read`, `write` and `page` run the main loop until their result is
 /// available.
 class Session {
  public:
+  /// Begins as after a reset. `chip` must outlive this object.
   explicit Session(FlashChip& chip) : chip_(chip) { store_.flash().chip = &chip; }
   /// Continues with a copy of `store`. `chip` is the chip of `store` or a copy of that chip.
   Session(FlashChip& chip, const Store& store) : chip_(chip), store_(store) { store_.flash().chip = &chip; }
@@ -67,7 +68,8 @@ class Session {
     return page;
   }
 
-  /// Runs the main loop until the job is over. Returns whether it succeeded.
+  /// Runs the main loop until the job is over. Returns whether the job succeeded. If the job takes more than
+  /// 1 s, fails the test and returns false. Sets `latency` if the job ends in time.
   bool finish() {
     const std::uint64_t began = chip_.now;
     while (store_.busy()) {
@@ -80,7 +82,7 @@ class Session {
     latency = chip_.now - began;
     return store_.succeeded();
   }
-  /// Runs the main loop for a time.
+  /// Runs the main loop for at least `microseconds`.
   void run(std::uint64_t microseconds) {
     for (const std::uint64_t end = chip_.now + microseconds; chip_.now < end;) {
       turn();
@@ -96,7 +98,7 @@ class Session {
       }
     }
   }
-  /// Runs one turn of the main loop, and then advances the time to the next turn.
+  /// Calls `poll`, and again every 10 us while it returns true. Then lets kMemoryPollPeriod pass.
   void turn() {
     constexpr std::uint64_t kTurn = 10;  // us
     while (store_.poll(chip_.time())) {
@@ -106,7 +108,7 @@ class Session {
   }
 
   Store& store() { return store_; }
-  std::uint64_t latency = 0;  ///< us, of the last job
+  std::uint64_t latency = 0;  ///< duration of the last job in us
 
  private:
   FlashChip& chip_;

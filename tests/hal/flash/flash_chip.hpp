@@ -1,6 +1,6 @@
 // A model of a NOR flash, written from the W25Q16JV data sheet: 7.1 (status registers), 8.2 (instructions),
-// "AC electrical characteristics". A test fails if the store does something that the data sheet does not
-// allow.
+// "AC electrical characteristics". The expectations in the model make a test fail if the page store uses the
+// flash incorrectly, for example if it reads while the flash is busy.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@
 
 namespace ex9000::hal::flash {
 
-/// Thrown when the power fails at the end of an operation.
+/// Thrown when the power fails at the time when an operation would end.
 struct PowerFailure {};
 
 /// The state in which a power failure leaves the bytes of an operation.
@@ -27,7 +27,7 @@ struct Tear {
     Nothing,  ///< all bytes are old
     Prefix,   ///< the first `prefix` bytes are new, the others are old
     Bits,     ///< random bits are new
-    Garbage,  ///< erase: random bytes; program: as Prefix, but with random bits in the other bytes
+    Garbage,  ///< erase: all bytes are random; program: as Prefix, but random bits of the others are new
     All,      ///< all bytes are new, but the operation has not ended
   };
   static constexpr Kind kEveryKind[] = {Kind::Nothing, Kind::Prefix, Kind::Bits, Kind::Garbage, Kind::All};
@@ -39,7 +39,7 @@ struct Tear {
 
 class FlashChip {
  public:
-  static constexpr std::uint32_t kBegin = 0x1F'2000;  ///< address of the store; the image is below it
+  static constexpr std::uint32_t kBegin = 0x1F'2000;  ///< address of the page store; the firmware image is below it
   static constexpr std::uint32_t kSector = 4096;
   static constexpr std::uint32_t kPageOfFlash = 256;
   static constexpr unsigned kSectorsOfStore = 14;
@@ -65,12 +65,12 @@ class FlashChip {
     const std::size_t at = index(address, source.size);
     EXPECT_FALSE(busy()) << "a program operation is ignored now";
     EXPECT_EQ(at / kPageOfFlash, (at + source.size - 1) / kPageOfFlash) << "the address wraps";
-    EXPECT_TRUE(!erase_suspended_ || at / kSector != erase_at_ / kSector) << "this sector is suspended";
+    EXPECT_TRUE(!erase_suspended_ || at / kSector != erase_at_ / kSector) << "the erase of this sector is suspended";
     for (std::size_t i = 0; i < source.size; ++i) {
       if (!is_broken(at + i)) {
         EXPECT_EQ(cells[at + i] & source[i], source[i]) << "the byte is not erased";
       }
-      EXPECT_TRUE(!weak_[at + i] || source[i] == 0) << "an interrupted operation has left this byte";
+      EXPECT_TRUE(!weak_[at + i] || source[i] == 0) << "an interrupted operation has left this byte, so only 0 is reliable";
     }
     source_.assign(source.begin(), source.end());
     begin(Operation::Program, at, times.program);
@@ -78,7 +78,7 @@ class FlashChip {
   }
   [[nodiscard]] bool busy() const { return operation_ != Operation::None || hangs; }
   void suspend() {
-    EXPECT_NE(operation_, Operation::Program) << "a suspended program operation blocks all others";
+    EXPECT_NE(operation_, Operation::Program) << "a program operation must not be suspended";
     if (operation_ == Operation::Erase && !suspends_at_) {
       EXPECT_GE(now, resumed_ + kSuspend) << "too early after a resume";
       suspends_at_ = now + kSuspend;
@@ -104,7 +104,7 @@ class FlashChip {
 
   // --- functions for the test ---
 
-  /// Lets time pass. Throws PowerFailure if the operation that `cut` selects ends in this time.
+  /// Lets time pass. Throws PowerFailure when the operation that `cut` has selected would end.
   void run(std::uint64_t microseconds) {
     for (std::uint64_t i = 0; i < microseconds;) {
       std::uint64_t step = microseconds - i;
@@ -132,19 +132,20 @@ class FlashChip {
   [[nodiscard]] bool erase_suspended() const { return erase_suspended_; }
   /// Returns all operations that have begun, in order.
   [[nodiscard]] const std::vector<Operation>& operations() const { return operations_; }
-  /// Returns the number of the erase that has not ended. If there is none, returns the number of the next
-  /// operation.
+  /// Returns the number of the erase that is running or suspended. If there is none, returns the number of
+  /// the next operation.
   [[nodiscard]] std::size_t earliest_open() const {
     const bool erasing = operation_ == Operation::Erase || erase_suspended_;
     return erasing ? erase_number_ : operations_.size();
   }
 
-  /// Cuts the power at the time when operation `number` would end. The first operation of the chip is 0.
+  /// Schedules a power cut for the time when operation `number` would end. The first operation of the chip
+  /// has the number 0.
   void cut(std::size_t number, Tear tear) {
     cut_ = number;
     tear_ = tear;
   }
-  /// Cuts the power now. A suspended erase is cut too, with a random Tear.
+  /// Cuts the power now, and cancels a scheduled cut. A suspended erase is cut too, with a random Tear.
   void power_off(Tear tear) {
     cut_.reset();
     std::mt19937 random(tear.seed);
@@ -163,12 +164,12 @@ class FlashChip {
 
   std::vector<std::uint8_t> cells = std::vector<std::uint8_t>(std::size_t{kSectorsOfStore} * kSector, 0xFF);
   Times times;
-  bool hangs = false;  ///< the flash is always busy
-  /// The index of the first broken byte. If `broken_keeps` is false, the lowest bit of each broken byte is 0
-  /// after every operation.
+  bool hangs = false;  ///< while this is true, the flash is busy
+  /// The index of the first broken byte in `cells`; SIZE_MAX: no byte is broken. If `broken_keeps` is false,
+  /// the lowest bit of each broken byte becomes 0 whenever an operation ends.
   std::size_t broken = SIZE_MAX;
   std::size_t broken_size = 1;
-  bool broken_keeps = false;  ///< programming does not change the broken bytes
+  bool broken_keeps = false;  ///< if true, programming does not change the broken bytes
   std::uint64_t now = 1;      ///< us
   std::array<unsigned, kSectorsOfStore> erases{};
   unsigned programs = 0;

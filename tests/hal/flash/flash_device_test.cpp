@@ -1,5 +1,6 @@
-// Tests a whole module that keeps its settings in the flash, in virtual time. The module replies in time
-// while it erases sectors. An idle module erases all free sectors in advance.
+// Tests a whole module that keeps its settings in a flash, in virtual time. The module replies in time while
+// it erases sectors, starts in time after a reset during an erase, and erases all free sectors in advance
+// while it is idle.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -26,7 +27,8 @@ constexpr std::uint32_t kBaud = 115'200;
 constexpr std::uint8_t kBaudCode = 0x0A;
 constexpr std::uint64_t kReplyLimit = 200'000;  ///< us after the request, wire.md section 7
 
-/// A board (hal/board.hpp) that has only a flash, timers and a line. Its clock returns the time of the chip.
+/// A board (hal/board.hpp) with a flash, timers and a line. Its clock returns the time of the flash chip. Its
+/// inputs, outputs, switch, LED and watchdog do nothing.
 struct FlashBoard {
   struct Clock {
     const FlashChip* chip;
@@ -100,7 +102,8 @@ class ModuleOnFlash {
 
   void run(std::uint64_t microseconds) { run_until(chip_.now + microseconds); }
 
-  /// Sends a request without its CRC, and returns the reply without its CRC.
+  /// Adds the CRC to `request` and sends it. Returns the reply without its CRC; if there is no reply, fails
+  /// the test and returns an empty frame.
   Frame ask(Frame request) {
     constexpr std::uint64_t kCharacter = 11'000'000 / kBaud;
     const Crc16 crc = crc16({request.data(), request.size()});
@@ -124,7 +127,8 @@ class ModuleOnFlash {
     longest = std::max(longest, latency);
     return {line.reply.begin(), line.reply.end() - 2};
   }
-  /// Stores a timeout of the host watchdog. Returns whether the module has replied that it is stored.
+  /// Requests the module to store a timeout of the host watchdog that depends on `number`. Returns whether the
+  /// reply reports success.
   bool store(unsigned number) {
     const auto timeout = static_cast<std::uint8_t>(number % 250 + 1);
     const Frame request{1, 0x06, 0x01, 0xE8, 0x00, timeout};
@@ -132,7 +136,7 @@ class ModuleOnFlash {
   }
   [[nodiscard]] unsigned timeout() { return ask({1, 0x03, 0x01, 0xE8, 0, 1}).at(4); }
 
-  std::uint64_t latency = 0;  ///< us from the last byte of a request to the first one of its reply
+  std::uint64_t latency = 0;  ///< us from the end of the last request to the start of its reply
   std::uint64_t longest = 0;  ///< the greatest `latency` so far
 
  private:
@@ -214,7 +218,7 @@ TEST(FlashDevice, AnIdleModuleErasesAllFreeSectorsInAdvance) {
   EXPECT_LE(module.latency, 10'000U);
 }
 
-TEST(FlashDevice, StoresWithShortPausesGetRepliesInTimeWithErasesOf400Milliseconds) {
+TEST(FlashDevice, StoresWithShortPausesSucceedInTimeWithErasesOf400Milliseconds) {
   FlashChip chip = flash_at_115200();
   chip.times = FlashChip::kLongest;
   ModuleOnFlash module(chip);
@@ -227,7 +231,7 @@ TEST(FlashDevice, StoresWithShortPausesGetRepliesInTimeWithErasesOf400Millisecon
               static_cast<double>(module.longest) / 1e3);
 }
 
-TEST(FlashDevice, StoresBackToBackGetRepliesInTimeWithErasesOf45Milliseconds) {
+TEST(FlashDevice, StoresBackToBackSucceedInTimeWithErasesOf45Milliseconds) {
   constexpr unsigned kStores = 5'000;
   FlashChip chip = flash_at_115200();
   ModuleOnFlash module(chip);
@@ -267,7 +271,7 @@ TEST(FlashDevice, StoresBackToBackAreStoredOrRefusedInTimeWithErasesOf400Millise
   EXPECT_EQ(ModuleOnFlash(chip).timeout(), expected);
 }
 
-TEST(FlashDevice, AResetOfTheMcuDuringAnEraseDoesNotDelayTheStart) {
+TEST(FlashDevice, AModuleStartsInTimeWithItsSettingsAfterAResetDuringAnErase) {
   FlashChip chip = flash_at_115200();
   chip.times = FlashChip::kLongest;
   ModuleOnFlash before(chip);

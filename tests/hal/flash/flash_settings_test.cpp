@@ -1,5 +1,5 @@
-// Tests a module that keeps its settings in the page store: power cuts at every operation of the flash, and
-// the duration of a save (wire.md section 8).
+// Tests the settings of a module in the page store: power cuts at every operation of the flash (wire.md
+// section 8), and the durations of saving and loading.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -25,7 +25,7 @@ constexpr std::uint64_t kReplyLimit = 200'000;  ///< us; wire.md sections 3 and 
 
 static_assert(kStoredMemory == hal::flash::kStoreSize, "the store has the pages that the settings use");
 
-/// A module's settings on the flash, from one reset to the next.
+/// A module's settings in a flash, from one reset to the next.
 class OnFlash {
  public:
   explicit OnFlash(FlashChip& chip, SettingsKeeper keeper = SettingsKeeper(the_model()))
@@ -40,8 +40,8 @@ class OnFlash {
     latency = chip_.now - began;
     return keeper_.saved();
   }
-  /// Runs the main loop for this time without a command. The keeper stores pending settings, and the store
-  /// erases free sectors.
+  /// Runs the main loop for a time without a command. The keeper carries out the actions that belong to no
+  /// command (see SettingsKeeper), and the store erases free sectors.
   void idle(std::uint64_t microseconds) {
     for (const std::uint64_t end = chip_.now + microseconds; chip_.now < end;) {
       keeper_.poll(keeper_.stored(), chip_.time());
@@ -137,9 +137,9 @@ std::vector<Tear> tears(FlashChip::Operation operation) {
   return all;
 }
 
-/// Starts a module, saves `to`, and runs the module for `after` more microseconds. Cuts the power at the end
-/// of `operation`, or at the end of the run if `operation` has not ended by then. Returns whether the module
-/// reported that `to` is stored.
+/// Starts a module, runs it for 2 ms, saves `to`, and runs the module for `after` more microseconds. Cuts the
+/// power at the time when operation number `operation` would end, or at the end of the run if this operation
+/// has not ended by then. Returns whether the module reported that `to` is stored.
 bool cut(FlashChip& chip, const Settings& to, std::uint64_t after, std::size_t operation, const Tear& tear) {
   bool saved = false;
   try {
@@ -215,7 +215,7 @@ TEST(FlashSettingsCuts, TwoCutsInARowLeaveTheOldOrTheNewSettings) {
   }
 }
 
-TEST(FlashSettingsTime, ASaveNeverWaitsForAnErase) {
+TEST(FlashSettingsTime, SavesWithPausesOfAbout50MsDoNotWaitForAnErase) {
   for (Beginning& beginning : beginnings()) {
     beginning.chip.times = FlashChip::kLongest;
     OnFlash module(beginning.chip);
@@ -232,10 +232,10 @@ TEST(FlashSettingsTime, ASaveNeverWaitsForAnErase) {
   }
 }
 
-TEST(FlashSettingsTime, ASaveThatCannotSucceedIsRefusedInTime) {
+TEST(FlashSettingsTime, SavesAndLoadsThatCannotSucceedFailInTime) {
   std::vector<std::pair<std::string, std::uint64_t>> longest;
   for (Beginning& beginning : beginnings()) {
-    beginning.chip.times = {1'000'000'000, 3'000};  // no erase ever ends
+    beginning.chip.times = {1'000'000'000, 3'000};  // an erase that begins now does not end in this test
     OnFlash module(beginning.chip);
     unsigned saves = 0;
     while (module.save(numbered(saves))) {

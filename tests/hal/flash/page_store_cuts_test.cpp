@@ -1,5 +1,6 @@
-// Cuts the power at every program operation and every erase of the page store. After each cut, the page that
-// was being written must have its old or its new content, and all other pages must be unchanged.
+// Cuts the power at the program operations and the erases of the page store. After each cut, the page of the
+// last write must have its new content, or its old content if the store has not reported success for this
+// write. All other pages must be unchanged.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -21,7 +22,7 @@ struct State {
   std::vector<Page> pages;
 };
 
-/// A write, and the time until the next one.
+/// A write, and the pause after it.
 struct Write {
   std::size_t page;
   unsigned content;
@@ -67,8 +68,9 @@ class PageStoreCuts : public testing::Test {
                 cuts_);
   }
 
-  /// Carries out `write` with a power cut. Then starts the store again, checks all pages, and puts the
-  /// restarted store into `state`.
+  /// Carries out `write`. Cuts the power at the time when operation number `operation` would end, or after the
+  /// pause if this operation has not ended by then. Then starts the store again, checks all pages, and puts
+  /// the restarted store and the content of the pages into `state`.
   void cut(State& state, const Write& write, std::size_t operation, Tear tear) {
     state.chip.cut(operation, tear);
     bool reported = false;
@@ -106,9 +108,10 @@ class PageStoreCuts : public testing::Test {
     }
   }
 
-  /// Cuts the power at each operation of `write`. For each operation, tries the tears that
-  /// `tears_of` returns; if `in_every_way` is false, tries only some of them. Then carries out the write
-  /// without a cut.
+  /// Cuts the power at each operation during `write` and the pause after it, including an erase that has
+  /// begun before. For each operation, tries the tears that `tears_of` returns; if `in_every_way` is false,
+  /// tries only some of them. After each cut, checks the store. At the end, carries out `write` without a
+  /// cut.
   void cut_everywhere(State& state, const Write& write, bool in_every_way = true) {
     State whole = state;
     bool reported = false;
@@ -152,8 +155,8 @@ class PageStoreCuts : public testing::Test {
     ASSERT_TRUE(carry_out(state, write, reported) && reported);
     state.pages[write.page] = numbered(write.content);
   }
-  /// Returns a flash whose pages are in many sectors, and a store that has only a few free slots in the
-  /// sector that it is writing.
+  /// Returns a state in which each of the pages 4 to 11 is in a different sector. Three slots are free in the
+  /// sector that the store is writing.
   static State full() {
     State state = settled();
     unsigned content = 1;
@@ -175,7 +178,7 @@ class PageStoreCuts : public testing::Test {
 TEST_F(PageStoreCuts, ACutInTheFirstRunOnAFlashLeavesTheOldOrTheNewPage) {
   State state = blank();
   for (const unsigned content : {1U, 2U}) {
-    // A write that arrives before the first erase has ended may be refused, so this one arrives later.
+    // A write that begins before the first erase has ended may fail, so the store runs for 50 ms first.
     Session run(state.chip, state.store);
     run.run(50'000);
     state.store = run.store();
@@ -214,7 +217,8 @@ TEST_F(PageStoreCuts, ACutWithTheLongestTimesOfTheFlashLeavesTheOldOrTheNewPage)
   }
 }
 
-// There are too many sequences of cuts to test them all, so this is a random sample with a fixed seed.
+// There are too many sequences of cuts to test them all, so this test uses a random sample with a
+// fixed seed.
 TEST_F(PageStoreCuts, SeveralCutsInARowLeaveTheOldOrTheNewPage) {
   constexpr int kRounds = 100;
   constexpr int kCutsInARow = 6;

@@ -1,4 +1,5 @@
-// Tests the page store without power failures: it returns what was written, and obeys the rules of a flash.
+// Tests the page store: it returns what was written, obeys the rules of a flash, and tolerates resets of the
+// MCU and defects of the flash. page_store_cuts_test.cpp tests power cuts during writes.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -44,10 +45,10 @@ TEST(PageStore, KeepsPagesThroughAReset) {
   }
 }
 
-/// Flashes in the field hold these bytes, so a later firmware must read them.
+/// The flashes of modules in use hold these bytes, so later firmware must read them.
 TEST(PageStore, ReadsAndWritesTheSameBytesAsEarlierFirmware) {
   constexpr std::array<std::uint8_t, 8> kMarkOfAnErasedSector{0x45, 0x58, 0x39, 0xC6, 0xA7, 0x9B, 0x53, 0x1D};
-  // Sequence 7, page 3, bytes 0 to 31, and their CRC-32.
+  // Sequence 7, page 3, a content of the bytes 0 to 31, and the CRC-32 of all these bytes.
   std::vector<std::uint8_t> entry{7, 0, 0, 0, 3};
   Page content{};
   for (std::size_t i = 0; i < content.size(); ++i) {
@@ -58,7 +59,7 @@ TEST(PageStore, ReadsAndWritesTheSameBytesAsEarlierFirmware) {
 
   FlashChip chip;
   std::fill_n(chip.cells.begin(), 8, std::uint8_t{0});
-  std::copy(entry.begin(), entry.end(), chip.cells.begin() + 256 + 48);  // the second slot of the second page
+  std::copy(entry.begin(), entry.end(), chip.cells.begin() + 256 + 48);  // second slot of flash page 1
   for (std::size_t sector = 1; sector < 14; ++sector) {
     std::copy(kMarkOfAnErasedSector.begin(), kMarkOfAnErasedSector.end(),
               chip.cells.begin() + static_cast<std::ptrdiff_t>(sector * 4096));
@@ -70,7 +71,7 @@ TEST(PageStore, ReadsAndWritesTheSameBytesAsEarlierFirmware) {
     EXPECT_EQ(erases, 0U);
   }
 
-  // The next entry is in the first slot after the mark of the next sector.
+  // The store must put the next entry into the first slot after the mark of the next sector.
   content[0] = 0xFF;
   entry = {8, 0, 0, 0, 3};
   entry.insert(entry.end(), content.begin(), content.end());
@@ -82,7 +83,7 @@ TEST(PageStore, ReadsAndWritesTheSameBytesAsEarlierFirmware) {
   EXPECT_EQ(std::vector<std::uint8_t>(chip.cells.begin() + 4096 + 48, chip.cells.begin() + 4096 + 96), entry);
 }
 
-TEST(PageStore, SealingChangesNoByteAfterAnEntry) {
+TEST(PageStore, ASealedEntryIsGoodAndTheByteAfterItIsUnchanged) {
   struct {
     EntryBytes entry{};
     std::uint8_t after = 0x55;
@@ -140,7 +141,7 @@ TEST(PageStore, RejectsAddressesBeyondItsEndAndWritesAcrossPages) {
   EXPECT_TRUE(run.write(kStoreSize - 1, Bytes{page.data(), 1}));
 }
 
-TEST(PageStore, StartsOnAFlashWithAnyContent) {
+TEST(PageStore, StartsOnAFlashWithRandomContent) {
   for (unsigned seed = 0; seed < 20; ++seed) {
     FlashChip chip;
     std::mt19937 random(seed);
@@ -155,7 +156,7 @@ TEST(PageStore, StartsOnAFlashWithAnyContent) {
   }
 }
 
-TEST(PageStore, AnErasedSectorContainsNoEntry) {
+TEST(PageStore, AnEntryOfOnlyFFOrOnlyZerosIsNotGood) {
   EntryBytes entry;
   entry.fill(0xFF);
   EXPECT_FALSE(is_good(entry));
@@ -163,7 +164,7 @@ TEST(PageStore, AnErasedSectorContainsNoEntry) {
   EXPECT_FALSE(is_good(entry));
 }
 
-TEST(PageStore, AnySequenceOfWritesResetsAndPausesKeepsAllPages) {
+TEST(PageStore, RandomSequencesOfWritesPausesAndPowerCyclesKeepAllPages) {
   for (unsigned seed = 0; seed < 10; ++seed) {
     FlashChip chip;
     std::mt19937 random(seed);
@@ -176,7 +177,7 @@ TEST(PageStore, AnySequenceOfWritesResetsAndPausesKeepsAllPages) {
       run.settle();
       for (std::uint64_t writes = random() % 400; writes > 0; --writes) {
         const auto page = static_cast<unsigned>(random() % kPages);
-        // Some pages are rarely written, so that their entries stay where they are.
+        // Pages 4 to 11 are rarely written, so that their entries stay in the same slots for a long time.
         if (page >= 4 && random() % 100 != 0) {
           continue;
         }
@@ -193,7 +194,7 @@ TEST(PageStore, AnySequenceOfWritesResetsAndPausesKeepsAllPages) {
 
 // --- resets of the MCU, which do not stop the flash ---
 
-TEST(PageStore, AResetOfTheMcuAtAnyTimeKeepsAllPages) {
+TEST(PageStore, AResetOfTheMcuAtAnyTimeLeavesTheOldOrTheNewPage) {
   FlashChip settled;
   Session(settled).settle();
   for (const FlashChip::Times times : {FlashChip::Times(), FlashChip::kLongest}) {
@@ -212,7 +213,7 @@ TEST(PageStore, AResetOfTheMcuAtAnyTimeKeepsAllPages) {
       Session after(chip);
       const Page found = after.page(1);
       EXPECT_TRUE(found == numbered(1) || found == numbered(3)) << delay;
-      EXPECT_LE(after.latency, 60'000U) << "a reset must not wait for an erase";
+      EXPECT_LE(after.latency, 60'000U) << "the first job after a reset must not wait for an erase";
       EXPECT_EQ(after.page(2), numbered(2));
       ASSERT_TRUE(after.write(2, numbered(4)));
       after.settle();
@@ -241,7 +242,7 @@ TEST(PageStore, AnEraseThatTheMcuSuspendedBeforeItsResetIsContinued) {
 
 // --- a flash that fails ---
 
-TEST(PageStore, AWriteIntoABrokenSectorFailsOnceAndThenSucceedsElsewhere) {
+TEST(PageStore, IfAWriteIntoABrokenSectorFailsTheNextAttemptSucceeds) {
   for (std::size_t broken = 0; broken < 2 * FlashChip::kSector; broken += broken < 200 ? 7 : 203) {
     FlashChip chip;
     chip.broken = broken;
@@ -260,7 +261,7 @@ TEST(PageStore, AWriteIntoABrokenSectorFailsOnceAndThenSucceedsElsewhere) {
   }
 }
 
-TEST(PageStore, AWriteIntoAWornOutSectorFailsOnceAndThenSucceedsElsewhere) {
+TEST(PageStore, IfAWriteIntoAWornOutSectorFailsTheNextAttemptSucceeds) {
   FlashChip chip;
   chip.broken = kFlashPage;
   chip.broken_size = FlashChip::kSector - kFlashPage;
@@ -325,7 +326,7 @@ TEST(PageStore, AFlashThatHangsFailsEachJobInTimeAndMayRecover) {
   EXPECT_EQ(run.page(1), numbered(2));
 }
 
-TEST(PageStore, AFlashThatHangsFromTheStartFailsEachJobInTime) {
+TEST(PageStore, AReadFailsInTimeIfTheFlashHangsFromTheStart) {
   FlashChip chip;
   chip.hangs = true;
   Session run(chip);
@@ -349,10 +350,10 @@ TEST(PageStore, AGoodEntryIsUsedEvenIfItsProgrammingTookTooLong) {
   EXPECT_EQ(Session(chip).page(1), numbered(2));
 }
 
-TEST(PageStore, ASectorThatTookTooLongToOpenIsWrittenNext) {
+TEST(PageStore, AWriteSucceedsAfterTheOpeningOfASectorTookTooLong) {
   FlashChip chip;
   Session run(chip);
-  run.run(70'000);  // other sectors are erased later
+  run.run(70'000);  // by then, one sector is erased, and the erase of the next one is running
   chip.times.program = 60'000;
   EXPECT_FALSE(run.write(1, numbered(1)));
   run.run(100'000);
@@ -378,7 +379,7 @@ TEST(PageStore, AResumedEraseIsNotSuspendedTooEarly) {
   store.poll(chip.time());
   ASSERT_EQ(chip.operation(), FlashChip::Operation::Erase);
   chip.run(5);
-  ASSERT_TRUE(run.read(0, bytes));  // the chip rejects a suspension that is too early
+  ASSERT_TRUE(run.read(0, bytes));  // FlashChip::suspend fails the test if it is called too early
   EXPECT_EQ(chip.suspensions, 2U);
 }
 

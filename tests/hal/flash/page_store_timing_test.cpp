@@ -1,4 +1,4 @@
-// Measures how long the jobs of the page store take, and at which rate pages can be written.
+// Measures and checks how long the jobs of the page store take, and at which rate pages can be written.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,7 +12,7 @@ namespace {
 constexpr std::uint64_t kLongestReadEver = 5'000;    // us; hal/flash/page_store.hpp
 constexpr std::uint64_t kLongestWriteEver = 14'000;  // us; hal/flash/page_store.hpp
 
-/// Returns a chip with the given times. All its free sectors are erased.
+/// Returns a chip with the given times. All its sectors are erased and marked.
 FlashChip settled(const FlashChip::Times& times) {
   FlashChip chip;
   chip.times = times;
@@ -20,9 +20,9 @@ FlashChip settled(const FlashChip::Times& times) {
   return chip;
 }
 
-/// Writes pages at most `most` times, one every `period` microseconds. If a write takes longer than `period`,
-/// the next one follows immediately. Returns the number of writes before the first one that fails, or `most`
-/// if none fails.
+/// Writes a page and reads it back, at most `most` times, once every `period` microseconds. If this takes
+/// longer than `period`, the next write follows immediately. Returns the number of writes before the first
+/// write that fails or whose page is wrong; `most` if there is none.
 unsigned writes_without_failure(Session& run, FlashChip& chip, std::uint64_t period, unsigned most) {
   for (unsigned writes = 0; writes < most; ++writes) {
     const std::uint64_t next = chip.now + period;
@@ -36,7 +36,7 @@ unsigned writes_without_failure(Session& run, FlashChip& chip, std::uint64_t per
   return most;
 }
 
-TEST(PageStoreTiming, AJobSuspendsAnEraseInAnyPhase) {
+TEST(PageStoreTiming, JobsEndInTimeInAnyPhaseOfAnErase) {
   for (const FlashChip::Times& times : {FlashChip::Times(), FlashChip::kLongest}) {
     std::uint64_t longest_read = 0;
     std::uint64_t longest_write = 0;
@@ -45,7 +45,7 @@ TEST(PageStoreTiming, AJobSuspendsAnEraseInAnyPhase) {
     for (std::uint64_t phase = 0; phase < times.erase + 10'000; phase += phase < 8'000 ? 333 : 5'333) {
       FlashChip before = chip;
       Session run(before);
-      // The write that opens the second sector leaves the first one free, so an erase begins.
+      // The last of these writes opens the second sector. The first sector is free then, so its erase begins.
       for (unsigned i = 0; i < kSlotsOfASector; ++i) {
         ASSERT_TRUE(run.write(0, numbered(i)));
       }
@@ -73,7 +73,7 @@ TEST(PageStoreTiming, AJobSuspendsAnEraseInAnyPhase) {
   }
 }
 
-TEST(PageStoreTiming, AWriteThatOpensASectorDuringAnEraseEndsInTime) {
+TEST(PageStoreTiming, WritesWithPausesOfAtLeast12MsEndInTimeWithTheLongestTimes) {
   std::uint64_t longest = 0;
   FlashChip chip = settled(FlashChip::kLongest);
   Session run(chip);
@@ -86,14 +86,14 @@ TEST(PageStoreTiming, AWriteThatOpensASectorDuringAnEraseEndsInTime) {
   std::printf("longest write of 2000: %.1f ms\n", static_cast<double>(longest) / 1e3);
 }
 
-TEST(PageStoreTiming, WritesAtTheDocumentedRateNeverWaitForAnErase) {
+TEST(PageStoreTiming, WritesAtTheDocumentedRateNeverFailWithTheLongestTimes) {
   constexpr unsigned kWrites = 20'000;
   FlashChip chip = settled(FlashChip::kLongest);
   Session run(chip);
   EXPECT_EQ(writes_without_failure(run, chip, 12'000, kWrites), kWrites);
 }
 
-TEST(PageStoreTiming, WritesEvery4MsNeverWaitForAnEraseWithTypicalTimes) {
+TEST(PageStoreTiming, WritesEvery4MsNeverFailWithTypicalTimes) {
   constexpr unsigned kWrites = 20'000;
   FlashChip chip = settled({});
   Session run(chip);
@@ -102,7 +102,7 @@ TEST(PageStoreTiming, WritesEvery4MsNeverWaitForAnEraseWithTypicalTimes) {
 
 TEST(PageStoreTiming, TheSectorsErasedInAdvanceHaveRoomForABurst) {
   constexpr unsigned kBurst = (kSectors - 1) * (kSlotsOfASector - 1);
-  FlashChip chip = settled({1'000'000'000, 3'000});  // an erase that never ends
+  FlashChip chip = settled({1'000'000'000, 3'000});  // an erase takes longer than all writes of this test
   chip.times = {1'000'000'000, 3'000};
   Session run(chip);
   const unsigned writes = writes_without_failure(run, chip, 0, 10 * kBurst);
@@ -110,7 +110,7 @@ TEST(PageStoreTiming, TheSectorsErasedInAdvanceHaveRoomForABurst) {
   EXPECT_LE(run.latency, Store::kLongestWrite.microseconds() + 2'000) << "a failing write must end in time";
 }
 
-TEST(PageStoreTiming, AWriteThatWaitsForAnEraseSucceedsWhenTheEraseEndsInTime) {
+TEST(PageStoreTiming, AWriteThatWaitsForAnEraseSucceedsIfTheEraseEndsInTime) {
   FlashChip chip;  // never used before, so no sector is known to be erased
   chip.times.erase = 15'000;
   Session run(chip);
@@ -118,11 +118,11 @@ TEST(PageStoreTiming, AWriteThatWaitsForAnEraseSucceedsWhenTheEraseEndsInTime) {
   EXPECT_EQ(Session(chip).page(0), numbered(1));
 }
 
-TEST(PageStoreTiming, TheFirstReadAfterAResetScansTheLog) {
+TEST(PageStoreTiming, TheReadsOfAFullLogTakeAtMost25MsAt16MHz) {
   FlashChip chip = settled({});
   chip.times = FlashChip::kLongest;
   Session(chip).settle();
-  // All sectors except one have been written since they were erased.
+  // The writes fill all sectors, because no erase ends before a write fails.
   FlashChip used = chip;
   used.times.erase = 1'000'000'000;
   Session run(used);
@@ -131,7 +131,7 @@ TEST(PageStoreTiming, TheFirstReadAfterAResetScansTheLog) {
   used.bytes_read = 0;
   Session next(used);
   (void)next.page(0);
-  constexpr double kBytesAMicrosecond = 2;  // 16 MHz
+  constexpr double kBytesAMicrosecond = 2;  // SPI with one data line and a clock of 16 MHz
   const double most = static_cast<double>(used.bytes_read) / kBytesAMicrosecond / 1e3;
   std::printf("scan of a full log: %llu bytes, %.1f ms\n", static_cast<unsigned long long>(used.bytes_read),
               most);

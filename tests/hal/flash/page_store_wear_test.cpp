@@ -1,5 +1,5 @@
 // Counts the erases of each sector over many stores, and compares the result with the manufacturer's
-// guarantee.
+// guarantee. Also checks that neither reads nor resets without a store erase or program anything.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -23,8 +23,8 @@ class PageStoreWear : public testing::Test {
     ASSERT_TRUE(run_.write(page, numbered(content_++)));
     run_.settle();
   }
-  /// Writes `page` so that its entry is the only valid entry of a sector. The entry stays there until the
-  /// page is written again.
+  /// Writes `page` so that its entry is the only entry in force (hal/flash/page_store.hpp) in a sector. The
+  /// entry stays there until the page is written again.
   void pin(std::size_t page) {
     write(page);
     for (unsigned i = 0; i < kSlotsOfASector; ++i) {
@@ -32,8 +32,9 @@ class PageStoreWear : public testing::Test {
     }
   }
 
-  /// Carries out `store` many times. Returns how many stores are possible before a sector wears out,
-  /// calculated from the erases of the most erased sector.
+  /// Carries out `store` many times. Calculates how many stores are possible before a sector wears out, from
+  /// the erases of the sector that was erased most often. Checks and returns this number. Also checks that
+  /// the sectors wear out evenly.
   template <class Store>
   double stores_until_worn(const char* what, Store store) {
     constexpr unsigned kStores = 20'000;

@@ -102,8 +102,9 @@ class Sending : public testing::TestWithParam<std::tuple<bool, std::uint32_t, Li
   [[nodiscard]] int bits() const { return format() == LineFormat::k8N1 ? 10 : 11; }
   [[nodiscard]] Instant character() const { return Instant(bits() * 1'000'000'000'000 / baud()); }
 
-  /// Checks the conditions that must always hold: all bytes are on the line with correct parity and stop
-  /// bits, and the driver is on from before the first byte until after the last stop bit.
+  /// Checks the conditions that must always hold: all bytes are on the line with correct parity and a correct
+  /// first stop bit. The driver is switched on once, before the first byte, and stays on at least until the
+  /// end of the last stop bit.
   void expect_whole(const UartBench& bench, const std::vector<std::uint8_t>& bytes) {
     ASSERT_EQ(bench.line.heard.size(), bytes.size());
     for (std::size_t i = 0; i < bytes.size(); ++i) {
@@ -246,7 +247,7 @@ TEST_P(Receiving, ALongBreakIsReportedOnce) {
   EXPECT_EQ(bench.received[1].byte, 0x42);
 }
 
-TEST_P(Receiving, AByteThatWasNotReadInTimeIsReportedAsAnOverrun) {
+TEST_P(Receiving, BytesLostWhileInterruptsAreHeldAreReportedAsOneOverrun) {
   bench.mcu.core.hold(true);
   bench.line.send({1, 2, 3});
   bench.mcu.run_for(4 * character());
@@ -318,7 +319,7 @@ INSTANTIATE_TEST_SUITE_P(InBothFormats, ReceivingParity, testing::Values(LineFor
 class ReceivingWithoutParity : public Receiving {};
 
 /// A receiver checks only the first stop bit.
-TEST_P(ReceivingWithoutParity, BytesWithAnotherNumberOfStopBitsAreReceived) {
+TEST_P(ReceivingWithoutParity, AMasterWithAnotherNumberOfStopBitsCanSendAndReceive) {
   bench.line.set_format(GetParam() == LineFormat::k8N1 ? LineFormat::k8N2 : LineFormat::k8N1);
   const std::vector<std::uint8_t> bytes = some_bytes(256);
   bench.line.send(bytes);
@@ -332,9 +333,9 @@ TEST_P(ReceivingWithoutParity, BytesWithAnotherNumberOfStopBitsAreReceived) {
   }
 }
 
-TEST_P(ReceivingWithoutParity, AMasterWithParityCausesFramingErrors) {
+TEST_P(ReceivingWithoutParity, AParityBitOf0IsAFramingError) {
   bench.line.set_format(LineFormat::k8E1);
-  bench.line.send({0x55});  // its parity bit is 0, which is no stop bit
+  bench.line.send({0x55});  // its parity bit is 0; without parity, the receiver expects a stop bit there
   bench.mcu.run_for(2 * character());
   EXPECT_EQ(statuses(), std::vector<ByteStatus>{ByteStatus::FramingError});
 }

@@ -1,4 +1,4 @@
-// Must not compile: these outputs can hold eight channels only.
+// Must not compile: `drive` accepts only eight channels.
 #include "hal/board.hpp"
 #include "tests/hal/right_board.hpp"
 

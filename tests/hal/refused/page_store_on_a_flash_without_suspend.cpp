@@ -1,4 +1,4 @@
-// Must not compile: a save would wait for an erase, because this flash cannot suspend it.
+// Must not compile: this flash cannot suspend an erase, so a save would have to wait for the end of an erase.
 #include "hal/flash/page_store.hpp"
 
 namespace ex9000::hal {

@@ -1,4 +1,4 @@
-// Registers for drivers of the RP2040 on a host. The drivers access one object, which the test provides.
+// Passes the register accesses of RP2040 drivers on a host to an object that the test provides.
 #pragma once
 
 #include <cstdint>

@@ -15,7 +15,8 @@ namespace {
 
 using hal::rp2040::Flash;
 
-/// A flash chip. It rejects commands that the data sheet does not allow.
+/// A flash chip. It throws an exception if the driver makes an error, for example if the driver sends a command
+/// that the chip does not accept while it is busy.
 class Chip {
  public:
   static constexpr std::size_t kSize = 2 * 1024 * 1024;
@@ -218,7 +219,7 @@ TEST_F(FlashDriver, ProgramsAWholePage) {
   EXPECT_EQ(read(0x1F'0100, hal::kFlashPage), page);
 }
 
-TEST_F(FlashDriver, ErasesOnlyTheSector) {
+TEST_F(FlashDriver, ErasesOnlyTheSectorOfTheAddress) {
   program(0x1F'0FFF, {0});
   program(0x1F'1000, {0});
   program(0x1F'1FFF, {0});
@@ -242,7 +243,7 @@ TEST_F(FlashDriver, ReadsAnotherSectorWhileAnEraseIsSuspended) {
   EXPECT_FALSE(Flash::busy());
 }
 
-TEST_F(FlashDriver, ContinuesAnEraseThatAResetHasLeftSuspended) {
+TEST_F(FlashDriver, StartContinuesAnEraseThatIsSuspendedOrRunning) {
   Flash::start_erase(kPlace);
   Flash::suspend();
   Flash::start();

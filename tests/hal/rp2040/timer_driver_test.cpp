@@ -1,5 +1,5 @@
-// Tests the alarms as one-shot timers, with delays at each access of the driver. Source: RP2040 data
-// sheet, 4.6.
+// Tests the alarms as one-shot timers, also with delays while a timer is started. Source: RP2040 data sheet,
+// 4.6.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 namespace ex9000 {
 namespace {
 
-/// One alarm of the timer. An alarm fires when the time equals it.
+/// One alarm of the timer. An alarm fires when the time becomes equal to its value.
 class TimerModel final : public rp2040_model::Bus {
  public:
   explicit TimerModel(unsigned number = 0) : number_(number) {}
@@ -100,7 +100,8 @@ class TimerModel final : public rp2040_model::Bus {
 
 using Timer = hal::rp2040::OneShotTimer<0>;
 
-/// Returns the nanoseconds from the return of `restart` to the interrupt.
+/// Lets time pass until the interrupt is pending, and returns this time in nanoseconds. Fails the test if it
+/// is longer than 100 ms.
 std::uint64_t time_to_interrupt(TimerModel& model) {
   const std::uint64_t begin = model.nanoseconds;
   while (!model.interrupt()) {
@@ -173,7 +174,7 @@ TEST(OneShotTimer, FiresAlsoIfAnInterruptDelaysItsStart) {
 TEST(OneShotTimer, RestartCancelsAPendingInterruptAfterADelayedStart) {
   TimerModel model;
   Timer::start();
-  model.delay(5, 50'000);  // the alarm is written too late, so the driver forces the interrupt
+  model.delay(5, 50'000);  // the alarm fires during this delay, before `restart` returns
   Timer::restart(Duration(2));
   ASSERT_TRUE(model.interrupt());
   Timer::restart(Duration(100));

@@ -18,7 +18,8 @@ using hal::stellaris::Gpio;
 using hal::stellaris::PinGroup;
 using hal::stellaris::Port;
 
-// The groups have channel numbers below and above their pin numbers, and there is one more pin than channels.
+// The channel numbers of the first group are below its pin numbers, and those of the second group are above
+// its pin numbers. There is one more pin than channels.
 constexpr std::array<PinGroup, 3> kGroups{PinGroup{Port::D, 2, 3}, PinGroup{Port::B, 0, 2},
                                           PinGroup{Port::D, 5, 2}};
 constexpr unsigned kChannels = 6;
@@ -37,7 +38,7 @@ struct OutputKind {
   using Pins = hal::stellaris::OutputPins<kGroups, kChannels, is_active_high>;
 };
 
-/// A resistor holds each pin at its inactive level, as on boards.
+/// A resistor holds each pin at its inactive level while the microcontroller does not drive the pin.
 template <class Kind>
 class Outputs : public testing::Test {
  protected:
@@ -56,7 +57,7 @@ class Outputs : public testing::Test {
     return channels;
   }
 
-  unsigned changes = 0;  ///< counts changes of the nets; must outlive them
+  unsigned changes = 0;  ///< counts changes of the nets; must outlive `bench`, which contains the nets
   DriverBench bench;
 };
 using OutputKinds = testing::Types<OutputKind<true>, OutputKind<false>>;
@@ -114,7 +115,7 @@ class Inputs : public testing::Test {
   }
 
   using Edges = std::vector<std::pair<unsigned, bool>>;
-  /// Returns the edges that the interrupts of both ports report.
+  /// Returns the edges that the driver reports for both ports.
   Edges told() {
     Edges edges;
     const auto deliver = [&edges](unsigned channel, bool level) { edges.emplace_back(channel, level); };
@@ -143,14 +144,14 @@ TYPED_TEST(Inputs, StartReturnsThePresentLevels) {
   }
 }
 
-TYPED_TEST(Inputs, ThePinOfAnUnusedChannelIsNotReported) {
+TYPED_TEST(Inputs, APinWithoutAChannelIsNotReported) {
   this->bench.pins.at(kBeyond.port, kBeyond.pin)
       .drive(End::Board, TypeParam::kActiveHigh ? Drive::High : Drive::Low);
   EXPECT_EQ(TypeParam::Pins::start(), 0U);
 }
 
 TYPED_TEST(Inputs, EachEdgeIsReportedOnceWithItsChannelAndLevel) {
-  this->bench.mcu.core.hold(true);  // the test calls the driver instead of the interrupts
+  this->bench.mcu.core.hold(true);  // the test calls the driver, not the interrupts
   TypeParam::Pins::start();
   for (unsigned channel = 0; channel < kChannels; ++channel) {
     for (const bool level : {true, false}) {
@@ -162,7 +163,7 @@ TYPED_TEST(Inputs, EachEdgeIsReportedOnceWithItsChannelAndLevel) {
   }
 }
 
-TYPED_TEST(Inputs, EachRisingOrFallingEdgeCausesOneInterrupt) {
+TYPED_TEST(Inputs, EachRisingOrFallingEdgeIsReportedOnceInAnInterrupt) {
   unsigned served = 0;
   const auto count = [&] { served += static_cast<unsigned>(this->told().size()); };
   this->bench.serve(1, count);  // port B
@@ -208,7 +209,7 @@ TEST(Switches, InitIsAssertedByALowPinAndReleasedByAnOpenPin) {
   EXPECT_FALSE(Init::asserted());
 }
 
-TEST(Switches, TheLedIsOffUntilItIsSwitchedOn) {
+TEST(Switches, TheLedIsOffAfterStartAndCanBeSwitchedOnAndOff) {
   DriverBench bench;
   using Led = hal::stellaris::LedPin<kLed>;
   Led::start();

@@ -1,5 +1,5 @@
-// Host tests include this file instead of hal/cortex_m/processor.hpp; its functions call
-// registers::Microcontroller.
+// Some host tests, and the images that they load, include this file instead of hal/cortex_m/processor.hpp.
+// tests/mcu_model/microcontroller.cpp defines these functions.
 #pragma once
 
 namespace ex9000::hal::cortex_m::processor {

@@ -1,5 +1,5 @@
-// Host tests include this file instead of hal/registers/bus.hpp; its functions call
-// registers::Microcontroller.
+// Some host tests, and the images that they load, include this file instead of hal/registers/bus.hpp.
+// tests/mcu_model/microcontroller.cpp defines these functions; start_up_test has its own definitions.
 #pragma once
 
 #include <cstdint>
