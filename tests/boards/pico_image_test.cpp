@@ -67,7 +67,7 @@ TEST_F(PicoImage, TheDriverIsOnForAllBitsOfAReplyAndGoesOffWithinACharacter) {
   }
 }
 
-TEST_F(PicoImage, AModuleRepliesInItsStoredFormatAndIgnoresAMasterWithAnotherParity) {
+TEST_F(PicoImage, AModuleRepliesInItsStoredLineFormatAndIgnoresAMasterWithAnotherParity) {
   const Model& model = *find_model("EX9043D-M");
   const std::map<LineFormat, long> line_control{
       {LineFormat::k8N2, 0x68}, {LineFormat::k8E1, 0x66}, {LineFormat::k8O1, 0x62}};
@@ -96,7 +96,7 @@ TEST_F(PicoImage, AModuleRepliesInItsStoredFormatAndIgnoresAMasterWithAnotherPar
   }
 }
 
-TEST_F(PicoImage, TheModuleRepliesToEveryRequestWithoutPausesAt115200Baud) {
+TEST_F(PicoImage, TheModuleRepliesToEveryRequestOfAMasterWithoutPausesAt115200Baud) {
   begin("EX9043D-M", 115200);
   for (int i = 0; i < 500; ++i) {
     bench_.send(text("$01M\r"));

@@ -1,5 +1,5 @@
-// Tests a module whose main loop runs without polling the panel, as on a board between two ticks. Also tests
-// how long the module allows the main loop to sleep.
+// Tests passes of the main loop (turns) in which the panel is not polled, as on a board between two ticks.
+// Also tests when the module requests another turn immediately, and the command `~**`.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@ constexpr Duration kLong = milliseconds(10);
 
 class ModuleTurns : public testing::Test {
  protected:
-  /// Starts with an erased memory.
+  /// Starts the module with an erased memory, and runs it until it listens.
   ModuleTurns() {
     module_.start(0, now_);
     while (module_.needs_memory()) {
@@ -51,7 +51,8 @@ class ModuleTurns : public testing::Test {
     module_.memory_done(answers_);
   }
 
-  /// Sends a command, to which the function adds the CR, and passes time until the turn-around is over.
+  /// Sends a command and a CR to the module. Then lets two character times pass, so that the turn-around time
+  /// is over.
   void put(const std::string& command) {
     for (const char character : command + "\r") {
       pass(kCharacter);
@@ -64,11 +65,12 @@ class ModuleTurns : public testing::Test {
     const Bytes reply = module_.take_reply(now_);
     return {reply.begin(), reply.end()};
   }
+  /// Returns whether the next turn must follow immediately.
   bool requests_another_turn() { return module_.idle_for(now_, kLong) == Duration(); }
 
   Module module_{*find_model("EX9043D")};
   Time now_;
-  bool answers_ = true;  ///< the memory answers
+  bool answers_ = true;  ///< whether the memory answers
   unsigned writes_ = 0;  ///< number of writes, whether or not the memory answers them
 
  private:
@@ -76,7 +78,7 @@ class ModuleTurns : public testing::Test {
   bool written_ = false;
 };
 
-TEST_F(ModuleTurns, TheModuleIsNotAtRestWhileARequestIsInProgress) {
+TEST_F(ModuleTurns, TheModuleIsAtRestOnlyAfterItsStartAndWithoutARequestInProgress) {
   EXPECT_TRUE(module_.at_rest());
   put("$01M");
   EXPECT_FALSE(module_.at_rest());  // the request waits
@@ -117,7 +119,7 @@ TEST_F(ModuleTurns, TheGapBeforeTheNextReplyIsKeptEvenIfThePanelIsNotPolled) {
   EXPECT_EQ(take_reply(), "!01D01.00\r");
 }
 
-TEST_F(ModuleTurns, AFinishedMemoryJobRequestsAnotherTurn) {
+TEST_F(ModuleTurns, AFinishedStoreRequestsAnotherTurn) {
   put("~01Opump");
   module_.step(now_);
   while (module_.needs_memory()) {
@@ -154,8 +156,8 @@ TEST_F(ModuleTurns, ATimeoutRequestsATurnForTheLedAndAnotherWhenItIsStored) {
   EXPECT_FALSE(requests_another_turn());
 }
 
-// With more attempts, the reply could begin later than 200 ms after the request if a record takes several
-// pages.
+// If the store of the timeout made more attempts, and if a record takes several pages, the reply to the
+// command could begin later than 200 ms after the command.
 TEST_F(ModuleTurns, ACommandAfterATimeoutThatCannotBeStoredWaitsForOnlyOneAttempt) {
   put("~013101");
   module_.step(now_);
@@ -178,7 +180,8 @@ TEST_F(ModuleTurns, ACommandAfterATimeoutThatCannotBeStoredWaitsForOnlyOneAttemp
   }
   EXPECT_EQ(take_reply(), "?01\r");
   // The module makes one attempt to store the timeout and three attempts to store the command. After each of
-  // these two failed stores, one more write tries to invalidate the copy.
+  // these two failed stores, one more write tries to invalidate the copy that the failed store may have
+  // written.
   EXPECT_EQ(writes_, 1U + 1U + 3U + 1U);
 }
 
@@ -203,10 +206,11 @@ TEST_F(ModuleTurns, AHostOkReceivedAfterATurnRequestsAnotherTurn) {
   EXPECT_FALSE(requests_another_turn());
 }
 
-// wire.md section 6: a host OK restarts the host watchdog from the time of its reception, however late the
-// main loop is. Here one pass of the main loop follows three host OKs: one before the expiry, and two after
-// it.
-TEST_F(ModuleTurns, AHostOkBeforeTheExpiryCountsEvenIfOthersFollowBeforeTheNextTurn) {
+// wire.md section 6: a host OK restarts the host watchdog from the time of its reception, even if the main
+// loop processes it later. Here one turn follows three host OKs. The first host OK arrives before the
+// watchdog expires. The other two arrive after the time at which the watchdog would have expired without the
+// first.
+TEST_F(ModuleTurns, TheFirstAndTheLastOfSeveralHostOksBetweenTwoTurnsCount) {
   put("~013101");
   module_.step(now_);
   while (module_.needs_memory()) {
@@ -221,7 +225,7 @@ TEST_F(ModuleTurns, AHostOkBeforeTheExpiryCountsEvenIfOthersFollowBeforeTheNextT
   ASSERT_TRUE(module_.host_watchdog_expiry().reached(now_));
   module_.step(now_);
   EXPECT_FALSE(module_.state().settings.timeout_status);
-  pass(kUnitOfTimeout - kCharacter - kCharacter);  // the time since the CR of the last host OK
+  pass(kUnitOfTimeout - kCharacter - kCharacter);  // to 0.1 s after the CR of the last host OK
   module_.step(now_);
   EXPECT_FALSE(module_.state().settings.timeout_status);
   pass(Duration(1));
@@ -230,7 +234,7 @@ TEST_F(ModuleTurns, AHostOkBeforeTheExpiryCountsEvenIfOthersFollowBeforeTheNextT
 }
 
 // The receiver processes `~**` itself and does not queue it, so that a full queue cannot lose it. A direct
-// call of `answer` must have the same effect.
+// call of `dcon::answer` must have the same effect.
 TEST(HostOkCommand, RestartsTheHostWatchdogAndIsNotAnswered) {
   const std::string command = "~**";
   const State state(*find_model("EX9043D"));

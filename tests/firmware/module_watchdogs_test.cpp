@@ -1,5 +1,5 @@
-// Tests a module's host watchdog and its module watchdog, with a resolution of a microsecond and while the
-// memory is busy.
+// Tests the host watchdog and the module watchdog of a simulated module, also while the memory is busy or
+// fails.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -98,7 +98,7 @@ TEST(HostWatchdog, ReportsItsExpiryTime) {
   EXPECT_TRUE(bench.module().module().state().settings.timeout_status);
 }
 
-TEST(HostWatchdog, StartsWhenTheEnableCommandHasBeenStored) {
+TEST(HostWatchdog, StartsBetweenTheEnableCommandAndItsReply) {
   ModuleBench bench("EX9043D");
   ASSERT_EQ(bench.ask("@010001"), ">");
   std::vector<OutputChange> changes;
@@ -106,7 +106,6 @@ TEST(HostWatchdog, StartsWhenTheEnableCommandHasBeenStored) {
   bench.recorder().clear();
   bench.ask("~013101");
   ASSERT_EQ(changes.size(), 1U);
-  // The watchdog starts between the end of the request and the start of the reply.
   const VirtualTime request_end = bench.recorder().bytes[7].end;
   const VirtualTime reply_start = bench.recorder().bytes[8].start;
   EXPECT_GE(changes[0].at, request_end + milliseconds(100));
@@ -122,7 +121,7 @@ TEST(HostWatchdog, ExpiryDrivesTheSafeValueImmediatelyEvenWhileACommandIsBeingSt
   const VirtualTime restarted = bench.now() + microseconds(1750);  // the silence that ends the frame
   std::vector<OutputChange> changes;
   bench.watch_outputs(changes);
-  // The command stores a power-on value, which takes about 10 ms, and would then drive all outputs. The
+  // The command below stores a power-on value, which takes about 10 ms, and would then drive all outputs. The
   // timeout occurs during the store.
   bench.run(milliseconds(493));
   bench.forget_heard();
@@ -165,7 +164,7 @@ TEST(HostWatchdog, AStatusClearedDuringItsStoreIsStoredAsCleared) {
   EXPECT_EQ(bench.ask("~010"), "!0100");
 }
 
-TEST(HostWatchdog, TheLedFlashesAtTwoHertzOnItsPin) {
+TEST(HostWatchdog, TheLedFlashesAtTwoHertzUntilTheTimeoutStatusIsCleared) {
   ModuleBench bench("EX9043D");
   ASSERT_EQ(bench.ask("~013101"), "!01");
   bench.run(seconds(1));
@@ -185,7 +184,7 @@ TEST(HostWatchdog, TheLedFlashesAtTwoHertzOnItsPin) {
 
 // --- wire.md 6: module watchdog ---
 
-TEST(ModuleWatchdog, AHungMainLoopCausesAReportedResetWithin1600ms) {
+TEST(ModuleWatchdog, AHungMainLoopCausesAReportedResetToThePowerOnValue) {
   ModuleBench bench("EX9068D-M,protocol=ascii");
   ASSERT_EQ(bench.ask("@0155"), ">");
   ASSERT_EQ(bench.ask("~015P"), "!01");
@@ -207,7 +206,7 @@ TEST(ModuleWatchdog, AStoppedTickCausesAResetWithin1600ms) {
   EXPECT_EQ(bench.module().watchdog_resets(), 1U);
 }
 
-TEST(ModuleWatchdog, AHealthyModuleIsNeverReset) {
+TEST(ModuleWatchdog, AHealthyModuleIsNotResetWithinThreeHours) {
   ModuleBench bench("EX9068D-M");
   bench.run(std::chrono::hours(3));
   EXPECT_EQ(bench.module().watchdog_resets(), 0U);

@@ -9,7 +9,7 @@
 
 namespace ex9000 {
 
-/// Peripherals without state; none of their functions is called.
+/// Stands for each peripheral. It has no state, and none of its functions is called.
 struct Nothing {
   [[nodiscard]] static Time now();
   [[nodiscard]] static Time now_in_interrupt();

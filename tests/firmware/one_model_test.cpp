@@ -20,7 +20,8 @@ TEST(OneModel, ADeviceIsInitialisedAtCompileTime) {
   EXPECT_EQ(&untouched_device.module().state().model(), &kOnlyModel);
 }
 
-// A program for all models must read the settings that an image stores, and vice versa.
+// A program for all models must read the settings that an image stores, and an image must read those of such
+// a program. tests/firmware/settings/record_test.cpp checks the same bytes in a program for all models.
 TEST(OneModel, ItsRecordIsTheSameAsInAProgramForAllModels) {
   const std::vector<std::uint8_t> from_the_factory{
       3,    19,   1,    0,                    // layout, length, sequence

@@ -1,6 +1,7 @@
-// Plays random sessions on the firmware and on the reference.
-//   EX9000_TRANSACTIONS  number of requests; default 200000, or 50000 without extensions; a long run has
-//                        10000000
+// Plays random sessions on the firmware and on the reference, an independent model of a module. Also replays
+// the transcripts of sessions. The variables apply to the tests that compare the firmware and the reference:
+//   EX9000_TRANSACTIONS  least number of requests; default 200000, or 50000 without extensions; tests/long
+//                        uses 10000000
 //   EX9000_SEED          seed of the first session, default 9042; each further session has the next number
 #include <gtest/gtest.h>
 
@@ -19,12 +20,13 @@
 namespace ex9000::reference {
 namespace {
 
-/// The number of steps of a session; the test of the transcripts plays a third of them. It is large enough
-/// for one step to influence many others.
+/// The number of steps of a session; the test of the transcripts plays a third of this number. The number is
+/// large so that one step can influence many later steps.
 constexpr unsigned kSteps = 300;
 
-/// Returns the model for a seed. Consecutive seeds give each model in turn; a model with two protocols occurs
-/// three times. Without extensions, the function does not return the models that the extensions add.
+/// Returns the model for a seed. Consecutive seeds give each model in turn, and a model with two protocols
+/// three times in succession. Without extensions, the function does not return the models that the extensions
+/// add.
 const ModelRow& row_of(std::uint64_t seed, Extensions extensions) {
   std::vector<const ModelRow*> rows;
   for (const ModelRow& row : kModelRows) {
@@ -35,7 +37,7 @@ const ModelRow& row_of(std::uint64_t seed, Extensions extensions) {
   return *rows[seed % rows.size()];
 }
 
-/// A session and its steps, up to the first step at which the firmware and the reference differ.
+/// A session of `length` steps. It ends earlier if the firmware and the reference differ after a step.
 struct Played {
   Played(std::uint64_t seed, unsigned length, Extensions extensions)
       : row(row_of(seed, extensions)), session(row, extensions) {
@@ -56,7 +58,8 @@ struct Played {
 };
 
 /// Plays sessions until at least `wanted` requests have been sent. Fails if the firmware and the reference
-/// differ, if a rule is never reached, or if too few requests are sent near an expiry of the host watchdog.
+/// differ, if a rule of the list in `Rules` is never reached, or if too few requests are sent shortly before
+/// an expiry of the host watchdog or while the expiry is being stored.
 void play_sessions(std::uint64_t wanted, Extensions extensions) {
   std::uint64_t seed = number_in_environment("EX9000_SEED", 9042);
   std::uint64_t transactions = 0;
@@ -99,8 +102,9 @@ TEST(RandomSessions, TheFirmwareBehavesLikeTheReference) {
   play_sessions(number_in_environment("EX9000_TRANSACTIONS", 200'000), Extensions::Present);
 }
 
-/// A factory-fresh module replies to the requests of the manuals as if it had no extensions. The reference
-/// has no extensions here, and `Rules` rejects every rule of an extension.
+/// While the settings of the extensions have their factory values, a module replies to the requests of the
+/// manuals as if it had no extensions. The reference has no extensions here, and `Rules` throws if a rule of
+/// an extension is reached.
 TEST(RandomSessions, RequestsOfTheManualsGetTheRepliesOfAModuleWithoutExtensions) {
   play_sessions(number_in_environment("EX9000_TRANSACTIONS", 50'000), Extensions::Absent);
 }

@@ -71,7 +71,7 @@ class Life {
               "a module replies if its line is quiet");
       return;
     }
-    session_.byte('\r', ByteStatus::Good);  // ends a command in progress; it can change the address
+    session_.byte('\r', ByteStatus::Good);  // ends a command in progress; that command can change the address
     session_.wait_for_quiet();
     const std::array<std::uint8_t, 4> name{'$', upper_hex(address / 16U), upper_hex(address), 'M'};
     require(session_.ask({name.data(), name.size()}).size > 3, "a module replies if its line is quiet");

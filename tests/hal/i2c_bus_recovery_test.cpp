@@ -1,5 +1,5 @@
-// Tests the recovery of an I2C bus on wires that record their levels. Source: NXP UM10204, 3.1.16 (nine clocks), 3.1.4 (START
-// and STOP), table 10 (times of the standard mode).
+// Tests the recovery of an I2C bus on wires that record their levels. Source: NXP UM10204, 3.1.16 (nine
+// clocks), 3.1.4 (START and STOP), table 10 (times of the standard mode).
 #include "hal/i2c_bus_recovery.hpp"
 
 #include <gtest/gtest.h>
@@ -11,9 +11,9 @@ namespace {
 
 Time now;
 
-/// Records the levels of the wires after each call of `take` and `pull`: `C` and `D` if the clock and the data
-/// line are high, `c` and `d` if they are low. A device on the bus holds the data line low until the clock has
-/// risen `held_for` more times.
+/// Records the levels of the wires after each call of `take` and `pull`: `C` and `D` if the clock and the
+/// data line are high, `c` and `d` if they are low. A device on the bus holds the data line low until the
+/// clock has risen `held_for` more times.
 struct RecordedWires {
   static inline std::string levels;
   static inline int held_for = 0;

@@ -23,8 +23,9 @@ namespace bus = hal::bus;
 constexpr unsigned kMegahertz = 50;
 constexpr unsigned kPeriod = 10'000 * kMegahertz;
 
-/// Simulates SysTick. Each read takes `cycles_an_access` cycles. When the counter has restarted, the interrupt
-/// runs `accesses_late` calls of `pass` after the next one, but not while it is `held`.
+/// Simulates SysTick. Each read takes `cycles_an_access` cycles. When the counter has restarted, the
+/// interrupt runs in the next call of `pass`, or `accesses_late` calls later. Calls while `held` is true do
+/// not count.
 class SysTick final : public bus::Peripherals {
  public:
   SysTick(unsigned cycles, unsigned cycles_an_access, unsigned accesses_late)

@@ -8,10 +8,10 @@ const RATES = [1200, 2400, 4800, 9600, 19200, 38400, 57600, 115200];
 const FIRST_RATE_CODE = 3;
 
 const TIMEOUT = 10000; // long enough for a busy machine; in milliseconds, like all times in this file
-// The time that a master waits after a broadcast, which has no reply: the duration of the longest broadcast on the
-// line, plus 5 s. The line runs in real time: even on a busy machine, the simulator must read the broadcast within
-// this time. A gateway for Modbus TCP itself separates the requests, so with Modbus TCP the time only has to be long
-// enough for a reply.
+// The time that a master waits after a broadcast, which has no reply: slightly more than the duration of the longest
+// broadcast on the line, plus 5 s. The line runs in real time: even on a busy machine, the simulator must read the
+// broadcast within this time. A gateway for Modbus TCP itself separates the requests, so with Modbus TCP the time only
+// has to be long enough to detect a wrong reply.
 const turnaround = ({ modbusTcp, baud }) => (modbusTcp ? 250 : 5000 + 150000 / baud);
 
 const hex = (bytes) => Buffer.from(bytes).toString("hex").toUpperCase().replace(/..(?=.)/g, "$& ");
@@ -35,7 +35,10 @@ function written(frame, address, value) {
   return answer;
 }
 
-/** Returns the lines of the conversation without its comments. Lines for a gateway are only for Modbus TCP. */
+/**
+ * Returns the lines of the conversation without its comments. Returns the lines for a gateway only with Modbus TCP, and
+ * without the word "gateway".
+ */
 function lines({ modbusTcp, baud }) {
   const text = fs.readFileSync(path.join(__dirname, "conversation.txt"), "utf8");
   return text
@@ -46,7 +49,7 @@ function lines({ modbusTcp, baud }) {
     .map((line) => line.replace(/^gateway /, ""));
 }
 
-/** Returns the steps of the conversation: each request with its reply, and each wait as a step of its own. */
+/** Returns the steps of the conversation: each request with its expected result, and each wait as a separate step. */
 function steps(where) {
   const result = [];
   for (const line of lines(where)) {
@@ -66,13 +69,13 @@ class Checks {
   failed = 0;
 
   /**
-   * Sends all requests. `ask` returns a promise of the result that the library delivers: the text of a frame,
-   * "silence", or an error. The result of a step without `expected` is not checked.
+   * Plays all steps. `ask` returns a promise of the result that the library delivers: the text of a frame, "silence",
+   * or an error. The result of a step without `expected` is not checked.
    */
   async play(conversation, ask) {
     for (const { asked, frame, expected, wait } of conversation) {
       if (wait) {
-        // The line runs in real time, and the conversation specifies how long the module takes.
+        // The line runs in real time, so the same time passes for the modules.
         await timers.setTimeout(wait);
         continue;
       }
@@ -122,7 +125,7 @@ function portOptions() {
   return { host, port: Number(port), modbusTcp: modbusTcp !== undefined, baud: Number(baud) };
 }
 
-/** Runs `converse(where, steps, checks)` and prints the result. */
+/** Runs `converse(where, steps, checks)`, prints the result and sets the exit code. */
 async function main(library, converse) {
   const where = portOptions();
   const checks = new Checks();

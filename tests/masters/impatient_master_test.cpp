@@ -35,7 +35,7 @@ class Line {
  public:
   explicit Line(const std::vector<std::string>& options) : simulator_(with_modules(options)) {}
 
-  /// Sends the bytes in one piece and returns `answer` bytes of the reply.
+  /// Sends the bytes in one piece. Waits for `answer` bytes and returns them.
   Bytes ask(const Bytes& bytes, std::size_t answer) {
     client_.send(bytes);
     return client_.receive(answer);
@@ -96,8 +96,8 @@ TEST(ImpatientMaster, ARequestToAnotherModuleMayImmediatelyFollowAReply) {
 }
 
 // At 1200 baud, the request takes 67 ms, T3.5 takes 32 ms and the reply takes 58 ms, so the reply ends
-// between 157 ms and 167 ms. Module 02 has also received the reply. A request that begins less than T3.5
-// later is part of the same frame.
+// at 157 ms. The first request to module 02 begins at 175 ms, less than T3.5 later. Module 02 also receives
+// the reply, so it treats the reply and this request as one frame.
 TEST(ImpatientMaster, ARequestWithoutAGapIsLostIfGapsAreStrict) {
   SimulatorProcess simulator({"EX9042D-M@01,baud=1200", "EX9052D-M@02,baud=1200", "--tcp", "0",
                               "--strict-gaps", "--speed", "step", "--control", "ctl"});

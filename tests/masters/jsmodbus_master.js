@@ -44,8 +44,8 @@ const misread = (frame) => frame[1] === 0x05 && word(frame, 4) === 0xff00;
 const granted = ({ wait, frame, expected }) => !wait && expected === hex(frame);
 
 /**
- * Returns the part of the conversation that the library supports. Replies that it misreads are not checked, because
- * later requests read the values back.
+ * Returns the part of the conversation that the library supports. Omits the checks of the replies that the library
+ * misreads. Later requests read back most of the written values.
  */
 function supportedSteps(steps) {
   return steps

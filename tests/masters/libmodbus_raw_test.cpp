@@ -1,4 +1,4 @@
-// Tests unmodified libmodbus on one line with two modules. It sends the raw requests of
+// Tests unmodified libmodbus on one line with two modules. Sends the raw requests of
 // tests/masters/conversation.txt, which include functions for which libmodbus has no call.
 #include <gtest/gtest.h>
 #include <modbus/modbus.h>
@@ -38,9 +38,9 @@ void send(LibmodbusMaster& master, const Frame& frame) {
   ASSERT_GT(modbus_send_raw_request(master.at(frame[0]), frame.data(), static_cast<int>(frame.size())), 0);
 }
 
-/// Returns the bytes received until there are `size` bytes, or until no byte arrives for `patience`. Reads
-/// the descriptor directly, because libmodbus cannot calculate the length of replies to functions for which
-/// it has no call.
+/// Returns the bytes received until there are `size` bytes, until no byte arrives for `patience`, or until
+/// the connection fails. Reads the descriptor directly, because libmodbus cannot calculate the length of
+/// replies to functions for which it has no call.
 Frame received(LibmodbusMaster& master, std::size_t size, std::chrono::milliseconds patience) {
   Frame bytes;
   pollfd ready{modbus_get_socket(master.at(1)), POLLIN, 0};
@@ -56,8 +56,9 @@ Frame received(LibmodbusMaster& master, std::size_t size, std::chrono::milliseco
 
 bool uses_modbus_tcp(LibmodbusMaster& master) { return modbus_get_header_length(master.at(1)) > 1; }
 
-/// Returns a reply of `size` bytes, without its CRC if the CRC is correct. With Modbus TCP, returns it
-/// without the header, which libmodbus checks in the other tests.
+/// Returns a reply of `size` bytes, without its CRC if the CRC is correct. With Modbus TCP, the header
+/// determines the size. Then this function returns the reply without the header, which libmodbus checks in
+/// the tests of libmodbus_test.cpp.
 Frame heard(LibmodbusMaster& master, std::size_t size, std::chrono::milliseconds patience) {
   constexpr std::size_t kHeader = 6;  // bytes before the unit
   constexpr std::size_t kLength = 5;  // the low byte of the number of bytes after the header
@@ -116,15 +117,16 @@ TEST_P(LibmodbusRaw, GetsEveryExpectedReplyOfTheConversation) {
       EXPECT_EQ(heard(master, expected.size(), kHang), expected) << line;
       ++answers;
     } else if (what == "silence") {
-      // The line runs in real time. If the next request came before the program has read this one, both would
-      // form one frame. On a busy machine this check can end too early. The test then receives the late reply
-      // instead of the next reply, and fails there.
+      // The line runs in real time. If the next request came before the simulator has read this one, both
+      // would form one frame on a serial line. On a busy machine, a wrong reply can arrive after this check.
+      // The test then receives this reply instead of the reply to the next request, and fails at that
+      // request.
       ASSERT_TRUE(modules.simulator().wait_for(logged(sent))) << line;
       EXPECT_EQ(heard(master, 1, milliseconds(300)), Frame{}) << line;
     } else if (what == "wait") {
       int time = 0;
       words >> time;
-      // The line runs in real time, and the conversation specifies how long the module takes.
+      // The line runs in real time, so the same time passes for the modules.
       std::this_thread::sleep_for(milliseconds(time));
     } else {
       EXPECT_TRUE(what.empty() || what[0] == ';') << line;

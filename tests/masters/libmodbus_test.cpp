@@ -78,7 +78,7 @@ TEST_P(Libmodbus, GetsTheRepliesOfTwoModulesThatItPollsInTurn) {
   }
 }
 
-TEST_P(Libmodbus, ReadsBackTheValuesThatItHasWritten) {
+TEST_P(Libmodbus, ReadsBackTheValuesThatItHasWrittenAndReportsTheServerIds) {
   const Bits pattern{1, 0, 1, 1, 0, 0, 1, 0, 1, 1, 1, 0, 1};
   EXPECT_EQ(write_coils(kOutputs, 0, pattern), 13);
   EXPECT_EQ(input_registers(kInputs, 0, 8), Words(8, 0));
@@ -91,7 +91,8 @@ TEST_P(Libmodbus, ReadsBackTheValuesThatItHasWritten) {
   EXPECT_EQ(modbus_write_bit(master_.at(kOutputs), kSafe + 1, 1), 1);
   EXPECT_EQ(modbus_write_bit(master_.at(kInputs), 0x0107, 1), 1);
   EXPECT_EQ(write_coils(kOutputs, kPowerOn + 4, {1, 1}), 2);
-  EXPECT_EQ(coils(kOutputs, 0, 8), (Bits{1, 1, 1, 1, 1, 1, 1, 0})) << "each write also drives the outputs";
+  EXPECT_EQ(coils(kOutputs, 0, 8), (Bits{1, 1, 1, 1, 1, 1, 1, 0}))
+      << "writes of the safe value and of the power-on value also drive the outputs";
 
   EXPECT_EQ(modbus_write_register(master_.at(kInputs), kTimeout, 100), 1);
   EXPECT_EQ(write_registers(kOutputs, kAddress, {9, 7}), 2);
@@ -111,8 +112,8 @@ TEST_P(Libmodbus, ReadsBackTheValuesThatItHasWritten) {
 }
 
 TEST_P(Libmodbus, BroadcastsAndHostOkHaveNoReply) {
-  // The line runs in real time. If the next request came before the program has read this one, both would
-  // form one frame, so the test waits until the program has logged this one.
+  // The line runs in real time. If the next request came before the simulator has read this one, both would
+  // form one frame on a serial line, so the test waits until the simulator has logged this one.
   const auto fails_with = [this](int error, int result, const std::string& frame) {
     const bool failed = result == -1 && errno == error;
     return failed && modules_.simulator().wait_for("> master  " + frame);
@@ -120,7 +121,7 @@ TEST_P(Libmodbus, BroadcastsAndHostOkHaveNoReply) {
   const auto unanswered = [&](int result, const std::string& frame) {
     return fails_with(ETIMEDOUT, result, frame);
   };
-  master_.wait_for_replies(500);  // no reply arrives
+  master_.wait_for_replies(500);  // a short timeout, because no reply arrives
   EXPECT_TRUE(unanswered(write_coils(kBroadcast, 0, {1, 1, 1}), "00 0F 00 00 00 03 01 07"));
   EXPECT_TRUE(unanswered(modbus_write_bit(master_.at(kBroadcast), 1, 0), "00 05 00 01 00 00"));
   EXPECT_TRUE(unanswered(modbus_write_register(master_.at(kBroadcast), kTimeout, 50), "00 06 01 E8 00 32"));
@@ -138,11 +139,11 @@ TEST_P(Libmodbus, BroadcastsAndHostOkHaveNoReply) {
   EXPECT_EQ(coils(kOutputs, 0, 3), (Bits{1, 0, 1}));
   for (const int address : {kOutputs, kInputs}) {
     EXPECT_EQ(registers(address, kTimeout, 1), Words{50});
-    EXPECT_EQ(registers(address, kAddress, 1)[0], address) << "configuration is never broadcast";
+    EXPECT_EQ(registers(address, kAddress, 1)[0], address) << "a broadcast must not change the address";
   }
 }
 
-TEST_P(Libmodbus, RejectedRequestsGetTheirExceptionAndChangeNothing) {
+TEST_P(Libmodbus, RejectedRequestsGetTheirExceptionAndDoNotChangeTheTimeout) {
   Bits bits(2000);
   Words words(125);
   struct Refused {
@@ -197,7 +198,7 @@ TEST_P(Libmodbus, RejectedRequestsGetTheirExceptionAndChangeNothing) {
     EXPECT_EQ(refused.send(master_.at(refused.address)), -1) << refused.request;
     EXPECT_EQ(errno, refused.exception) << refused.request << ": " << modbus_strerror(errno);
   }
-  EXPECT_EQ(registers(kOutputs, kTimeout, 1), Words{0xFF}) << "nothing was done";
+  EXPECT_EQ(registers(kOutputs, kTimeout, 1), Words{0xFF}) << "no rejected request may change the timeout";
 }
 
 TEST_P(Libmodbus, ATimeoutOfTheHostWatchdogBlocksTheOutputs) {
@@ -230,7 +231,8 @@ TEST_P(LibmodbusOverModbusTcp, GetsTheExceptionsOfTheGateway) {
   constexpr int kAbsent = 3;
   EXPECT_EQ(modbus_read_bits(master_.at(kAbsent), 0, 1, &bit), -1);
   EXPECT_EQ(errno, EMBXGTAR) << modbus_strerror(errno);
-  // MODBUS_TCP_SLAVE (255) is the default address of libmodbus. libmodbus itself rejects 248 to 254.
+  // With Modbus TCP, MODBUS_TCP_SLAVE (255) is the default address of libmodbus. libmodbus itself rejects 248
+  // to 254.
   EXPECT_EQ(modbus_write_bit(master_.at(MODBUS_TCP_SLAVE), 0, 1), -1);
   EXPECT_EQ(errno, EMBXGPATH) << modbus_strerror(errno);
   EXPECT_EQ(coils(kOutputs, 0, 1), Bits{0});

@@ -1,4 +1,4 @@
-// Tests unmodified mbpoll on one line with two modules. Uses all functions of mbpoll that read or write. The
+// Tests unmodified mbpoll on one line with two modules. Uses every Modbus function that mbpoll supports. The
 // expected values are from firmware/wire.md 7.
 #include <gtest/gtest.h>
 
@@ -14,10 +14,10 @@ using Arguments = std::vector<std::string>;
 
 class Mbpoll : public testing::TestWithParam<Way> {
  protected:
-  /// Runs mbpoll once with these arguments. The references of mbpoll count from 0, like the addresses on the
-  /// line.
+  /// Runs mbpoll once with these options and values. With the option -0, the references of mbpoll count from
+  /// 0, like the addresses on the line.
   Finished mbpoll(const Arguments& options, const Arguments& values = {}) {
-    Arguments command{"mbpoll", "-0", "-1", "-o", "10"};  // response timeout in seconds for a busy machine
+    Arguments command{"mbpoll", "-0", "-1", "-o", "10"};  // -o: response timeout in s, for a busy machine
     const Arguments port = over_modbus_tcp()
                                ? Arguments{"-m", "tcp", "-p", std::to_string(modules_.modbus_tcp_port())}
                                : Arguments{"-m", "rtu", "-b", std::to_string(GetParam().baud), "-P", "none"};
@@ -73,7 +73,7 @@ TEST_P(Mbpoll, ReadsAndWritesBothModulesAlternately) {
               "[483]: \t0x4200\n-- Polling slave 2...\n[483]: \t0x5200");
 }
 
-TEST_P(Mbpoll, ReportsTheServerId) {
+TEST_P(Mbpoll, ReportsTheServerIdOnlyInRtuMode) {
   if (over_modbus_tcp()) {
     const std::string only_rtu = mbpoll({"-a", "1", "-u"}).error;
     EXPECT_NE(only_rtu.find("-u is available only in RTU mode"), std::string::npos) << only_rtu;
@@ -105,12 +105,12 @@ TEST_P(Mbpoll, NamesTheExceptionsItGets) {
   expect_refusal({"-a", "1", "-t", "4", "-r", "0x1E4"}, value, {"9", "2"});
 }
 
-TEST_P(Mbpoll, HostOkHasNoReplyAndATimeoutBlocksTheOutputs) {
+TEST_P(Mbpoll, HostOkHasNoReplyAndATimeoutOfTheHostWatchdogBlocksTheOutputs) {
   if (over_modbus_tcp()) {
     expect_refusal({"-a", "1", "-t", "4", "-r", "0x3038"}, "Target device failed to respond");
   } else {
-    // No reply arrives, so mbpoll need not wait long. The program must have read this request before the next
-    // one.
+    // No reply arrives, so mbpoll need not wait long. expect_sent() below waits until the simulator has read
+    // this request. If the next request came earlier, both would form one frame.
     expect_refusal({"-a", "1", "-t", "4", "-r", "0x3038", "-o", "0.2"}, "Connection timed out");
   }
   expect_sent("01 03 30 38 00 01");
@@ -135,7 +135,7 @@ TEST_P(MbpollOverModbusTcp, NamesTheExceptionsOfTheGateway) {
   expect_refusal({"-a", "255", "-t", "4", "-r", "0x1E8"}, "Gateway path unavailable", {"1"});
 }
 
-TEST_P(MbpollOverModbusTcp, WritesTheOutputsOfAllModulesWithoutAReply) {
+TEST_P(MbpollOverModbusTcp, ABroadcastSwitchesAnOutputOnWithoutAReply) {
   expect_refusal({"-a", "0", "-t", "0", "-r", "2", "-o", "0.2"}, "Connection timed out", {"1"});
   expect_sent("00 05 00 02 FF 00");
   expect_line({"-a", "1", "-t", "0", "-r", "2"}, "[2]: \t1");

@@ -25,7 +25,10 @@ const REQUESTS = {
 
 const read = (frame, { buffer }) => [frame[0], frame[1], buffer.length, ...buffer];
 
-/** The library returns only the conformity level of the reply's header. The modules never set "more follows". */
+/**
+ * Returns the frame of the reply to function 2B. Of the reply's header, the library returns only the conformity level.
+ * The modules never set "more follows".
+ */
 function identification(frame, { data, conformityLevel }) {
   const objects = Object.entries(data).map(([id, text]) => [Number(id), text.length, ...Buffer.from(text)]);
   return [...frame.subarray(0, 4), conformityLevel, 0, 0, objects.length, ...objects.flat()];
@@ -60,8 +63,8 @@ async function ask(client, where, frame) {
 }
 
 /**
- * Returns whether the library can send the request. It sends no MEI type other than 0E. Over Modbus TCP it drops
- * function 11, because it considers the request too short.
+ * Returns whether the library can send the request. The library sends no MEI type other than 0E. Over Modbus TCP, it
+ * drops a request of function 11, because it considers the request too short.
  */
 function sends({ modbusTcp }, frame) {
   const dropped = (frame[1] === 0x2b && frame[2] !== 0x0e) || (modbusTcp && frame[1] === 0x11);
@@ -69,9 +72,10 @@ function sends({ modbusTcp }, frame) {
 }
 
 /**
- * Returns whether the library's own port delivers the reply. The port delivers a reply only if it can calculate the
- * length, and supports few functions. On a serial line, the port delivers the reply to function 11 before the reply
- * is complete. The header of Modbus TCP contains the length.
+ * Returns whether the library's own port delivers the reply when the reply is complete. Without Modbus TCP, the port
+ * must calculate the length of the reply. It can do this for few functions, and not for reads of quantity 0. On a
+ * serial line, the port delivers the reply to function 11 before the reply is complete. The header of Modbus TCP
+ * contains the length.
  */
 function reachesOwnPort({ tty, modbusTcp }, frame) {
   if (modbusTcp) {
@@ -82,8 +86,8 @@ function reachesOwnPort({ tty, modbusTcp }, frame) {
 }
 
 /**
- * Connects through a port of the library. connectTelnet is its port for RTU over TCP; its TcpRTUBuffered uses the
- * header of Modbus TCP.
+ * Connects through a port of the library. connectTelnet is for RTU frames over TCP. The library's TcpRTUBuffered is
+ * not suitable for them, because it uses the header of Modbus TCP.
  */
 async function connectOwnPort(client, { tty, host, port, modbusTcp, baud }) {
   if (tty) {
@@ -93,7 +97,10 @@ async function connectOwnPort(client, { tty, host, port, modbusTcp, baud }) {
   }
 }
 
-/** A port for the other replies. The library accepts custom ports. A reply is complete when its CRC is correct. */
+/**
+ * A custom port for the replies that the library's own port does not deliver. A reply is complete when its CRC is
+ * correct.
+ */
 class FramePort extends events.EventEmitter {
   constructor(line) {
     super();

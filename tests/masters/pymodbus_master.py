@@ -49,18 +49,19 @@ def packed(*values):
 
 
 def turnaround(arguments):
-    """Returns how long a master waits after a broadcast, which has no reply, in seconds: the duration of the longest
-    broadcast on the line, plus 5 s.
+    """Returns how long a master waits after a broadcast, which has no reply, in seconds: slightly more than the
+    duration of the longest broadcast on the line, plus 5 s.
 
     The line runs in real time: even on a busy machine, the simulator must read the broadcast within this time. A
-    gateway for Modbus TCP itself separates the requests, so with Modbus TCP the time only has to be long enough for a
-    reply.
+    gateway for Modbus TCP itself separates the requests, so with Modbus TCP the time only has to be long enough to
+    detect a wrong reply.
     """
     return 0.25 if arguments.modbus_tcp else 5 + 150 / arguments.baud
 
 
 class IdentificationRequest(ReadDeviceInformationRequest):
-    """A request with the length of its reply. Without that length, the library waits for a pause or for its timeout."""
+    """A request of function 2B with the length of its reply. Without that length, the library waits for a pause or for
+    its timeout."""
 
     def __init__(self, data, reply_size):
         super().__init__(data[1], data[2])
@@ -172,7 +173,7 @@ ANSWERS = {
     0x08: lambda response: packed(response.sub_function_code, *response.message),
     0x0F: lambda response: packed(response.address, response.count),
     0x10: lambda response: packed(response.address, response.count),
-    # The library's `status` is the last byte of the reply, which is part of the name here.
+    # The library also uses the last byte of the reply as `status`, but here this byte is part of the name.
     0x11: lambda response: counted(response.identifier),
     0x2B: identification,
     0x46: lambda response: response.data,
@@ -190,7 +191,8 @@ def request_of(frame, expected):
 
 
 def ask(client, request):
-    """Returns the reply that the library delivers, as the text of a frame."""
+    """Returns the reply that the library delivers, as the text of a frame. Returns another text if the library delivers
+    no reply."""
     response = client.execute(request)
     if request.unit_id == 0:
         return "silence"  # the library does not wait for a reply; converse() checks that no reply arrives
@@ -203,7 +205,7 @@ def ask(client, request):
 
 
 def bytes_of(step):
-    """Returns the frame after `=>` or `<=`."""
+    """Returns the frame after `=>` or `<=`. Returns no bytes for `silence`."""
     return b"" if step == "silence" else bytes.fromhex(step[3:])
 
 
@@ -212,7 +214,8 @@ def text_of(frame):
 
 
 def steps(arguments):
-    """Returns the lines of the conversation without its comments. Lines for a gateway are only for Modbus TCP."""
+    """Returns the lines of the conversation without its comments. Returns the lines for a gateway only with Modbus TCP,
+    and without the word "gateway"."""
     text = pathlib.Path(__file__).with_name("conversation.txt").read_text(encoding="utf-8")
     text = text.replace("{BAUD}", f"{3 + RATES.index(arguments.baud):02X}")
     lines = (line.split(";")[0].strip() for line in text.splitlines())
@@ -228,14 +231,14 @@ def converse(client, arguments):
         if step.startswith("=> "):
             asked = step
         elif step.startswith("wait "):
-            # The line runs in real time, and the conversation specifies how long the module takes.
+            # The line runs in real time, so the same time passes for the modules.
             time.sleep(int(step[5:-2]) / 1000)
         else:
             expected = step.removeprefix("<= ")
             got = ask(client, request_of(bytes_of(asked), bytes_of(step)))
             if expected == "silence":
-                # A master pauses after a broadcast (V1.02, 2.4.1). On a busy machine this check can miss a late reply,
-                # but it cannot fail without one.
+                # A master waits after a broadcast (Modbus over Serial Line V1.02, 2.4.1). On a busy machine, this check
+                # can miss a late reply, but it cannot fail if there is no reply.
                 time.sleep(turnaround(arguments))
                 if select.select([client.socket], [], [], 0)[0]:
                     got = "a reply"

@@ -18,17 +18,17 @@ namespace ex9000::registers {
 
 class BoardBench {
  public:
-  /// The supply is off at first.
+  /// Creates a board whose supply is off. `image` must outlive this object.
   explicit BoardBench(const Image& image, I2cBehaviour behaviour = {});
   ~BoardBench();
 
   void power_on();
   void power_off();
   [[nodiscard]] bool powered() const { return run_.has_value(); }
-  /// Resets the board like its reset pin.
+  /// Resets the microcontroller through its reset pin.
   void reset();
-  /// Runs until `when`. Throws Fault if the image causes one. Counts resets by the image or its watchdog and
-  /// continues after them.
+  /// Runs until `when`. If the supply is off, only lets time pass. Throws Fault if the image causes one.
+  /// Counts resets by the image or its watchdog and continues after them.
   void run_until(Instant when);
   void run_for(Instant time) { run_until(timeline.now() + time); }
 
@@ -55,11 +55,12 @@ class BoardBench {
   unsigned resets = 0;  ///< by the watchdog or by software
   unsigned watchdog_resets = 0;
   Instant began{0};  ///< the time of the last reset of any kind
-  /// The time at which the first output was switched on since the last reset of any kind.
+  /// The time at which an output came on for the first time since the last reset of any kind; kNever if no
+  /// output has come on since then.
   Instant output_came_on = kNever;
-  /// The next resets use these values.
-  Instant crystal_start = std::chrono::milliseconds(2);
-  bool record = false;
+  // From the next reset of any kind on, the microcontroller uses these values.
+  Instant crystal_start = std::chrono::milliseconds(2);  ///< how long the crystal takes to start
+  bool record = false;                                   ///< whether to record the bus accesses
 
  private:
   void start(ResetCause cause, std::uint32_t causes_before);

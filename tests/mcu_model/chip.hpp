@@ -1,4 +1,5 @@
-// The differences between the two microcontrollers, from their data sheets.
+// The properties of the LM3S6965 and of the TM4C123GH6PM that differ, from their data sheets, and the
+// crystals on their boards.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +10,7 @@ namespace ex9000::registers {
 
 struct Chip {
   const char* name;
-  unsigned ports;             ///< A to F, or A to G
+  unsigned ports;             ///< 6: A to F; 7: A to G
   bool port_control;          ///< GPIOPCTL and GPIOAMSEL exist
   bool i2c_clock_open_drain;  ///< the pin of SCL must be open drain; if false, it must not be
   bool pin_clears_causes;     ///< a reset by the pin clears the other bits of RESC
@@ -17,7 +18,7 @@ struct Chip {
   unsigned clocks_after_gate;
   Instant cycle_at_reset;  ///< period of the internal oscillator: 12 MHz or 16 MHz
   std::uint32_t rcc_at_reset;
-  std::uint32_t rcc_kept;       ///< reserved bits of RCC, which must keep their value
+  std::uint32_t rcc_kept;       ///< bits of RCC that must keep their value; bit 12 may change
   std::uint32_t crystal_code;   ///< value of RCC field XTAL for the crystal on the board
   std::uint32_t crystal_field;  ///< mask of RCC field XTAL, shifted down
 };

@@ -14,8 +14,9 @@ constexpr std::uint32_t kKey = 0x05FA;
 Core::Core(const SystemControl& clock, Timeline& timeline)
     : Peripheral(kBase), clock_(clock), timeline_(timeline), tick_(timeline, [this] { count_tick(); }) {}
 
-/// Returns the SysTick counter. A write sets it to 0. The next clock loads the reload value, and each further
-/// clock decrements the counter. The exception becomes pending when the counter reaches 0.
+/// Returns the SysTick counter. In this model, the counter is 0 while it is disabled. While it is enabled, a
+/// clock at 0 loads the reload value, and every other clock decrements the counter. If the SysTick exception
+/// is enabled, it becomes pending when the counter reaches 0.
 std::uint32_t Core::current() const {
   if ((tick_control_ & 1U) == 0) {
     return 0;
@@ -110,7 +111,8 @@ void Core::pend(unsigned exception) {
   }
 }
 
-/// Sets the level of an interrupt line. A pending exception stays pending when its line goes low.
+/// Sets the level of an interrupt line. A line that `stick` has asserted stays asserted. A pending exception
+/// stays pending when its line goes low.
 void Core::interrupt_line_of(unsigned interrupt, bool asserted) {
   lines_.at(interrupt) = asserted || (stuck_ >> interrupt & 1U) != 0;
   if (lines_.at(interrupt)) {
@@ -118,7 +120,7 @@ void Core::interrupt_line_of(unsigned interrupt, bool asserted) {
   }
 }
 
-/// Returns the exception to serve next, 0 if there is none. Does not consider whether interrupts are
+/// Returns the exception to serve next; 0 if there is none. Does not consider whether interrupts are
 /// disabled.
 unsigned Core::next_to_serve() const {
   const std::uint64_t candidates = waiting();

@@ -65,8 +65,8 @@ class Core final : public Peripheral {
   /// Returns the group priority: the part of a priority that decides whether one interrupt preempts another.
   [[nodiscard]] unsigned group(unsigned priority) const { return priority >> (group_shift_ + 1U); }
   [[nodiscard]] std::uint32_t tick_reload() const { return reload_; }
-  /// Returns the time of the last tick, served or not; before the first tick, the time at which the counter
-  /// was enabled.
+  /// Returns the time of the last tick, served or not. Returns the time at which the counter was enabled, if
+  /// no tick has followed.
   [[nodiscard]] Instant ticked() const { return tick_began_; }
 
  private:

@@ -123,7 +123,7 @@ void EepromChip::clock_changed() {
       return;
     }
     if (step_ == Step::Reading && bit_ == 8) {
-      // The master did not acknowledge: that was the last byte.
+      // If the master does not acknowledge a byte, the chip sends no more bytes.
       if (data_level_) {
         step_ = Step::Idle;
         return;
@@ -157,7 +157,7 @@ void EepromChip::clock_changed() {
 
 void EepromChip::put_next_bit() {
   if (bit_ == 8) {
-    pull(false);  // the master acknowledges
+    pull(false);  // so that the master can acknowledge
     tell();
     return;
   }

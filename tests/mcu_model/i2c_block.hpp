@@ -16,8 +16,8 @@ namespace ex9000::registers {
 /// Behaviour that the data sheets leave open.
 struct I2cBehaviour {
   bool stop_interrupts = false;     ///< a STOP without a byte raises an interrupt, like a byte
-  bool stops_after_error = false;   ///< a STOP requested with a byte is sent even if an acknowledge is missing
-  bool waits_for_free_bus = false;  ///< a START on a busy bus waits for a reset; if false, it loses arbitration
+  bool stops_after_error = false;   ///< a STOP requested with a byte is sent even without an acknowledge
+  bool waits_for_free_bus = false;  ///< a START on a busy bus waits for a reset; false: it loses arbitration
 };
 
 class I2cBlock final : public Peripheral {

@@ -63,7 +63,7 @@ Microcontroller::Microcontroller(const Chip& chip, Timeline& timeline, Pins& pin
     peripheral.on_interrupt_line([this, interrupt](bool on) { core.interrupt_line_of(interrupt, on); });
   };
   for (unsigned i = 0; i < ports_.size(); ++i) {
-    leads_to(*ports_[i], i < 5 ? i : i + 25);  // ports A to E: 0 to 4; ports F and G: 30 and 31
+    leads_to(*ports_[i], i < 5 ? i : i + 25);  // 0 to 4 for ports A to E, 30 and 31 for F and G
   }
   leads_to(uart0, 5);
   leads_to(uart1, 6);
@@ -139,15 +139,16 @@ Peripheral& Microcontroller::peripheral_at(std::uint32_t address) {
 void Microcontroller::check_usable(const Place& place, std::uint32_t address) const {
   switch (system_control.gate(place.gate_index, place.gate_bit)) {
     case SystemControl::Gate::Shut:
-      throw Fault(address, "has no clock");
+      throw Fault(address, "the peripheral has no clock");
     case SystemControl::Gate::TooFresh:
-      throw Fault(address,
-                  "its clock gate was opened too recently; wait the clocks that the data sheet requires");
+      throw Fault(
+          address,
+          "its clock gate was opened too recently; wait for the clock cycles that the data sheet requires");
     case SystemControl::Gate::Open:
       break;
   }
   if (system_control.holds_in_reset(place.gate_index, place.gate_bit)) {
-    throw Fault(address, "is held in reset");
+    throw Fault(address, "the peripheral is held in reset");
   }
 }
 

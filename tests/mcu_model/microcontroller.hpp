@@ -80,7 +80,7 @@ class Microcontroller {
 
   static Microcontroller& current();
 
-  // --- called by the drivers; all except disable_interrupts can throw Fault and ResetRequest ---
+  // --- called by the drivers; all except disable_interrupts can throw Fault or ResetRequest ---
 
   std::uint32_t read(std::uint32_t address);
   void write(std::uint32_t address, std::uint32_t value);

@@ -11,8 +11,8 @@
 
 namespace ex9000::registers {
 
-/// The parity bit and the stop bits of a format. The firmware defines them too. The model uses only the
-/// firmware's names of the formats, so that it does not share other errors with the firmware.
+/// The parity bit and the stop bits of a format. The model takes only the names of the formats from the
+/// firmware, so that an error in the firmware's functions for formats does not affect the model.
 struct Form {
   bool parity_bit;
   bool odd;
@@ -44,7 +44,7 @@ constexpr bool parity_of(std::uint8_t byte, LineFormat format) {
 struct Character {
   std::uint8_t byte = 0;
   bool stop = true;           ///< false: the last bit is low
-  unsigned low_bits = 0;      ///< if not 0: a break of this many low bits, then `stop`, instead of a character
+  unsigned low_bits = 0;      ///< if not 0: a break of this many low bits, then `stop`; no character
   bool wrong_parity = false;  ///< no effect in a format without a parity bit
 };
 

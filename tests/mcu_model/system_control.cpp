@@ -121,7 +121,7 @@ void SystemControl::write_rcc(std::uint32_t value) {
   rcc_ = value;
   if (powers_up) {
     if (source_of(rcc_) != 0 || (rcc_ >> kCrystalShift & chip_.crystal_field) != chip_.crystal_code) {
-      fault(kRcc, "the PLL is powered for another crystal than the board's");
+      fault(kRcc, "the PLL is set up for a crystal that the board does not have");
     }
     if (lock_time_ != kNever) {
       lock_.set(std::max(timeline_.now(), crystal_swings_) + lock_time_);

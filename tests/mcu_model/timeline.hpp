@@ -1,5 +1,5 @@
 // Virtual time, and alarms that call a function at a set time. The unit is a picosecond; each clock cycle of
-// a simulated microcontroller lasts at least 20,000 of them.
+// a simulated microcontroller lasts at least 20,000 ps.
 #pragma once
 
 #include <chrono>

@@ -1,4 +1,5 @@
-// A general-purpose timer in 32-bit one-shot mode. Data sheets: LM3S6965 9.3 to 9.5, TM4C123GH6PM 11.3 to 11.5.
+// A general-purpose timer in 32-bit one-shot mode. Data sheets: LM3S6965 9.3 to 9.5, TM4C123GH6PM 11.3 to
+// 11.5.
 #pragma once
 
 #include <cstdint>

@@ -58,7 +58,7 @@ class WatchdogTimer final : public Peripheral {
         break;
       case kControl:
         if ((control_ & ~value & 1U) != 0) {
-          fault(offset, "once it runs, only a reset stops it");
+          fault(offset, "after the watchdog has started, only a reset stops it");
         }
         control_ = value;
         begin();

@@ -153,7 +153,7 @@ def spread(sources, seed):
     chance = random.Random(seed)
     heaps = []
     for file, source in sorted(sources.items()):
-        # The rules of a file are also taken in turn, because the rule for constants makes many mutants, and these rarely
+        # The rules of a file are also taken in turn, because the rule for constants makes many mutants, which rarely
         # reveal a missing test.
         of_rules = {}
         for mutant in all_of(file, source):

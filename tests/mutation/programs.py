@@ -1,6 +1,6 @@
 """Defines which tests check which sources, and how those tests are built.
 
-A unit is one object file: several sources that are compiled in one piece. A program is a test. It lists the units that
+A unit is one object file: one or more sources that are compiled together. A program is a test. It lists the units that
 it may require, and the linker takes those that it does require. Most programs are read from the CMakeLists.txt files;
 the functions `players`, `image_programs` and `pico_program` define the others.
 """
@@ -29,7 +29,7 @@ def stem_of(file):
 
 
 def standing_before(file, options):
-    """Returns the file that the compiler finds for `file`: one in a folder of `options`, or `file` itself."""
+    """Returns the file that the compiler finds for `file`: one in a folder of an option `-I`, or `file` itself."""
     for option in options:
         place = f"{option[2:]}/{file}"
         if option.startswith("-I") and (ROOT / place).exists():
@@ -48,7 +48,7 @@ class Unit:
     name: str
     sources: tuple
     options: tuple = ("-O0",)
-    more: tuple = ()  # sources included by a macro
+    more: tuple = ()  # files that a source includes by a macro
 
     @functools.cached_property
     def files(self):
@@ -64,15 +64,15 @@ class Unit:
 
     @functools.cached_property
     def headers(self):
-        """Returns the library headers that take long to compile. GoogleTest's header includes most of the standard
-        library."""
+        """Returns the library headers to precompile for the unit, because they take long to compile. GoogleTest's
+        header is always among them, because it includes most of the standard library."""
         has_json = any("#include <nlohmann/json.hpp>" in (ROOT / file).read_text() for file in self.files)
         return ("gtest/gtest.h", "nlohmann/json.hpp") if has_json else ("gtest/gtest.h",)
 
 
 @dataclasses.dataclass(frozen=True)
 class Image:
-    """A shared object with the image of a model for a board. It runs on the bus of the register model."""
+    """A shared object with the image of a model for a board. It runs on a microcontroller of tests/mcu_model."""
 
     board: str
     model: str
@@ -96,8 +96,8 @@ class Image:
 
 @dataclasses.dataclass(frozen=True)
 class PicoImage:
-    """The content of the flash of a Pico. The unit is compiled for the host and only shows which mutants change the
-    image."""
+    """The content of the flash of a Pico. `unit` is compiled for the host. It does not run, and only shows which
+    mutants change the image."""
 
     preset: str
     model: str
@@ -141,7 +141,7 @@ class Program:
     environment: tuple = ()
     images: tuple = ()
     options: tuple = ()
-    processor_seconds: int = 8  # several times its normal run time; a program that exceeds it counts as failed
+    processor_seconds: int = 8  # several times the normal run time; a program that requires more counts as failed
 
     @property
     def sources(self):
@@ -149,8 +149,8 @@ class Program:
 
     @functools.cached_property
     def units(self):
-        """Returns the units of the tests and of the images, and the library units whose header one of them includes,
-        directly or indirectly."""
+        """Returns the units of the tests and of the images, and the library units that these require. A unit requires
+        a library unit if it includes, directly or indirectly, the header of one of the sources of the library unit."""
         known = [LIBRARY_UNITS[name] for name in self.libraries]
         reached = list(self.tests) + [image.unit for image in self.images]
         for unit in reached:
@@ -161,22 +161,22 @@ class Program:
         return reached
 
 
-# The parts of the simulator that use sockets, files, ports and signals of the operating system. Mutation does not
-# change them, because only tests that run the program as a process cover them. Names without folder and extension.
+# Parts of the simulator that use sockets, files, ports or signals of the operating system. Mutation does not change
+# them, because tests that run the program as a process cover most of them. Names without folder and extension.
 PROCESS = set(
     "claim control_socket line_ports listening main new_file panel_server port program pty pty_port "
     "running_line running_program serial_port stop_signals tcp_port".split()
 )
 # Those of PROCESS that only the whole program links.
 WHOLE = {"main", "panel_server", "program", "running_program"}
-# Sources that take long to compile and that few tests reach, in addition to those that sim/CMakeLists.txt compiles
-# separately.
+# Sources that are compiled separately, because they take long to compile and few tests reach them. sim/CMakeLists.txt
+# lists further ones after ON_THEIR_OWN.
 ALONE = {"line_record", "play_record"}
 
 
 @dataclasses.dataclass(frozen=True)
 class Folder:
-    """A library of sim/CMakeLists.txt: the units compiled from it, and the libraries that it is linked with."""
+    """A library of sim/CMakeLists.txt: the units compiled from it, and the libraries that it links publicly."""
 
     units: tuple
     libraries: tuple
@@ -207,7 +207,7 @@ FOLDERS = folders()
 
 
 def units_of(folder):
-    """Returns the names of the units of a folder and of all libraries that it is linked with."""
+    """Returns the names of the units of a folder and of all libraries that it links, directly or indirectly."""
     names = ["core"]
     waiting = [folder]
     while waiting:
@@ -258,7 +258,7 @@ def test_program(name, folder, sources, libraries, shadow):
 
 
 def listed_programs(folder):
-    """Returns the tests of CMakeLists.txt in `folder` that require only LIBRARIES and no process."""
+    """Returns the tests of CMakeLists.txt in `folder` that link only LIBRARIES and do not test a source of PROCESS."""
     text = (ROOT / folder / "CMakeLists.txt").read_text()
     found = []
     of_one_file = r"ex9000_test\(\$\{\w+\}_test SOURCES \$\{name\}_test\.cpp LIBRARIES (\w+)\)"
@@ -278,7 +278,7 @@ def listed_programs(folder):
 
 
 def players():
-    """Returns the program that plays the transcripts and random sessions against the reference model."""
+    """Returns the program that plays the transcripts, and compares random sessions with the reference model."""
     options = ("-O1", f'-DEX9000_CONFORMANCE_DIR="{ROOT}/tests/conformance"')
     reference = files("tests/oracles/reference/*.cpp")
     driver = "tests/oracles/reference/session.cpp"
@@ -286,7 +286,7 @@ def players():
         Unit("players-transcripts", ("tests/conformance/conformance_core_test.cpp",), options),
         Unit("players-sessions", ("tests/firmware/reference_sessions_test.cpp",), options),
         Unit("players-driver", (driver,), options),
-        # A separate unit: it includes no header of the firmware, so no mutant requires a rebuild.
+        # A separate unit: it includes only two headers of the product, so few mutants require a rebuild.
         Unit("players-reference", tuple(file for file in reference if file != driver), options),
     )
     # A number of random transactions that is large enough to reach every rule.
@@ -296,19 +296,19 @@ def players():
 
 # The sources of pico_image_test.
 PICO_SOURCES = tuple(f"tests/boards/pico_{part}_test.cpp" for part in ("eeprom", "image", "resets"))
-# The images of these tests, except those of the Pico W.
+# The images of PICO_TESTS.
 PICO_IMAGES = (
     PicoImage("pico", "EX9043D-M"),
     PicoImage("pico", "EX9052D"),
     PicoImage("pico-eeprom", "EX9043D-M", ("-DEX9000_SETTINGS_IN_EEPROM",)),
 )
-# Tests of these images that together reach every driver.
+# Tests of PICO_SOURCES that together reach every driver of the area pico.
 PICO_TESTS = """
     PicoImage.NoOutputIsEnergisedBeforeTheSettingsAreRead
     PicoImage.TheChipDrivesOnlyTheOutputsOfTheModelTheLineAndTheStatusLed
     PicoImage.OnlyTheFirstCoreRunsAndInterruptsDoNotNest
     PicoImage.TheDriverIsOnForAllBitsOfAReplyAndGoesOffWithinACharacter
-    PicoImage.TheModuleRepliesToEveryRequestWithoutPausesAt115200Baud
+    PicoImage.TheModuleRepliesToEveryRequestOfAMasterWithoutPausesAt115200Baud
     PicoImage.AReplyBeginsOneCharacterAfterTheRequest
     PicoImage.AReplyToAStoreBeginsWithoutWaitingForTheTick
     PicoImage.TheModuleCountsEveryPulseOfEightInputsDuringContinuousRequests
@@ -325,7 +325,7 @@ PICO_TESTS = """
 
 def filter_of_pico_tests():
     """Returns the value of GTEST_FILTER that selects PICO_TESTS. A test with parameters runs only with the parameter
-    `Nothing`. Ends the program if a test does not exist, because GoogleTest ignores the name of such a test."""
+    `Nothing`. Ends the program if a test does not exist, because GoogleTest ignores a name without a test."""
     source = "".join((ROOT / file).read_text(encoding="utf-8") for file in PICO_SOURCES)
     patterns = []
     for test in PICO_TESTS:
@@ -336,7 +336,7 @@ def filter_of_pico_tests():
     return ":".join(patterns)
 
 
-# One model with inputs and outputs for each board.
+# One model with inputs and outputs for each of the two Stellaris boards.
 IMAGES = tuple(Image(board, "EX9055D") for board in ("lm3s6965evb", "ek-tm4c123gxl"))
 
 
@@ -364,8 +364,9 @@ def pico_program():
 
 @dataclasses.dataclass(frozen=True)
 class Area:
-    """The sources to change, the product units built from them, and the tests that must detect the change. Tests that
-    have the name of the changed file run first, then tests that include its header, then each group in turn."""
+    """The sources to change, the product units built from them, and the tests that must detect the change. Tests whose
+    names begin with the name of the changed file run first, then tests that include the header of this file, then the
+    other tests of each group in turn."""
 
     name: str
     sources: list
@@ -404,9 +405,9 @@ def areas():
     core = [LIBRARY_UNITS["core"]]
     images = [image.unit for image in IMAGES]
     of_pico = [image.unit for image in PICO_IMAGES]
-    # boot.hpp runs before the image. After a change there, nothing runs, or no test can detect the change.
+    # boot.hpp runs before the image. After a change there, the image does not start, or no test can detect the change.
     of_the_pico = [file for file in files("hal/rp2040/*.hpp") if file != "hal/rp2040/boot.hpp"]
-    # Drivers that only the emulator runs are in an area of their own, because each mutant takes half a minute.
+    # Drivers that run only in the emulator are in the area pico, because each of their mutants takes half a minute.
     drivers = [
         file
         for file in files("hal/*.cpp", "hal/*.hpp")

@@ -31,12 +31,12 @@ def digest_of_text(text):
 
 
 def options_of_header(unit):
-    """Returns the options that affect a precompiled header, which works only with the same options."""
+    """Returns the options that must be the same for a unit and for the precompiled header that it includes."""
     return [option for option in unit.options if not option.startswith(("-I", "-D"))]
 
 
 def header_of(unit):
-    """Returns the path of the header to include first. Precompiling it saves most of the compile time."""
+    """Returns the path of the header that the unit includes first. It is precompiled to save compile time."""
     return BUILD / f"{digest_of_text(' '.join([*options_of_header(unit), *unit.headers]))}.hpp"
 
 
@@ -49,7 +49,7 @@ def compiled(unit, folder, overlay=None):
     header = ["-include", header_of(unit)]
     if not run([*COMPILE, *first, *unit.options, "-I.", *header, "-c", source, "-o", target]):
         return None
-    # File names and the positions of functions can differ although the code is the same.
+    # The debug information and the name of the source can differ although the code is the same.
     run(["objcopy", "--strip-debug", "--remove-section=.comment", f"--strip-symbol={source.name}", target])
     return target
 
@@ -144,7 +144,7 @@ class Workshop:
 
     @staticmethod
     def passes(program, place, folder):
-        # A mutant can also make a test wait for ever without using the processor. The time limit only detects this.
+        # A mutant can make a test wait for ever without using the processor. Only the limit of 600 s detects this.
         limits = ["timeout", "--foreground", "--signal=KILL", "600", "prlimit", f"--cpu={program.processor_seconds}",
                   f"--as={MOST_MEMORY}"]
         return run(
@@ -180,7 +180,8 @@ class Bench:
         return self.objects[unit.name]
 
     def changes(self, units):
-        """Returns whether the mutant compiles and changes the object code of one of these units."""
+        """Compiles these units in turn, up to the first one whose object code the mutant changes. Returns whether there
+        is such a unit. Returns False if a unit does not compile."""
         for unit in filter(self.is_in, units):
             _, as_it_is = self.workshop.unit(unit)
             changed = self.object_of(unit)

@@ -19,11 +19,13 @@ using std::chrono::microseconds;
 using std::chrono::milliseconds;
 
 constexpr std::size_t kMaster = 0;
-/// The first module receives the pulses.
+/// The models of the modules; the list repeats until there are 32 modules. `ascii`: an -M model that runs
+/// ASCII. The first module receives the pulses.
 constexpr std::array<const char*, 9> kCrowd{"EX9052D-M", "EX9042D-M,ascii", "EX9043D-M",
                                             "EX9052D",   "EX9068D-M",       "EX9055D",
                                             "EX9042D-M", "EX9052D-M,ascii", "EX9068AD-M"};
-/// The longest times until a reply begins: 20 and 200 ms (wire.md 3 and 7) and a margin.
+/// The longest times from the end of a request until its reply begins, without and with a store: 20 ms and
+/// 200 ms (wire.md 3 and 7), plus the silence that ends a Modbus request and a margin.
 constexpr milliseconds kAnswers{25};
 constexpr milliseconds kAnswersStoring{210};
 
@@ -183,8 +185,8 @@ void Crowd::exchange() {
   const std::size_t module = random_.below(kModules);
   const Bytes request = a_request(module);
   const VirtualTime takes = line_.master().takes(request.size());
-  // No pulses arrive during a request to the pulsed module, because most of these requests read inputs. The
-  // pulses continue during function 06, which reads no input.
+  // The pulses pause during a request to the pulsed module, because many of these requests read inputs.
+  // Exception: the pulses continue during function 06, which reads no input.
   if (module == 0 && request[1] != 6) {
     pulser_.pause();
   }

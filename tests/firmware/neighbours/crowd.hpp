@@ -11,7 +11,8 @@
 
 namespace ex9000::neighbours {
 
-/// Sends pulses to all inputs of one module at a constant rate, at the same instant on every input.
+/// Sends pulses to the input channels 0 to 7 of one module at a constant rate, at the same instant on each
+/// channel.
 class Pulser final : public sim::Station {
  public:
   Pulser(sim::Bus& bus, sim::SimulatedModule& module)
@@ -51,23 +52,24 @@ class Crowd final : public sim::BusObserver {
   static constexpr std::size_t kModules = 32;
 
   /// Creates 32 modules at the addresses 01 to 20 (hex): some models that support Modbus, most of them in
-  /// Modbus RTU and the others in ASCII, and some ASCII-only models. The modules in ASCII use their checksum,
-  /// because without one the bytes of a Modbus frame could form a command.
+  /// Modbus RTU and the others in ASCII, and some ASCII-only models. The modules in ASCII have the checksum
+  /// enabled, because without it the bytes of a Modbus frame could form a valid command.
   Crowd(std::uint32_t baud, std::uint64_t seed);
 
   [[nodiscard]] sim::VirtualTime now() { return line_.clock().virtual_now(); }
   Pulser& pulser() { return pulser_; }
-  /// Sends one request to a random module, or a broadcast. Waits for the reply. Checks the reply and the
-  /// outputs of all modules. The next request may follow immediately. Reports failures through GoogleTest.
+  /// Sends one request to a random module, or a broadcast. Waits for the reply, or for the longest time until
+  /// a reply if none is expected. Checks the reply, which module sent it, and the outputs of all modules. The
+  /// next call may follow immediately. Reports failures through GoogleTest.
   void exchange();
 
   [[nodiscard]] std::uint64_t replies() const { return replies_; }
   [[nodiscard]] std::uint64_t broadcasts() const { return broadcasts_; }
   /// Returns the number of replies to commands that stored something.
   [[nodiscard]] std::uint64_t stores() const { return stores_; }
-  /// Returns the number of pulses on each input of the pulsed module.
+  /// Returns the number of pulses on each input of the pulsed module until the last request began.
   [[nodiscard]] std::uint64_t pulses() const { return pulses_; }
-  /// Returns, for each module, the outputs that have been on.
+  /// Returns, for each module, the outputs that were on after at least one exchange; bit n is channel n.
   [[nodiscard]] const std::vector<unsigned>& ever_on() const { return ever_on_; }
   [[nodiscard]] unsigned outputs_of(std::size_t module) const { return described_[module].row().outputs; }
   /// Returns the number of replies from each module.

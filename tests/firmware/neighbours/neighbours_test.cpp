@@ -4,7 +4,7 @@
 //
 //     EX9000_VIRTUAL_SECONDS=N    virtual duration at 9600 baud, in seconds; default 60; 86400 is a day.
 //                                 At 115200 baud, the duration is N/15 seconds, at most 600.
-//     EX9000_SEED=N               default 1
+//     EX9000_SEED=N               seed of the random requests; default 1
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,8 +1,11 @@
-// Tests noise on the line: the module replies and changes outputs only if the received bytes of a frame pass
-// the check. The test also counts the damaged frames that pass the check.
+// Tests a module on a line with noise and other faults, in Modbus RTU and in DCON with and without checksum.
+// The module must reply and change outputs only if the bytes that it receives form a valid frame. The first
+// test also counts the damaged frames that the module accepts, and compares this number with the theory.
 //
-//     EX9000_FRAMES=N    frames for each check and error rate; default 10,000
-//     EX9000_SEED=N      default 1
+//     EX9000_FRAMES=N    default 10,000. The first test sends N frames for each check and error rate. The
+//                        second test sends N/20 requests for each check and fault, without those of a second
+//                        master.
+//     EX9000_SEED=N      seed of the noise and of the requests; default 1
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -51,8 +54,8 @@ TEST_P(Checks, MissAsManyDamagedFramesAsTheTheoryExpects) {
     // consider a module with another address. More such commands than the limit below are very unlikely.
     std::printf("  %llu stored something\n", static_cast<unsigned long long>(tally.storing));
     EXPECT_LE(tally.storing, 1 + tally.sent / 10'000);
-    // The limits are twice as wide as the 95 % interval. With the interval itself, about every second run
-    // would fail, because there are twelve rows.
+    // The limits are twice as far from the count as those of the 95 % interval. With the interval itself, too
+    // many runs would fail, because there are twelve comparisons: four error rates for each of three checks.
     const double centre = static_cast<double>(tally.taken_in_data);
     EXPECT_GE(tally.expected, centre - 2 * (centre - seen.low));
     EXPECT_LE(tally.expected, centre + 2 * (seen.high - centre));
@@ -62,7 +65,7 @@ TEST_P(Checks, MissAsManyDamagedFramesAsTheTheoryExpects) {
 
 INSTANTIATE_TEST_SUITE_P(Noise, Checks, testing::Values(Check::Crc, Check::Sum, Check::None));
 
-/// Other faults of a line, which a module must tolerate.
+/// A fault on the line, or several faults together, that the module must tolerate.
 struct Trouble {
   const char* name;
   std::function<void(NoisyLine&, std::uint64_t exchanges)> happens;

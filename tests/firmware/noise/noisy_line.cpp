@@ -22,7 +22,7 @@ constexpr unsigned kOutputs = 13;
 /// The time from the last byte of a request until the next request may follow. It is long enough for a reply
 /// of at most 10 characters.
 constexpr VirtualTime kReplies = milliseconds(6);
-/// Longer than a store, or any other effect of a frame, takes.
+/// Longer than the module needs to store the settings of a command and to reply.
 constexpr VirtualTime kLongest = milliseconds(300);
 std::string spec_of(Check check) {
   const std::string spec = "EX9042D-M@01,baud=115200";
@@ -39,7 +39,7 @@ std::string spec_of(Check check) {
 
 double misses(Check check, const FrameBytes& request, double flipped_bit) {
   static std::map<std::pair<FrameBytes, double>, double> known;
-  // For the CRC only the length of the frame matters.
+  // For the CRC, the result depends only on the length of the frame, not on its bytes.
   const FrameBytes key = check == Check::Crc ? FrameBytes(request.size()) : request;
   const auto [place, fresh] = known.try_emplace({key, flipped_bit});
   if (fresh) {
@@ -80,7 +80,7 @@ void NoisyLine::come_up() {
 
 FrameBytes NoisyLine::a_request() {
   const unsigned kind = below(3);
-  // There are only a few values because the theory is computed for each request.
+  // There are only a few values because the theory is computed for each different request.
   constexpr std::uint16_t kOutputValues[] = {0x0000, 0x1FFF, 0x0A5A, 0x15A5};
   const std::uint16_t data = kOutputValues[below(4)];
   if (check_ == Check::Crc) {

@@ -19,7 +19,7 @@ using FrameBytes = std::vector<std::uint8_t>;
 enum class Check { Crc, Sum, None };
 const char* name_of(Check check);
 
-/// Counts of frames.
+/// Counts of frames, and an expected value.
 struct Tally {
   std::uint64_t sent = 0;
   std::uint64_t damaged = 0;
@@ -41,7 +41,7 @@ class NoisyLine final : public sim::Disturbance, public sim::Station {
   std::mt19937_64& random() { return random_; }
   unsigned below(unsigned limit) { return static_cast<unsigned>(random_() % limit); }
 
-  /// Attaches another station, which lives as long as this line.
+  /// Creates another station on the line. The station exists as long as this object.
   template <class AStation, class... Arguments>
   AStation& attach(Arguments&&... arguments) {
     const auto station = std::make_shared<AStation>(line_.bus(), std::forward<Arguments>(arguments)...);
@@ -51,16 +51,16 @@ class NoisyLine final : public sim::Disturbance, public sim::Station {
 
   /// Returns a random request that reads or writes outputs.
   FrameBytes a_request();
-  /// Sends `request` while noise flips each bit with the probability `flipped_bit`, checks the effects, and
-  /// adds the results to `tally`. If the module has stored something, restores its settings and restarts it.
-  /// Reports failures through GoogleTest.
+  /// Sends `request` while noise flips each bit with the probability `flipped_bit`. In DCON, then sends an
+  /// undamaged CR. Checks the effects, and adds the results to `tally`. If the module has received a command
+  /// that stores something, restores its settings and restarts it. Reports failures through GoogleTest.
   void exchange(const FrameBytes& request, double flipped_bit, Tally& tally);
-  /// Ends the noise, waits, and sends a CR if frames end with one. Then checks that the module replies
-  /// correctly to the first frame.
+  /// Ends the noise and waits. In DCON, also sends a CR, which ends a frame that is still incomplete. Then
+  /// checks that the module replies correctly to the next frame.
   void expect_the_first_clean_frame_is_answered();
 
-  /// Returns the number of replies and changes of outputs. The witness has found a reason for each of them in
-  /// the bytes that the module received from any sender.
+  /// Returns the number of replies and changes of outputs. The witness checks that each of them has a
+  /// permitted cause, for example a frame that the module received from any sender.
   [[nodiscard]] std::uint64_t replies_and_output_changes() const {
     return onlooker_.replies_and_output_changes();
   }
@@ -68,7 +68,7 @@ class NoisyLine final : public sim::Disturbance, public sim::Station {
   // --- sim::Disturbance: counts the effects of the noise ---
   sim::Levels disturbed(const Sent& sent) override;
 
-  // --- sim::Station: the witness ---
+  // --- sim::Station: receives bytes for the witness ---
   void run() override {}
   void receive(std::uint8_t byte, ByteStatus status) override;
 

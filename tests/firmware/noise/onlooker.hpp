@@ -1,5 +1,5 @@
-// Connects a witness to a simulated module. The witness checks each reply and each change of the outputs when
-// it happens.
+// Connects a witness to a simulated module. The witness checks each change of the outputs immediately, and
+// each reply at its end.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -48,8 +48,8 @@ class Onlooker final : public sim::BusObserver {
     checking_ = true;
   }
 
-  /// Passes to the witness a byte that the module receives or has received; the module may not have processed
-  /// it yet.
+  /// Passes a byte that the module receives or has received to the witness. Ignores bytes while the module's
+  /// driver is on. The module may not have processed the byte yet.
   void hears(std::uint8_t byte, ByteStatus status) {
     if (!driving_) {
       witness_.hears(byte, status == ByteStatus::Good, module_.module().state().in_force.address, now());

@@ -28,8 +28,8 @@ double choose(unsigned from, unsigned count) {
   return ways;
 }
 
-/// Returns the number of ways to choose `weight` of `bits` places with an even number of `marked` places
-/// among them, minus the number of ways with an odd number.
+/// Returns the number of ways to choose `weight` of `bits` places so that an even number of them is marked,
+/// minus the number of ways with an odd number. `marked`: how many of the `bits` places are marked.
 double krawtchouk(unsigned bits, unsigned weight, unsigned marked) {
   double sum = 0;
   for (unsigned j = 0; j <= weight && j <= marked; ++j) {
@@ -38,7 +38,8 @@ double krawtchouk(unsigned bits, unsigned weight, unsigned marked) {
   return sum;
 }
 
-/// Returns, for each place, the change of the CRC if that bit is flipped. A CRC is linear except for its
+/// Returns, for each bit of a frame of `bits` bits, the change of the CRC if that bit is flipped. These
+/// changes do not depend on the start value or on the other bits, because a CRC is linear except for its
 /// start value.
 std::vector<unsigned> syndromes(unsigned bits) {
   std::vector<unsigned> all;
@@ -53,7 +54,9 @@ std::vector<unsigned> syndromes(unsigned bits) {
   return all;
 }
 
-/// The number of words of `bits` bits that the CRC accepts, for each weight up to 12.
+/// For each weight from 0 to 12: the number of words of one length with this weight that a CRC with the start
+/// value 0 accepts. The weight of a word is the number of its 1 bits. Flips leave the CRC of a frame correct
+/// if, and only if, the flipped bits are the 1 bits of such a word.
 using Words = std::array<double, 13>;
 Words words_of(unsigned bits) {
   const std::vector<unsigned> columns = syndromes(bits);
@@ -83,8 +86,8 @@ double becomes(unsigned from, unsigned to, double flipped_bit) {
 
 bool in(char character, const char* set) { return std::string(set).find(character) != std::string::npos; }
 
-/// Returns the probability that `text` with a CR after it passes the check: its last two characters are the
-/// sum of the others.
+/// Returns the probability that `text`, after the flips, is accepted as a frame if a CR follows: it begins
+/// with a delimiter, contains no CR, and its last two characters are the checksum of the others.
 double sum_fits(const std::string& text, double flipped_bit) {
   Sums sums{};
   sums[0] = 1;
@@ -111,7 +114,7 @@ double sum_fits(const std::string& text, double flipped_bit) {
   return passes;
 }
 
-/// Returns the words of a frame of `bytes` bytes, which are computed only once.
+/// Returns the numbers of words of `bytes` bytes. Computes them only once for each length.
 const Words& known_words(std::size_t bytes) {
   static std::map<std::size_t, Words> known;
   const auto [place, fresh] = known.try_emplace(bytes);
@@ -139,7 +142,8 @@ double dcon_misses(const std::string& frame, bool checksum, double flipped_bit) 
   const double untouched = std::pow(1 - flipped_bit, 8 * (frame.size() + 1));
   const double cr_stays = becomes('\r', '\r', flipped_bit);
   double taken = 0;
-  double hunting = 1;  // the probability that no character so far was a delimiter or a lead character
+  // The probability that no character so far was a delimiter or the first character of a reply.
+  double hunting = 1;
   for (std::size_t begin = 0; begin + (checksum ? 5 : 3) <= frame.size() + 1; ++begin) {
     const std::string rest = frame.substr(begin);
     double opens = 0;
@@ -152,7 +156,8 @@ double dcon_misses(const std::string& frame, bool checksum, double flipped_bit) 
     if (checksum) {
       taken += hunting * (rest.size() >= 5 ? sum_fits(rest, flipped_bit) * cr_stays : 0);
     } else {
-      // The frame has its own length, or is longer because its CR became another character.
+      // The frame ends at its own CR, or at the later CR if its own CR became another character. A frame of
+      // two characters is accepted only in the second case, because an accepted frame has at least three.
       double others = 1;
       for (std::size_t i = 1; i < rest.size(); ++i) {
         others *= 1 - becomes(static_cast<unsigned char>(rest[i]), '\r', flipped_bit);

@@ -1,5 +1,5 @@
-// Calculates how many damaged frames a check accepts if every bit of every byte is flipped with the same
-// probability, independently of all others.
+// Calculates how many damaged frames a check accepts if each data bit is flipped with the same probability,
+// independently of the other bits.
 #pragma once
 
 #include <cstddef>
@@ -14,15 +14,15 @@ namespace ex9000::noise {
 double crc_misses_of(std::size_t bytes, unsigned flips);
 
 /// Returns the probability that a Modbus RTU frame arrives damaged with a correct CRC. `bytes`: length of the
-/// frame with its CRC. Ignores more than 12 flips; at a probability of 0.01 and 20 bytes or fewer they
-/// contribute less than a millionth of the sum.
+/// frame with its CRC. Ignores more than 12 flips: if `flipped_bit` is at most 0.01 and the frame has at most
+/// 20 bytes, they contribute less than a millionth of the sum.
 double crc_misses(std::size_t bytes, double flipped_bit);
 
 /// Returns the probability that a DCON frame arrives damaged and is accepted. `frame` begins with its
 /// delimiter and ends before CR; it includes the checksum if there is one. An undamaged CR follows later.
-/// Ignores frames that end early because a character has become a CR: all characters used here require at
-/// least three flips for that. With a checksum, also ignores frames whose own CR has become another
-/// character.
+/// Ignores frames that end early because a character has become a CR: all characters of the requests in the
+/// tests require at least three flips for that. With a checksum, also ignores frames whose own CR has become
+/// another character.
 double dcon_misses(const std::string& frame, bool checksum, double flipped_bit);
 
 /// A 95 % confidence interval of the mean of a Poisson variable.

@@ -1,4 +1,4 @@
-// Tests the theory of the CRC, among other things with an exhaustive count.
+// Tests `crc_misses_of`, for a frame of 8 bytes against an exhaustive count.
 #include "tests/firmware/noise/theory.hpp"
 
 #include <gtest/gtest.h>
@@ -12,8 +12,8 @@
 namespace ex9000::noise {
 namespace {
 
-/// Returns, for each bit of a frame, the change of the CRC when that bit is flipped, computed from the frame
-/// itself.
+/// Returns, for each bit of a frame of `bytes` bytes, the change of the CRC if that bit is flipped. Computes
+/// both CRCs with judges::crc16, without the code of theory.cpp.
 std::vector<unsigned> syndromes_of(std::size_t bytes) {
   std::vector<std::uint8_t> frame(bytes, 0xA5);
   const unsigned untouched = judges::crc16(frame.data(), bytes);
@@ -28,10 +28,10 @@ std::vector<unsigned> syndromes_of(std::size_t bytes) {
   return all;
 }
 
-/// The number of ways in which 1, 2, 3 and 4 flips leave the CRC unchanged. `count_misses` tries all ways.
+/// The result of `count_misses`, which tries all ways to flip 1 to 4 bits.
 struct Misses {
-  std::array<std::uint64_t, 5> of{};
-  std::uint64_t tried_with_four = 0;
+  std::array<std::uint64_t, 5> of{};  ///< [n]: number of ways to flip n bits that leave the CRC unchanged
+  std::uint64_t tried_with_four = 0;  ///< number of ways to flip four bits
 };
 
 Misses count_misses(std::size_t bytes) {
@@ -58,8 +58,8 @@ Misses count_misses(std::size_t bytes) {
   return misses;
 }
 
-TEST(Theory, MatchesAnExhaustiveCountOfUpToFourFlipsThatTheCrcMisses) {
-  const Misses misses = count_misses(8);  // a frame of function 01 or 05
+TEST(Theory, MatchesAnExhaustiveCountOfOneToFourFlipsThatTheCrcMissesIn8Bytes) {
+  const Misses misses = count_misses(8);  // for example a request of function 01 or 05
   EXPECT_EQ(misses.tried_with_four, 635'376U);
   EXPECT_GT(misses.of[4], 0U);
   for (unsigned flips = 1; flips <= 4; ++flips) {

@@ -1,4 +1,4 @@
-// Tests INIT*, the status LED and the two watchdogs: wire.md sections 2 and 6, D8, D13.
+// Tests the debouncing of INIT*, the status LED and the two watchdogs: wire.md sections 2 and 6, D8, D13.
 #include <gtest/gtest.h>
 
 #include "firmware/panel/debounce.hpp"
@@ -11,7 +11,7 @@ namespace {
 
 using Pattern = StatusLed::Pattern;
 
-/// The last start is 4 ms before the wrap of the clock, so all longer intervals cross it.
+/// The last start is 4 ms before the clock wraps, so all intervals longer than 4 ms include the wrap.
 constexpr Time kStarts[] = {Time(0), Time(123'456'789), Time(0xFFFF'FFFFU - 4'000)};
 
 Time ms(Time start, std::uint32_t after) { return start + milliseconds(after); }
@@ -40,7 +40,7 @@ TEST(Debounce, AReleasedSwitchIsKnownAfter10MsToo) {
   EXPECT_FALSE(debounce.level());
 }
 
-TEST(Debounce, RequestsASampleEachMillisecondUntilALevelIsStable) {
+TEST(Debounce, RequestsASampleAtLeastEveryMillisecondUntilALevelIsStable) {
   for (const Time start : kStarts) {
     Debounce debounce;
     debounce.sample(true, start);
@@ -49,7 +49,7 @@ TEST(Debounce, RequestsASampleEachMillisecondUntilALevelIsStable) {
       ASSERT_LT(samples, 20U);
       const Duration wait = debounce.next_sample().remaining(start + Duration(after));
       EXPECT_LE(wait.microseconds(), 1'000U);
-      after += wait.microseconds() + (samples == 0 ? 300U : 0U);  // one late sample
+      after += wait.microseconds() + (samples == 0 ? 300U : 0U);  // the first of these samples is late
       debounce.sample(true, start + Duration(after));
     }
     EXPECT_EQ(after, 10'000U);
@@ -104,7 +104,7 @@ TEST(Debounce, AStableChangeChangesTheLevelInBothDirections) {
 
 // --- the status LED ---
 
-/// The LED of a module whose main loop turns every millisecond. Times are in milliseconds from the start.
+/// The LED of a module whose main loop runs every millisecond. `after`: time since `start`, in ms.
 class LedOverTime {
  public:
   LedOverTime(Pattern pattern, Time start) : pattern_(pattern), start_(start) { led.show(pattern, start); }
@@ -303,7 +303,7 @@ TEST(HostWatchdog, ARestartLaterThanTheTimeOfTheMainLoopCausesNoExpiry) {
 TEST(HostWatchdog, DoesNotExpireAcrossClockWrapsWhileItIsRestarted) {
   HostWatchdog watchdog;
   Time now(0);
-  for (int i = 0; i < 100'000; ++i) {  // 2.7 hours, more than two wraps of the clock
+  for (int i = 0; i < 100'000; ++i) {  // 2.75 hours, more than two wraps of the clock
     watchdog.restart(now);
     now = ms(now, 99);
     ASSERT_FALSE(watchdog.expired(running(1), now)) << i;

@@ -1,4 +1,4 @@
-// Tests how a reply is written: a reply never exceeds its buffer, even if a handler appends too much.
+// Tests how a reply is written, also if a handler appends more than the buffer can hold.
 #include "firmware/request/reply.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Tests a request from its evaluation to the end of its reply: wire.md sections 3, 7 and 8, D17 and D18.
+// Tests a request from its judgement to the end of its reply: wire.md sections 3, 7 and 8, D17 and D18.
 #include "firmware/request/request_cycle.hpp"
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ class RequestCycleTest : public testing::Test {
     request_.assign(request.begin(), request.end());
     return cycle_.judge({request_.data(), request_.size()});
   }
-  /// `request` has no CRC.
+  /// Switches to Modbus RTU and judges `request`, which must be without its CRC.
   const Outcome& judge_modbus(std::vector<std::uint8_t> request) {
     state_.in_force.protocol = Protocol::ModbusRtu;
     request_ = std::move(request);
@@ -90,7 +90,7 @@ TEST_F(RequestCycleTest, ARefusedRequestHasARefusalAndNoEffects) {
   EXPECT_EQ(take_reply(), "?01\r");
 }
 
-TEST_F(RequestCycleTest, AStoreThatFailsIsRefusedInBothProtocols) {
+TEST_F(RequestCycleTest, ARequestWhoseStoreFailsIsRefusedInBothProtocols) {
   judge("~01OPUMP");
   cycle_.store_begun();
   cycle_.refuse_store();
@@ -119,7 +119,7 @@ TEST_F(RequestCycleTest, ABroadcastDoesNotAffectTheNextRequest) {
   judge_modbus({0x00, 0x06, 0x01, 0xE8, 0x00, 0x05});
   cycle_.finish();
   EXPECT_FALSE(judge_modbus({0x01, 0x01, 0x00, 0x00, 0x00, 0x01}).changes_settings());
-  EXPECT_TRUE(cycle_.finish());  // the broadcast state is cleared
+  EXPECT_TRUE(cycle_.finish());  // this request gets a reply
 }
 
 // wire.md D17.

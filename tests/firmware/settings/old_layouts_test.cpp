@@ -1,4 +1,5 @@
-// Tests settings that earlier firmware has stored, after a firmware update: wire.md section 8.
+// Tests how the firmware reads settings that earlier firmware stored: wire.md section 8. The files in
+// stored_bytes/ also contain settings in the present layout.
 #include "firmware/settings/old_layouts.hpp"
 
 #include <gtest/gtest.h>
@@ -20,7 +21,7 @@ std::optional<StoredSettings> read(const Model& model, const std::vector<std::ui
 }
 
 /// Reads each file with the firmware and with an independent reader, and compares both results with the
-/// settings that were stored.
+/// settings that were stored. The firmware must not write when it reads.
 TEST(StoredBytes, AreReadAsTheSettingsThatWereStored) {
   for (const StoredBytes& stored : all_stored_bytes()) {
     FakeMemory memory;

@@ -9,7 +9,7 @@
 namespace ex9000 {
 namespace {
 
-TEST(Places, HaveTheAddressesUsedInTheField) {
+TEST(Places, HaveTheAddressesThatExistingModulesUse) {
   ASSERT_EQ(kPlaces.size(), 4U);
   EXPECT_EQ(kPlaces[0].address, 0x0080);
   EXPECT_EQ(kPlaces[1].address, 0x0100);
@@ -27,7 +27,7 @@ TEST(Places, ShareNoPage) {
   }
 }
 
-TEST(Places, AreBlankIfAllBytesAreFF) {
+TEST(Places, AreBlankIfAndOnlyIfAllBytesAreFF) {
   std::array<std::uint8_t, kMemoryPage> page{};
   page.fill(0xFF);
   EXPECT_TRUE(is_blank({page.data(), page.size()}));

@@ -22,8 +22,8 @@ struct Stored {
   std::uint16_t sequence;
 };
 
-/// Returns settings for an EX9042D-M. Every field up to the safe value, except the protocol, differs from its
-/// factory value.
+/// Returns contents for a record of an EX9042D-M. Every setting from the address to the safe value, except
+/// the protocol, differs from its factory value.
 inline Stored changed_settings() {
   Settings settings;
   settings.address = 0xF7;
@@ -56,7 +56,7 @@ inline std::optional<StoredSettings> read(const Model& which, const Record& reco
 }
 inline bool is_good(const Model& which, const Record& record) { return read(which, record).has_value(); }
 
-// The layout: firmware/settings/record.hpp.
+// The layout of a record that ends after the safe value: firmware/settings/record.hpp.
 inline constexpr std::size_t kLengthAt = 1;
 inline constexpr std::size_t kSettingsAt = 4;
 inline constexpr std::size_t kSettingsSize = 19;
@@ -105,7 +105,8 @@ inline Record with_check(const Model& which, Record record) {
   return record;
 }
 
-/// Returns random settings that are possible for the model `which`.
+/// Returns a random sequence number and random settings that are possible for the model `which`. The settings
+/// after the safe value have their factory values.
 inline Stored random_settings(const Model& which, std::mt19937& random) {
   const auto below = [&random](std::uint32_t limit) { return static_cast<std::uint32_t>(random() % limit); };
   Settings settings;

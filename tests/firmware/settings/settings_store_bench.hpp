@@ -21,7 +21,8 @@ inline constexpr std::size_t kAttempts = 3;
 /// The number of reads with which a store loads from a memory that never answers: three reads at the first
 /// place, and one at each of the other three places.
 inline constexpr std::size_t kReadsOfASilentMemory = kAttempts + 3;
-inline constexpr std::size_t kStuckCell = 4;  // offset in a page; in its first page, a record contains the address there
+/// An offset in a page. A record contains the module's address at this offset in its first page.
+inline constexpr std::size_t kStuckCell = 4;
 
 inline const Model& model(std::string_view designation) { return *find_model(designation); }
 

@@ -200,7 +200,7 @@ TEST_F(Possible, TheTimeoutStatusIsPossibleWithAnEnabledAndADisabledWatchdog) {
 
 // --- changes ---
 
-/// Calls the function `name` with an empty change, and returns the change with the values that `name` has set.
+/// Calls the function `name` with an empty change. Returns the change with the values that `name` has set.
 template <class Naming>
 SettingsChange change(Naming name) {
   SettingsChange change;

@@ -100,8 +100,8 @@ TEST(UpdateCuts, ACutAtAnyPointOfTheFirstStoreLeavesTheOldOrTheNewSettings) {
   std::printf("power cuts: %zu\n", cuts);
 }
 
-// The number of pairs of cuts grows with the square of the number of written bytes, so this test uses a random
-// sample with a fixed seed.
+// The number of pairs of cuts grows with the square of the number of written bytes, so this test uses a
+// random sample with a fixed seed.
 TEST(UpdateCuts, TwoCutsInARowLeaveTheOldOrTheNewSettings) {
   constexpr int kPairs = 4000;
   std::mt19937 random(kSeed);

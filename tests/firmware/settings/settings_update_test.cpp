@@ -169,7 +169,7 @@ TEST(SettingsAfterAnUpdate, NothingIsUnfinishedWhileTheSettingsAreUnreadable) {
   EXPECT_TRUE(Boot(memory).stored() == numbered(9));
 }
 
-TEST(SettingsAfterAnUpdate, InvalidatingAnOldCopyIsRetried) {
+TEST(SettingsAfterAnUpdate, InvalidatingAnOldCopyCanBeRepeated) {
   FakeMemory memory = updated();
   SettingsStore store(the_model());
   drive(store, memory);

@@ -39,7 +39,7 @@ struct Tear {
 
 class FlashChip {
  public:
-  static constexpr std::uint32_t kBegin = 0x1F'2000;  ///< address of the page store; the firmware image is below it
+  static constexpr std::uint32_t kBegin = 0x1F'2000;  ///< address of the store; the firmware is below it
   static constexpr std::uint32_t kSector = 4096;
   static constexpr std::uint32_t kPageOfFlash = 256;
   static constexpr unsigned kSectorsOfStore = 14;
@@ -65,12 +65,14 @@ class FlashChip {
     const std::size_t at = index(address, source.size);
     EXPECT_FALSE(busy()) << "a program operation is ignored now";
     EXPECT_EQ(at / kPageOfFlash, (at + source.size - 1) / kPageOfFlash) << "the address wraps";
-    EXPECT_TRUE(!erase_suspended_ || at / kSector != erase_at_ / kSector) << "the erase of this sector is suspended";
+    EXPECT_TRUE(!erase_suspended_ || at / kSector != erase_at_ / kSector)
+        << "the erase of this sector is suspended";
     for (std::size_t i = 0; i < source.size; ++i) {
       if (!is_broken(at + i)) {
         EXPECT_EQ(cells[at + i] & source[i], source[i]) << "the byte is not erased";
       }
-      EXPECT_TRUE(!weak_[at + i] || source[i] == 0) << "an interrupted operation has left this byte, so only 0 is reliable";
+      EXPECT_TRUE(!weak_[at + i] || source[i] == 0)
+          << "this byte may be unreliable: an interrupted operation has left it";
     }
     source_.assign(source.begin(), source.end());
     begin(Operation::Program, at, times.program);

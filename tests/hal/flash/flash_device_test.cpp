@@ -127,8 +127,8 @@ class ModuleOnFlash {
     longest = std::max(longest, latency);
     return {line.reply.begin(), line.reply.end() - 2};
   }
-  /// Requests the module to store a timeout of the host watchdog that depends on `number`. Returns whether the
-  /// reply reports success.
+  /// Sends a request to store a timeout of the host watchdog, which depends on `number`. Returns whether the
+  /// module replied that the timeout is stored.
   bool store(unsigned number) {
     const auto timeout = static_cast<std::uint8_t>(number % 250 + 1);
     const Frame request{1, 0x06, 0x01, 0xE8, 0x00, timeout};

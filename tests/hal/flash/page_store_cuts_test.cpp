@@ -68,9 +68,9 @@ class PageStoreCuts : public testing::Test {
                 cuts_);
   }
 
-  /// Carries out `write`. Cuts the power at the time when operation number `operation` would end, or after the
-  /// pause if this operation has not ended by then. Then starts the store again, checks all pages, and puts
-  /// the restarted store and the content of the pages into `state`.
+  /// Carries out `write`. Cuts the power at the time when operation number `operation` would end, or after
+  /// the pause if this operation has not ended by then. Then starts the store again, checks all pages, and
+  /// puts the restarted store and the content of the pages into `state`.
   void cut(State& state, const Write& write, std::size_t operation, Tear tear) {
     state.chip.cut(operation, tear);
     bool reported = false;
@@ -217,8 +217,7 @@ TEST_F(PageStoreCuts, ACutWithTheLongestTimesOfTheFlashLeavesTheOldOrTheNewPage)
   }
 }
 
-// There are too many sequences of cuts to test them all, so this test uses a random sample with a
-// fixed seed.
+// There are too many sequences of cuts to test them all, so this test uses a random sample with a fixed seed.
 TEST_F(PageStoreCuts, SeveralCutsInARowLeaveTheOldOrTheNewPage) {
   constexpr int kRounds = 100;
   constexpr int kCutsInARow = 6;

@@ -15,8 +15,8 @@ namespace {
 
 using hal::rp2040::Flash;
 
-/// A flash chip. It throws an exception if the driver makes an error, for example if the driver sends a command
-/// that the chip does not accept while it is busy.
+/// A flash chip. It throws an exception if the driver makes an error, for example if a program operation is
+/// not enabled.
 class Chip {
  public:
   static constexpr std::size_t kSize = 2 * 1024 * 1024;

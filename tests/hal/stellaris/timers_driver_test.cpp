@@ -29,9 +29,8 @@ class Clock : public testing::Test {
  protected:
   Clock() {
     bench.serve_tick([this] {
-      // The handler may also read the clock.
       timer.count_in_interrupt();
-      look();
+      look();  // a handler may also read the clock
     });
     timer.start();
     began_ = bench.now();
@@ -42,7 +41,8 @@ class Clock : public testing::Test {
     const Instant before = bench.now();
     const std::uint32_t shown = timer.now().microseconds();
     const Instant after = bench.now();
-    // The clock must return a time between the call and the return, in whole microseconds.
+    // The clock returns whole microseconds. The time must be between the call and the return, with a
+    // tolerance of 1 us on each side.
     const auto least =
         static_cast<std::uint32_t>(std::chrono::duration_cast<microseconds>(before - began_).count());
     const auto most =
@@ -61,8 +61,8 @@ class Clock : public testing::Test {
 };
 
 TEST_F(Clock, IsExactToTheMicrosecondInEveryPhaseAroundATick) {
-  // The accesses of one reading are two clocks apart. The loop covers every phase relative to the zero of the
-  // counter.
+  // The accesses of one reading are two clock cycles apart. Each round of the loop begins one clock cycle
+  // later relative to the moment at which the counter reaches 0, so the loop covers every phase.
   for (int clocks = -40; clocks <= 40; ++clocks) {
     bench.mcu.run_until(began_ + milliseconds(20 * (clocks + 50)) + clocks * nanoseconds(20));
     for (int i = 0; i < 10; ++i) {
@@ -71,7 +71,7 @@ TEST_F(Clock, IsExactToTheMicrosecondInEveryPhaseAroundATick) {
   }
 }
 
-TEST_F(Clock, IsExactInEveryPhaseWhileTheTickInterruptIsDelayed) {
+TEST_F(Clock, IsExactToTheMicrosecondInEveryPhaseWhileTheTickInterruptIsDelayed) {
   for (int clocks = -40; clocks <= 40; ++clocks) {
     bench.mcu.run_until(began_ + milliseconds(20 * (clocks + 50)) + clocks * nanoseconds(20) -
                         microseconds(1));
@@ -175,8 +175,9 @@ TYPED_TEST(OneShot, ARestartCancelsThePreviousStart) {
   EXPECT_GE(bench.fired[0], begun + microseconds(80));
 }
 
-TYPED_TEST(OneShot, ARestartCancelsAPendingInterrupt) {
-  // The loop covers every phase of the restart's own accesses relative to the timer's end.
+TYPED_TEST(OneShot, ARestartCancelsAnExpiryWhoseInterruptIsPending) {
+  // The loop covers every phase of the accesses of `restart` relative to the moment at which the timer
+  // expires.
   for (int clocks = -12; clocks <= 12; ++clocks) {
     OneShotBench<TypeParam> bench;
     TypeParam::restart(Duration(100));
@@ -238,7 +239,7 @@ ResetReason taken_after(const Chip& chip, const std::vector<ResetCause>& resets)
   return hal::stellaris::SystemControl::take_reset_reason();
 }
 
-TEST(ReasonOfAReset, IsKnownForEachCauseOnBothChips) {
+TEST(ReasonOfAReset, IsKnownForEachCauseAndUnknownWithoutACauseOnBothChips) {
   for (const Chip* chip : {&kLm3s6965, &kTm4c123}) {
     EXPECT_EQ(taken_after(*chip, {ResetCause::PowerOn}), ResetReason::PowerOn);
     EXPECT_EQ(taken_after(*chip, {ResetCause::BrownOut}), ResetReason::PowerOn);
@@ -255,7 +256,7 @@ TEST(ReasonOfAReset, IsPowerOnIfTheSupplyIsOneOfSeveralCauses) {
   EXPECT_EQ(taken_after(kLm3s6965, {ResetCause::Watchdog, ResetCause::BrownOut}), ResetReason::PowerOn);
 }
 
-TEST(ReasonOfAReset, IsTheResetPinEvenIfAWatchdogResetHasLeftItsBit) {
+TEST(ReasonOfAReset, IsTheResetPinIfAPinResetFollowsAWatchdogReset) {
   for (const Chip* chip : {&kLm3s6965, &kTm4c123}) {
     EXPECT_EQ(taken_after(*chip, {ResetCause::Watchdog, ResetCause::Pin}), ResetReason::ResetPin);
   }

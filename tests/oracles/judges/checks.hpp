@@ -1,5 +1,5 @@
-// The checks of frames and commands, computed from their definitions. They share no code with the firmware,
-// so that fuzz tests do not check the firmware with its own code.
+// The CRC of Modbus and the checksum of DCON, computed from their definitions. This file shares no code with
+// the firmware, so that the tests do not check the firmware with its own code.
 #pragma once
 
 #include <array>
@@ -28,7 +28,7 @@ inline constexpr auto kCrc16 = crc_table<std::uint16_t, 8>(0xA001);
 
 }  // namespace detail
 
-/// Returns the CRC-16/MODBUS; 0 for a frame with a correct CRC.
+/// Returns the CRC-16/MODBUS of the bytes. It is 0 if the bytes are a frame that includes its correct CRC.
 inline std::uint16_t crc16(const std::uint8_t* bytes, std::size_t size) {
   unsigned crc = 0xFFFF;
   for (std::size_t i = 0; i < size; ++i) {
@@ -51,7 +51,7 @@ constexpr std::uint8_t upper_hex(unsigned value) {
   return static_cast<std::uint8_t>("0123456789ABCDEF"[value % 16]);
 }
 
-/// Returns whether `text` is the value in two upper-case hex digits.
+/// Returns whether the first two characters of `text` are `value` modulo 256 in upper-case hex digits.
 constexpr bool are_digits_of(const std::uint8_t* text, unsigned value) {
   return text[0] == upper_hex(value / 16) && text[1] == upper_hex(value);
 }

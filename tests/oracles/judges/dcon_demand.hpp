@@ -1,4 +1,4 @@
-// The effects that a DCON command must have: an independent implementation of wire.md 4.
+// The effects that a DCON command must have: an independent implementation of wire.md 4 and 12.
 #pragma once
 
 #include <cstddef>
@@ -122,12 +122,13 @@ constexpr Demand dcon_demand(Bytes command, unsigned outputs) {
   }
 }
 
-/// Returns whether the module drives outputs on this command unless it refuses the command.
+/// Returns whether the command is `#AABBDD` or `@AA(Data)`. Unless the module refuses it, such a command
+/// drives outputs.
 constexpr bool is_dcon_output_command(Bytes command) {
   return (command[0] == '#' && command.size == 7) || (command[0] == '@' && command.size > 3);
 }
 
-/// Returns whether the command can set the response delay: it begins like `~AARD` or `~AAX` (wire.md 12).
+/// Returns true for every command that can set the response delay (wire.md 12), and for some others.
 constexpr bool may_set_delay_by_dcon(Bytes command) {
   return command.size > 4 && command[0] == '~' && (command[3] == 'R' || command[3] == 'X');
 }

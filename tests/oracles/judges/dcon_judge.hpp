@@ -18,9 +18,11 @@ class DconJudge {
 
   [[nodiscard]] bool checksum() const { return checksum_; }
   [[nodiscard]] std::uint8_t own_address() const { return own_; }
-  /// Call this when the module has replied to `%`.
+  /// Call this when the module sends the valid reply to `%`, except in INIT mode. `address`: the address that
+  /// `%` sets.
   void answer_to(std::uint8_t address) { own_ = address; }
-  /// Call this while `%` is being executed: the module may already reply at this address.
+  /// Call this while `%` is being executed, because the module may already reply at `address`. Call this
+  /// without a value when the module replies.
   void may_answer_to(std::optional<std::uint8_t> address) { next_ = address; }
 
   Finding byte(std::uint8_t byte, bool good, Microseconds now) {

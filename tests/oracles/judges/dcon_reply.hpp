@@ -1,4 +1,4 @@
-// The format of DCON replies: an independent implementation of wire.md 4.
+// The format of DCON replies: an independent implementation of wire.md 3, 4 and 12.
 #pragma once
 
 #include <array>
@@ -12,20 +12,20 @@
 
 namespace ex9000::judges {
 
-/// The state of the module on which a reply depends in addition to the request.
+/// The properties of the module on which the form of a reply depends, in addition to the request.
 struct DconRules {
   std::uint8_t address = 0;
-  bool init_mode = false;  ///< `$002` returns the stored address
+  bool init_mode = false;  ///< in INIT mode, `$002` returns the stored address
   bool inputs = false;     ///< the model has inputs
   bool outputs = false;    ///< the model has outputs
 };
 
 namespace detail {
 
-/// A request and its reply. In the request, `.` is any character, and `*` at the end is one or more
-/// characters. In the reply, aa is the address, ss the stored address, nn the address that `%` sets, h a hex
-/// digit, d a decimal digit, b 0 or 1, t at the end a name of 1 to 7 characters, and w at the end 4 or 8 hex
-/// digits.
+/// A request, and the form of its valid reply. In `request`, `.` is any character, and `*` at the end is one
+/// or more characters. In `answer`, `aa` is the address, `ss` the stored address, `nn` the address that `%`
+/// sets, `h` a hex digit, `d` a decimal digit, `b` 0 or 1, `t` at the end a name of 1 to 7 characters, and
+/// `w` at the end 4 or 8 hex digits. All other characters stand for themselves.
 struct Shape {
   std::string_view request;
   std::string_view answer;
@@ -116,7 +116,7 @@ inline bool is_answer(std::string_view shape, Bytes request, Bytes reply, const 
   return true;
 }
 
-/// Returns whether the refusal of this request carries no address (wire.md D12).
+/// Returns whether every refusal of this request carries no address (wire.md D12).
 constexpr bool is_bare_where_refused(Bytes request, const DconRules& rules) {
   const bool is_of_outputs =
       (request[0] == '@' && request.size > 3) || (request[0] == '#' && (request.size != 4 || !rules.inputs));
@@ -125,8 +125,8 @@ constexpr bool is_bare_where_refused(Bytes request, const DconRules& rules) {
 
 }  // namespace detail
 
-/// Returns how `reply` relates to `request`. Both have no checksum and no CR. The request has delimiter and
-/// address.
+/// Returns how `reply` relates to `request`. Neither includes a checksum or a CR. The request has at least
+/// delimiter and address.
 inline ReplyForm dcon_reply_form(Bytes request, Bytes reply, const DconRules& rules) {
   if (detail::is_bare_where_refused(request, rules)) {
     if (reply.size == 1 && (reply[0] == '?' || reply[0] == '!')) {
@@ -135,7 +135,7 @@ inline ReplyForm dcon_reply_form(Bytes request, Bytes reply, const DconRules& ru
   } else if (reply.size == 3 && reply[0] == '?' && are_digits_of(reply.data + 1, rules.address)) {
     return ReplyForm::Refusal;
   } else if (reply.size == 1 && reply[0] == '!' && detail::is_request("~..X........", request)) {
-    return ReplyForm::Refusal;  // a timed output while the timeout status is set
+    return ReplyForm::Refusal;  // a write of a timed output while the timeout status is set
   }
   for (const detail::Shape& shape : detail::kShapes) {
     if (detail::is_request(shape.request, request)) {

@@ -1,5 +1,5 @@
 // The effects that a command must have on a module's outputs and on the values that control the outputs:
-// an independent implementation of wire.md 4, 6 and 7.
+// an independent implementation of wire.md 4, 6, 7 and 12.
 #pragma once
 
 #include <array>
@@ -10,13 +10,13 @@ namespace ex9000::judges {
 
 /// The outputs, and the values that control them.
 struct Values {
-  std::uint16_t outputs = 0;   ///< bit n is channel n, also in the next two fields
-  std::uint16_t power_on = 0;  ///< stored; applies at the next reset
-  std::uint16_t safe = 0;      ///< stored; applies when the host watchdog expires
-  std::uint8_t timeout = 0;    ///< the timeout of the host watchdog, in 0.1 s
-  bool enabled = false;        ///< host watchdog enabled
+  std::uint16_t outputs = 0;   ///< bit n is channel n, also in `power_on`, `safe` and `timed`
+  std::uint16_t power_on = 0;  ///< stored; the outputs after a reset if the timeout status is clear
+  std::uint16_t safe = 0;      ///< stored; the outputs while the timeout status is set
+  std::uint8_t timeout = 0;    ///< the timeout of the host watchdog, in units of 0.1 s
+  bool enabled = false;        ///< whether the host watchdog is enabled
   bool timed_out = false;      ///< timeout status; while it is set, output commands are refused
-  std::uint16_t timed = 0;     ///< the outputs that a timer will switch off
+  std::uint16_t timed = 0;     ///< the outputs with a running timer
 
   friend constexpr bool operator==(const Values& a, const Values& b) {
     return a.outputs == b.outputs && a.power_on == b.power_on && a.safe == b.safe && a.timeout == b.timeout &&
@@ -40,26 +40,26 @@ struct Values {
     values.timed = static_cast<std::uint16_t>(values.timed & ~channels);
     return values;
   }
-  /// Returns the outputs that `~AA5V` stores: one with a running timer is stored as off.
+  /// Returns the outputs that `~AA5V` stores: an output with a running timer is stored as off.
   [[nodiscard]] constexpr std::uint16_t lasting_outputs() const {
     return static_cast<std::uint16_t>(outputs & ~timed);
   }
 };
 
-/// The effects of a command that is executed. A refused command has no effects.
+/// The effects that a command has if the module executes it. A refused command has no effects.
 struct Demand {
   std::uint16_t channels = 0;  ///< the driven channels; 0: the command drives nothing
   std::uint16_t levels = 0;    ///< the levels of the driven channels
   /// The driven channels whose timer starts. The timers of the other driven channels end.
   std::uint16_t timers = 0;
-  std::array<std::uint16_t, 16> units{};  ///< the times of these timers, in 0.1 s
-  bool of_power_on = false;               ///< Modbus: the power-on value of these channels becomes `levels`
-  bool of_safe = false;                   ///< Modbus: the safe value of these channels becomes `levels`
+  std::array<std::uint16_t, 16> units{};  ///< the times of `timers`, in units of 0.1 s
+  bool of_power_on = false;               ///< Modbus: the power-on value of `channels` becomes `levels`
+  bool of_safe = false;                   ///< Modbus: the safe value of `channels` becomes `levels`
   bool keeps_power_on = false;            ///< `~AA5P`: the outputs are stored as power-on value
   bool keeps_safe = false;                ///< `~AA5S`: the outputs are stored as safe value
   bool clears_timeout = false;            ///< clears the timeout status
-  bool restarts = false;                  ///< restarts the host watchdog if it is enabled afterwards
-  bool stores_something = false;          ///< stores a setting, which takes time and may fail
+  bool restarts = false;                  ///< restarts the host watchdog if the watchdog is then enabled
+  bool stores_something = false;          ///< may store a setting; a store takes time and may fail
   std::optional<std::uint8_t> timeout{};
   std::optional<bool> enabled{};
 
@@ -86,20 +86,20 @@ struct Demand {
   }
 
   /// Returns the values after the command, if the host watchdog expired while the command was being stored.
-  /// Then the command drives nothing (wire.md D6) and clears nothing (wire.md D17). `outputs`: the lasting
-  /// outputs before the timeout.
+  /// Such a command drives nothing (wire.md D6) and does not clear the timeout status (wire.md D17).
+  /// `values`: those after the timeout. `outputs`: the lasting outputs before the timeout.
   [[nodiscard]] constexpr Values values_after_a_timeout(Values values, std::uint16_t outputs) const {
     store(values, outputs);
     values.outputs = values.safe;
     return values;
   }
 
-  /// Returns whether `values` are possible after the command, if only a timeout has occurred since.
-  /// `outputs`: the lasting outputs before the latest timeout. `since`: whether that timeout occurred after
-  /// the request was received.
+  /// Returns whether `values` are possible after the command, if nothing except a timeout has changed them
+  /// since the command. `outputs`: the lasting outputs before the latest timeout. `since`: whether that
+  /// timeout occurred after the request was received.
   [[nodiscard]] constexpr bool is_met_by(const Values& values, std::uint16_t outputs, bool since) const {
     const auto are = [this](std::uint16_t value) { return (value & channels) == levels; };
-    // No timer ends before the reply, because the shortest time is 0.1 s.
+    // A timer that the command starts does not end before the reply, because the shortest time is 0.1 s.
     const bool timers_run = (values.timed & channels) == timers;
     const auto kept = [&](std::uint16_t value) {
       return value == values.lasting_outputs() || (since && value == outputs);

@@ -8,19 +8,20 @@ namespace ex9000::judges {
 
 struct Finding {
   enum class Kind {
-    Nothing,    ///< no frame, or a frame whose check is wrong
+    Nothing,    ///< no complete frame, or one with a line error, a wrong length or a wrong check
     Foreign,    ///< not for the module
     Request,    ///< for the module, which may reply once
     Broadcast,  ///< for every module; none replies
-    HostOk,     ///< for this or for every module; none replies, and each receiver restarts its host watchdog
+    HostOk,     ///< for this module or for every module; restarts the host watchdog; no reply
   };
 
   Kind kind = Kind::Nothing;
-  Bytes frame{};  ///< without its check; valid until the judge receives the next byte
-  /// The time of the report of its first byte; in Modbus, of the first byte since the last silence.
+  Bytes frame{};  ///< without check and CR; valid until the judge receives the next byte
+  /// Time of the report of the frame's first byte. In Modbus, this is the first byte after a silence or after
+  /// a reply of the module. The frame may begin later.
   Microseconds first = 0;
-  Microseconds last = 0;  ///< time of the report of its last byte
-  bool doubtful = false;  ///< the module may have seen other frames in these bytes
+  Microseconds last = 0;  ///< time of the report of the frame's last byte
+  bool doubtful = false;  ///< the module may have found other frames in these bytes
 };
 
 }  // namespace ex9000::judges

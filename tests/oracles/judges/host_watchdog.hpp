@@ -10,21 +10,20 @@
 
 namespace ex9000::judges {
 
-/// Stores the latest restart and the latest timeout of the host watchdog. If register
-/// 0x0251 is 1, each request for the module also restarts the host watchdog. This class does not track these
-/// restarts.
+/// Stores the latest restart and the latest timeout of the host watchdog. If register 0x0251 is 1, each
+/// request for the module also restarts the host watchdog. This class does not store these restarts.
 class HostWatchdog {
  public:
   void module_reset(Microseconds now) {
     restarted_ = now;
     timed_out_ = 0;
   }
-  /// Call this when a command has restarted the host watchdog exactly now.
+  /// Call this when a command has restarted the host watchdog at `now`.
   void restarted(Microseconds now) { restarted_ = now; }
   /// Call this when a host OK or a command restarts the host watchdog at `when` or later.
   void restarts_at_the_earliest(Microseconds when) { restarted_ = std::max(restarted_, when); }
 
-  /// Returns whether a module with these values may have had a timeout until now.
+  /// Returns whether the host watchdog of a module with these values may have expired by `now`.
   [[nodiscard]] bool may_expire(const Values& values, Microseconds now) const {
     constexpr Microseconds kUnit = 100 * kMillisecond;
     return values.enabled && now - restarted_ >= values.timeout * kUnit;

@@ -1,4 +1,4 @@
-// The times on a line that the judges compare with: an independent implementation of wire.md 3, 7 and 12.
+// The times that wire.md permits on a line: an independent implementation of wire.md 3, 7 and 12.
 #pragma once
 
 #include <cstdint>
@@ -8,15 +8,15 @@
 
 namespace ex9000::judges {
 
-/// All times are in microseconds, rounded down. A UART reports a byte at the end of its first stop bit, and
-/// the judges receive it at this time. A second stop bit follows it.
+/// All times are in microseconds, rounded down. A UART reports a byte at the end of the byte's first stop
+/// bit, and the judges receive the byte at this time. With 8N2, a second stop bit follows the report.
 struct LineTimes {
   Microseconds character = 0;    ///< from the start bit to the end of the last stop bit
   Microseconds received = 0;     ///< from the start bit to the end of the first stop bit
   Microseconds rest = 0;         ///< from the end of the first stop bit to the end of the last one
-  Microseconds t35 = 0;          ///< T3.5
+  Microseconds t35 = 0;          ///< T3.5, the silence that ends an RTU frame
   Microseconds turn_around = 0;  ///< least time from the report of CR to an ASCII reply
-  Microseconds silence = 0;      ///< from the report of a byte to the end of T3.5 after it
+  Microseconds silence = 0;      ///< from the report of a byte to the end of the T3.5 that follows the byte
   Microseconds slack = 0;        ///< time between the reports of two bytes with a gap of T1.5
 
   static constexpr LineTimes at(std::uint32_t baud, LineFormat format) {
@@ -25,7 +25,8 @@ struct LineTimes {
     const unsigned second_stop = format == LineFormat::k8N2 ? 1 : 0;
     const unsigned all = kStartDataStop + parity + second_stop;
     const auto half_bits = [baud](unsigned count) { return count * 500'000ULL / baud; };
-    // T1.5 and T3.5 are multiples of a character of 11 bits in every format. Above 19200 baud they are fixed.
+    // Up to 19200 baud, T1.5 and T3.5 are 1.5 and 3.5 characters of 11 bits in every format. Above 19200 baud
+    // they are fixed.
     const bool fixed = baud > 19200;
     LineTimes times;
     times.character = half_bits(2 * all);

@@ -1,4 +1,4 @@
-// Converts the state of a firmware module to the types of a witness.
+// Converts the state of the firmware to the types that a Witness receives.
 #pragma once
 
 #include <cstdint>

@@ -3,11 +3,10 @@
 
 namespace ex9000::judges {
 
-/// The relation of a reply to a request.
 enum class ReplyForm {
   Wrong,    ///< not a possible reply to the request
   Answer,   ///< the requested data, or a confirmation
-  Refusal,  ///< an exception, `?`, or `!` alone: the request has changed nothing
+  Refusal,  ///< an exception, `?AA`, `?`, or `!` alone: the request has changed nothing
 };
 
 }  // namespace ex9000::judges

@@ -17,23 +17,25 @@ struct Request {
   std::array<std::uint8_t, 256> bytes;
   std::size_t size;
   Microseconds last;
-  /// The time at which the bytes became a frame. In Modbus, the silence after the bytes ended, or the module
-  /// replied. In ASCII, the turn-around time ended.
+  /// The earliest time at which the module judges the frame. In Modbus, this is the end of the silence after
+  /// the frame, or the end of a reply of the module, if that end is earlier. In ASCII, it is the end of the
+  /// turn-around time.
   Microseconds over;
   Demand demand;
   bool broadcast;
-  bool alone;  ///< the module was idle, and the frame is not doubtful
+  bool alone;  ///< the module was idle when the frame began, and the frame is not doubtful
   bool fresh;  ///< the module may still execute it; see Witness::mark_fresh
   bool done;   ///< an observed change of values has been attributed to this request
 
   [[nodiscard]] Bytes frame() const { return {bytes.data(), size}; }
-  /// Returns whether the module stores something and sends no reply, so that it may be busy until the latest
-  /// permitted time.
+  /// Returns whether the request may store something and gets no reply. The module may then be busy until the
+  /// time that Witness::latest_of returns.
   [[nodiscard]] bool is_silent_store() const { return broadcast && demand.stores_something; }
 };
 
-/// A queue of requests. The module keeps one frame while it executes another one. It may lose further frames.
-/// A judge cannot observe such a loss, so the queue keeps more requests than the module.
+/// A queue of requests. The module keeps at least one frame while it executes another one, and may lose
+/// further frames. A judge cannot observe such a loss, so the queue keeps more requests than the module
+/// keeps.
 class Requests {
  public:
   /// The greatest number of requests in the queue.
@@ -49,8 +51,8 @@ class Requests {
     oldest_ = (oldest_ + count) % kMost;
     size_ -= count;
   }
-  /// Appends a request with the bytes of this frame. The queue must not be full. The caller sets the other
-  /// members, except `fresh`.
+  /// Appends a request with the frame of this finding. The queue must not be full. The caller sets `over`,
+  /// `demand` and `alone`.
   Request& append(const Finding& finding) {
     Request& latest = (*this)[size_++];
     std::copy(finding.frame.begin(), finding.frame.end(), latest.bytes.begin());

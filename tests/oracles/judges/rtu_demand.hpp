@@ -1,4 +1,4 @@
-// The effects that a Modbus request must have: an independent implementation of wire.md 7.
+// The effects that a Modbus request must have: an independent implementation of wire.md 7 and 12.
 #pragma once
 
 #include <cstddef>
@@ -11,9 +11,9 @@ namespace ex9000::judges {
 
 namespace detail {
 
-/// Returns the effects of a write to `count` coils from `first` on. Bit n of `levels` is the level of the nth
-/// coil, counted from 0. Returns no effects unless all coils are outputs, bits of the safe value or bits of
-/// the power-on value.
+/// Returns the effects of a write to `count` coils from `first` on. Bit n of `levels` is the level of coil
+/// `first` + n. Returns no effects unless all coils are outputs, all are bits of the safe value, or all are
+/// bits of the power-on value.
 constexpr Demand demand_of_coils(unsigned first, unsigned count, std::uint32_t levels, unsigned outputs) {
   const unsigned row = first & 0xFFE0U;
   const unsigned channel = first % 0x20;
@@ -119,8 +119,8 @@ constexpr bool is_timed_output(Bytes request) {
          request.word(2) < detail::kTimedOutputs + kMost;
 }
 
-/// Returns the effects of `request` on a module with `outputs` outputs. `request` has address and function,
-/// but no CRC.
+/// Returns the effects of `request` on a module with `outputs` outputs. `request` has at least address and
+/// function, but no CRC.
 constexpr Demand rtu_demand(Bytes request, unsigned outputs) {
   constexpr std::size_t kOneRegister = 9;
   switch (request[1]) {
@@ -153,7 +153,7 @@ constexpr Demand rtu_demand(Bytes request, unsigned outputs) {
   }
 }
 
-/// Returns whether the module drives outputs on this request unless it refuses the request.
+/// Returns whether the request drives outputs unless the module refuses the request.
 constexpr bool is_rtu_output_command(Bytes request) {
   if (request[1] == 0x06 || request[1] == 0x10) {
     return is_timed_output(request);
@@ -164,7 +164,8 @@ constexpr bool is_rtu_output_command(Bytes request) {
   return request.word(2) < 0x0100;
 }
 
-/// Returns whether the request sets the response delay unless the module refuses it (wire.md 12).
+/// Returns whether the request sets the response delay unless the module refuses or ignores the request
+/// (wire.md 12).
 constexpr bool may_set_delay_by_rtu(Bytes request) {
   constexpr unsigned kDelay = 0x0252;
   if (request.size < 6 || (request[1] != 0x06 && request[1] != 0x10)) {

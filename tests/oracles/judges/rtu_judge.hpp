@@ -15,9 +15,9 @@ namespace ex9000::judges {
 
 class RtuJudge {
  public:
-  /// `strict`: a gap of more than 1.5 characters invalidates a frame. `doubt`: the greatest difference
-  /// between the clocks of the module and of the judge. If a gap differs by at most this much from the
-  /// silence that ends a frame, the module may or may not end the frame. The judge then considers both cases.
+  /// `strict`: a gap of more than T1.5 spoils a frame. `doubt`: the greatest difference between the clocks of
+  /// the module and of the judge. If a gap differs by at most `doubt` from the silence that ends a frame, the
+  /// module may or may not end the frame. The judge then considers both cases.
   RtuJudge(std::uint8_t own_address, const LineTimes& times, bool strict, Microseconds doubt = 0)
       : own_(own_address),
         received_(times.received),
@@ -25,8 +25,9 @@ class RtuJudge {
         apart_(strict ? times.slack : kNever),
         doubt_(doubt) {}
 
-  /// Moves the report of a byte to a later time if the gap before it is so near a limit that rounding to
-  /// whole microseconds, by the clock or by the module, could change the result. Returns the new time.
+  /// Returns the time at which the test must report the next byte: `end`, or a later time if the gap before
+  /// the byte is too near a limit. Near a limit, rounding to whole microseconds, by the clock or by the
+  /// module, could change the result.
   [[nodiscard]] Microseconds beyond_doubt(Microseconds end) const {
     if (size_ == 0) {
       return end;
@@ -41,7 +42,7 @@ class RtuJudge {
     return end;
   }
 
-  /// Call this when no byte has arrived until `now`.
+  /// Call this when no further byte has arrived until `now`. Returns each frame once.
   Finding pass(Microseconds now) {
     if (size_ == 0 || now - last_ + doubt_ < silence_) {
       return {};
@@ -59,7 +60,7 @@ class RtuJudge {
     return known ? Finding{} : finding;
   }
 
-  /// Call this when a byte is reported, after `pass` for the time before it.
+  /// Call this when a byte is reported. Call `pass` with the same time before this function.
   void byte(std::uint8_t byte, bool good, Microseconds now) {
     if (size_ == 0) {
       first_ = now;
@@ -73,8 +74,8 @@ class RtuJudge {
     last_ = now;
   }
 
-  /// Call this after a reply of the module. Judges a frame that was complete except for the silence after it,
-  /// and drops any other.
+  /// Call this after a reply of the module. Judges a frame if only the silence after the frame is missing,
+  /// and drops all other bytes (wire.md D9).
   Finding spoken() {
     const Finding finding = size_ == 0 || judged_ == size_ ? Finding{} : judge();
     size_ = 0;
@@ -105,7 +106,7 @@ class RtuJudge {
 
   [[nodiscard]] Finding judge_from(std::size_t start) const {
     if (!is_whole_from(start)) {
-      // The bytes may be a turn-around 00 and a frame.
+      // The bytes may be the 00 of a line turn-around and a frame.
       if (bytes_[start] != 0 || !is_whole_from(start + 1)) {
         return {};
       }
@@ -126,18 +127,18 @@ class RtuJudge {
   }
 
   std::uint8_t own_;
-  Microseconds received_;  ///< a byte that began before the end of the silence is reported within this time
+  Microseconds received_;  ///< from the start of a byte to the report of the byte
   Microseconds silence_;
-  /// The greatest time between the reports of two bytes of a frame; kNever if gaps are not strict.
+  /// The greatest time between the reports of two successive bytes of a frame; kNever: no limit.
   Microseconds apart_;
   Microseconds doubt_;
-  /// Two more than the longest frame, so that a longer one is noticed.
+  /// Two more than the longest frame: the 00 of a turn-around, and a byte that makes the frame too long.
   static constexpr std::size_t kMost = kLongest + 2;
   std::array<std::uint8_t, kMost> bytes_{};
   std::array<bool, kMost> bad_{};
   std::array<bool, kMost> apart_before_{};
   std::size_t size_ = 0;
-  std::size_t judged_ = 0;   ///< the size at the last `judge`
+  std::size_t judged_ = 0;   ///< the number of bytes that `pass` has judged
   std::size_t another_ = 0;  ///< offset at which a second frame may have begun; 0: none
   Microseconds first_ = 0;
   Microseconds last_ = 0;

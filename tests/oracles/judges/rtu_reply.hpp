@@ -17,8 +17,8 @@ inline bool begins_like(Bytes reply, Bytes request, std::size_t bytes) {
          std::equal(reply.begin(), reply.begin() + bytes, request.begin());
 }
 
-/// Returns whether the reply has the form of functions 01 and 02: the byte count and the bits. Unused bits of
-/// the last byte must be 0.
+/// Returns whether the request is correct and the reply has the form for functions 01 and 02: the byte count
+/// and the bits. Unused bits of the last byte must be 0.
 inline bool are_bits(Bytes request, Bytes reply) {
   const unsigned bits = request.word(4);
   const std::size_t bytes = (bits + 7) / 8;
@@ -42,14 +42,15 @@ inline bool is_diagnosis(Bytes request, Bytes reply) {
          begins_like(reply, request, 4);
 }
 
-/// Returns whether the reply has the form of function 11: the byte count, the module code, FF and the name.
+/// Returns whether the reply has the form for function 11: the byte count, the module code, FF and the name.
 inline bool is_server_id(Bytes reply) {
   return reply.size >= 7 && reply.size <= 13 && reply[2] == reply.size - 3 && reply[3] == 0x90 &&
          reply[5] == 0xFF;
 }
 
-/// Returns whether the reply has the form of function 2B: MEI type, code, conformity level, "more follows",
-/// next object and number of objects, and then id, length and text of each object.
+/// Returns whether the request is correct and the reply has the form for function 2B: MEI type, code,
+/// conformity level, "more follows", next object and number of objects, and then id, length and text of each
+/// object.
 inline bool is_identification(Bytes request, Bytes reply) {
   if (request.size != 5 || reply.size < 8 || !begins_like(reply, request, 4) || request[2] != 0x0E ||
       reply[4] != 0x82 || reply[5] != 0 || reply[6] != 0 || reply[7] == 0) {
@@ -104,7 +105,8 @@ inline bool is_answer(Bytes request, Bytes reply) {
 
 }  // namespace detail
 
-/// Returns how `reply` relates to `request`. Both have no CRC. The request has at least address and function.
+/// Returns how `reply` relates to `request`. Neither includes a CRC. The request has at least address and
+/// function.
 inline ReplyForm rtu_reply_form(Bytes request, Bytes reply) {
   if (reply.size < 3 || reply[0] != request[0]) {
     return ReplyForm::Wrong;

@@ -6,7 +6,7 @@
 
 namespace ex9000::judges {
 
-/// Time since the first power-on.
+/// A time on the clock of the test, or a duration.
 using Microseconds = std::uint64_t;
 constexpr Microseconds kNever = std::numeric_limits<Microseconds>::max();
 constexpr Microseconds kMillisecond = 1000;

@@ -26,7 +26,7 @@ class TimedOutputs {
   }
 
   /// Call this when the timers of these channels have started. Then call `may_be_started_by` for each request
-  /// that the module may have executed. A timer that no request starts may end at any time.
+  /// that the module may have executed. A timer that none of these requests starts may end at any time.
   void started(std::uint16_t channels) {
     for (unsigned channel = 0; channel < ends_.size(); ++channel) {
       ends_[channel] = (channels >> channel & 1U) != 0 ? kAnyTime : ends_[channel];
@@ -43,7 +43,7 @@ class TimedOutputs {
     }
   }
 
-  /// Returns the channels whose timer may have ended at `now`, if it was running.
+  /// Returns the channels whose timer, if it was running, may have ended by `now`.
   [[nodiscard]] std::uint16_t that_may_end(Microseconds now) const {
     unsigned channels = 0;
     for (unsigned channel = 0; channel < ends_.size(); ++channel) {
