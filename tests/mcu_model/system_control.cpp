@@ -94,7 +94,7 @@ void SystemControl::write_rcc(std::uint32_t value) {
   const std::uint32_t changed = value ^ rcc_;
   const std::uint32_t crystal = chip_.crystal_field << kCrystalShift;
   if ((changed & chip_.rcc_kept & ~(1U << 12U)) != 0) {
-    fault(kRcc, "reserved bits of RCC change; keep their value");
+    fault(kRcc, "bits of RCC that must keep their value change");
   }
   const std::uint32_t validated =
       crystal | (0x3U << kSourceShift) | (1U << kPowerDown) | (0xFU << kDividerShift);

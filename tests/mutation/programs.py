@@ -72,7 +72,7 @@ class Unit:
 
 @dataclasses.dataclass(frozen=True)
 class Image:
-    """A shared object with the image of a model for a board. It runs on a microcontroller of tests/mcu_model."""
+    """A shared object with the image of a model for a board. It runs on a register model of tests/mcu_model."""
 
     board: str
     model: str
@@ -167,7 +167,7 @@ PROCESS = set(
     "claim control_socket line_ports listening main new_file panel_server port program pty pty_port "
     "running_line running_program serial_port stop_signals tcp_port".split()
 )
-# Those of PROCESS that only the whole program links.
+# The sources in PROCESS that only the whole program links.
 WHOLE = {"main", "panel_server", "program", "running_program"}
 # Sources that are compiled separately, because they take long to compile and few tests reach them. sim/CMakeLists.txt
 # lists further ones after ON_THEIR_OWN.
@@ -286,7 +286,6 @@ def players():
         Unit("players-transcripts", ("tests/conformance/conformance_core_test.cpp",), options),
         Unit("players-sessions", ("tests/firmware/reference_sessions_test.cpp",), options),
         Unit("players-driver", (driver,), options),
-        # A separate unit: it includes only two headers of the product, so few mutants require a rebuild.
         Unit("players-reference", tuple(file for file in reference if file != driver), options),
     )
     # A number of random transactions that is large enough to reach every rule.
@@ -364,9 +363,9 @@ def pico_program():
 
 @dataclasses.dataclass(frozen=True)
 class Area:
-    """The sources to change, the product units built from them, and the tests that must detect the change. Tests whose
-    names begin with the name of the changed file run first, then tests that include the header of this file, then the
-    other tests of each group in turn."""
+    """The sources to change, the units of the product that contain them, and the tests that must detect the change.
+    Tests whose file names begin with the name of the changed file run first, then tests that include the header of this
+    file, then the other tests of each group in turn."""
 
     name: str
     sources: list

@@ -5,8 +5,8 @@ import unittest
 
 import programs
 
-# No unit contains these files: tests replace the first two by another bus and processor, and only the panel's server,
-# which is not mutated, includes the third.
+# No unit contains these files. Headers of the tests replace the first two. Only panel_server.cpp includes the third,
+# and no unit contains panel_server.cpp.
 REACHED_BY_NONE = {"hal/registers/bus.hpp", "hal/cortex_m/processor.hpp", "sim/front_ends/panel/page_files.hpp"}
 
 

@@ -31,12 +31,12 @@ def digest_of_text(text):
 
 
 def options_of_header(unit):
-    """Returns the options that must be the same for a unit and for the precompiled header that it includes."""
+    """Returns the options that must be the same for a unit and for the precompiled header of the unit."""
     return [option for option in unit.options if not option.startswith(("-I", "-D"))]
 
 
 def header_of(unit):
-    """Returns the path of the header that the unit includes first. It is precompiled to save compile time."""
+    """Returns the path of the header that the unit includes first. The header is precompiled to save time."""
     return BUILD / f"{digest_of_text(' '.join([*options_of_header(unit), *unit.headers]))}.hpp"
 
 
@@ -180,8 +180,8 @@ class Bench:
         return self.objects[unit.name]
 
     def changes(self, units):
-        """Compiles these units in turn, up to the first one whose object code the mutant changes. Returns whether there
-        is such a unit. Returns False if a unit does not compile."""
+        """Compiles those of these units that contain the changed file, up to the first unit whose object code the
+        mutant changes. Returns whether there is such a unit. Returns False if a unit does not compile."""
         for unit in filter(self.is_in, units):
             _, as_it_is = self.workshop.unit(unit)
             changed = self.object_of(unit)

@@ -122,8 +122,8 @@ constexpr Demand dcon_demand(Bytes command, unsigned outputs) {
   }
 }
 
-/// Returns whether the command is `#AABBDD` or `@AA(Data)`. Unless the module refuses it, such a command
-/// drives outputs.
+/// Returns whether the command is `#AABBDD` or `@AA(Data)`. Such a command drives outputs unless
+/// the module refuses the command.
 constexpr bool is_dcon_output_command(Bytes command) {
   return (command[0] == '#' && command.size == 7) || (command[0] == '@' && command.size > 3);
 }

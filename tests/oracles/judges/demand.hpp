@@ -33,7 +33,7 @@ struct Values {
     values.timed = 0;
     return values;
   }
-  /// Returns the values after the timers of `channels` have ended (wire.md 12).
+  /// Returns the values after the timers of `channels` have expired (wire.md 12).
   [[nodiscard]] constexpr Values without_timers(std::uint16_t channels) const {
     Values values = *this;
     values.outputs = static_cast<std::uint16_t>(values.outputs & ~channels);
@@ -72,7 +72,7 @@ struct Demand {
     return static_cast<std::uint16_t>((value & ~channels) | levels);
   }
 
-  /// Returns the values after the command, if `values` are those before it.
+  /// Returns the values after the command, if `values` are those before the command.
   [[nodiscard]] constexpr Values made_of(Values values) const {
     if ((drives() && values.timed_out) || (timeout == 0 && values.enabled) ||
         (enabled == true && !timeout && values.timeout == 0)) {

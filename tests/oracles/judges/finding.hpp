@@ -8,7 +8,7 @@ namespace ex9000::judges {
 
 struct Finding {
   enum class Kind {
-    Nothing,    ///< no complete frame, or one with a line error, a wrong length or a wrong check
+    Nothing,    ///< no complete frame, or one with a line error, a wrong length, CRC or checksum
     Foreign,    ///< not for the module
     Request,    ///< for the module, which may reply once
     Broadcast,  ///< for every module; none replies
@@ -16,9 +16,9 @@ struct Finding {
   };
 
   Kind kind = Kind::Nothing;
-  Bytes frame{};  ///< without check and CR; valid until the judge receives the next byte
-  /// Time of the report of the frame's first byte. In Modbus, this is the first byte after a silence or after
-  /// a reply of the module. The frame may begin later.
+  Bytes frame{};  ///< without CRC, checksum and CR; valid until the judge receives the next byte
+  /// In ASCII, the time of the report of the frame's first byte. In Modbus, the time of the report of the
+  /// first byte after a silence or after a reply of the module; the frame may begin later.
   Microseconds first = 0;
   Microseconds last = 0;  ///< time of the report of the frame's last byte
   bool doubtful = false;  ///< the module may have found other frames in these bytes

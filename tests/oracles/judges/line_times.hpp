@@ -1,4 +1,5 @@
-// The times that wire.md permits on a line: an independent implementation of wire.md 3, 7 and 12.
+// The times that depend on the baud rate and the line format: an independent implementation of wire.md 3, 7
+// and 12.
 #pragma once
 
 #include <cstdint>
