@@ -1,6 +1,6 @@
-// One copy of the settings in the EEPROM, read without the firmware's code. It is an independent
+// One copy of the settings in the EEPROM, read without the firmware's code. This file is an independent
 // implementation of the layouts of firmware/settings/record.hpp and old_layouts.hpp, of the check, and of the
-// settings that commands can store (wire.md sections 4, 8 and 12).
+// rules for the settings that commands can store (wire.md sections 4, 7, 8 and 12).
 #pragma once
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 
 namespace ex9000 {
 
-/// The properties of a model that decide which settings are possible.
+/// The properties of a model on which the check, the factory values and the possible settings depend.
 struct StoringModel {
   std::string_view designation;
   unsigned outputs;
@@ -45,15 +45,15 @@ constexpr std::array<std::size_t, 4> kStoredPlaces{0x080, 0x100, 0x000, 0x020};
 constexpr std::size_t kStoredMemory = 0x180;  ///< bytes of the memory that settings may occupy
 constexpr std::size_t kStoredPage = 32;
 
-/// Refers to the memory and to the model, which must outlive this object.
+/// A copy in a memory. Refers to the memory and to the model, which must outlive this object.
 class StoredCopy {
  public:
   /// `place`: one of kStoredPlaces.
   StoredCopy(const StoringModel& model, const std::uint8_t* memory, std::size_t place)
       : model_(model), bytes_(memory + place), layout_(place >= 0x080 ? 3 : layout_of_old(bytes_)) {}
 
-  /// Sets the layout of the copy at `place` (2 in an old place, 3 in a new one), reduces a length that is too
-  /// great, and then sets the correct check.
+  /// Sets the layout of the copy at `place`: 2 at a place for the older layouts, otherwise 3. In layout 3,
+  /// reduces a length of more than 120. Then writes the correct check.
   static void seal(const StoringModel& model, std::uint8_t* memory, std::size_t place) {
     std::uint8_t* bytes = memory + place;
     if (place >= 0x080) {
@@ -129,7 +129,7 @@ class StoredCopy {
     settings.response_delay = byte(kResponseDelay, 0);
   }
 
-  /// The offset of each setting in the copy.
+  /// The offsets of the sequence number and of the settings that all layouts have.
   struct Fields {
     std::size_t sequence, address, baud_code, format, protocol, timeout, enabled, status, name, name_length,
         power_on, safe;
@@ -179,7 +179,7 @@ class StoredCopy {
     std::for_each(bytes_, bytes_ + check_at(), add);
     return ~crc;
   }
-  /// For each value of four bits, the result of four shifts.
+  /// For each value of four bits, the CRC after four steps of one bit.
   static constexpr std::array<std::uint32_t, 16> kOfDigit = [] {
     std::array<std::uint32_t, 16> table{};
     for (std::uint32_t i = 0; i < table.size(); ++i) {

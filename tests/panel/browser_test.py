@@ -1,5 +1,4 @@
-"""Tests the panel in a real browser: user actions, module events, and the display. Saves a picture of each state in
-build/panel."""
+"""Tests the panel in a real browser: user actions, module events, and the display. Saves pictures in build/panel."""
 
 import unittest
 
@@ -11,7 +10,7 @@ READ_INPUTS = bytes.fromhex("020200000008") + crc(bytes.fromhex("020200000008"))
 
 
 class Modules(Panel):
-    def test_clicks_on_an_input_are_counted_over_modbus(self):
+    def test_two_clicks_on_an_input_are_one_count_on_the_page_and_over_modbus(self):
         _, master = self.show_two()
         counted = text(INPUTS, "li:nth-child(4) .count", "1")
         self.assertEqual(master.counter(2, 3), 0)
@@ -45,7 +44,7 @@ class Modules(Panel):
         self.browser.until(text(OUTPUTS, ".values", "Safe0100"))
         master.ask("010601E800FF", 8)
         master.coil(1, 0x0104, True)
-        with repeating(lambda: master.ask("010601E800FF", 8)):  # restarts the watchdog
+        with repeating(lambda: master.ask("010601E800FF", 8)):  # restarts the host watchdog
             self.browser.until(text(OUTPUTS, ".readout.wide .value", "of 25.5 s"))
             self.picture("counting-down")
         master.ask("010601E80014", 8)
@@ -178,7 +177,7 @@ class Modules(Panel):
         self.expect_no_scrolling_sideways()
         self.picture("phone-64")
 
-    def test_the_module_of_the_readme_shows_its_outputs(self):
+    def test_the_picture_for_the_readme_shows_the_outputs_that_are_on(self):
         self.browser.size(1060, 900)
         _, master = self.show_two()
         self.browser.click("[aria-label='2 EX9052D-M: input DI1']")
@@ -215,9 +214,9 @@ class Modules(Panel):
         latched = f"""document.querySelector("{plate} li:nth-child(4) .latch").dataset.on === 'true'"""
         with both_lines_busy(simulator):
             self.browser.until("document.querySelectorAll('#filler .row').length > 10")
-            # The module's counter is the last value to arrive. It counts falling edges, one for every two clicks.
+            # The module's counter counts falling edges: one for every two clicks.
             clicks = 0
-            for _ in range(3 * CLICKS):  # a page that reports a lost connection on a busy machine sends no clicks
+            for _ in range(3 * CLICKS):  # a busy machine may lose the connection; a click then has no effect
                 self.browser.until(f"""{there} && (window.was = [{pressed(input_)}, {count}],
                     document.querySelector("{input_}").click(), true)""")
                 self.browser.until(f"""!({there}) || ({pressed(input_)} !== was[0] && {latched} &&

@@ -1,4 +1,4 @@
-"""Tests the bus in the browser: history, pause, search, the strip, and the faults of the bus."""
+"""Tests the bus in the browser: the list of frames, pause, search, the strip, and faults."""
 
 import unittest
 
@@ -6,13 +6,13 @@ from panel_page import Panel, pressed
 from simulator import Master, repeating, wait_until
 from web_socket import Page
 
-# Rows with frames. Rows that report a delay of the host are notes and do not count.
+# The number of rows in the list, without notes. A note reports, for example, a delay of the host.
 ROWS = "document.querySelectorAll('#filler .row:not([data-kind=note])').length"
 TALLY = "document.getElementById('tally').textContent"
 PAUSED = "document.getElementById('pause').getAttribute('aria-pressed') === 'true'"
 LOST = "document.getElementById('lost').textContent.includes('trying again')"
 PICTURE = "document.getElementById('canvas').toDataURL()"
-# A function that returns whether the strip contains the colour with this name at this height.
+# A JavaScript function that returns whether row `y` of the strip's pixels contains the colour with this name.
 PAINTED = """((name, y) => {
   const strip = document.getElementById('canvas');
   const copy = document.createElement('canvas');
@@ -80,7 +80,7 @@ class Bus(Panel):
         self.type("#search", "")
         self.browser.until(f"{ROWS} === 6")
 
-    def test_each_line_counts_the_frames_that_a_paused_page_has_omitted(self):
+    def test_each_line_counts_the_rows_that_a_paused_page_has_omitted(self):
         modules = [{"model": "EX9052D-M", "address": "02"}]
         simulator = self.bus([{"name": name, "tcp": 0, "line": "instant", "modules": modules}
                               for name in ("hall", "yard")])
@@ -149,7 +149,7 @@ class Bus(Panel):
         self.assertTrue(page.tell("1 fault hang every 100ms")["ok"])
         self.browser.until(f"{PAINTED}('note', 26) && {TALLY} === '0 frames'")
         self.assertTrue(page.tell("fault off 1")["ok"])
-        self.browser.until(f"!{PAINTED}('note', 26)")  # it has moved out of the strip
+        self.browser.until(f"!{PAINTED}('note', 26)")  # the notes have moved out of the strip
 
     def test_a_late_frame_is_sorted_by_its_time(self):
         simulator = self.show("EX9042D@01,baud=1200", "--baud", "1200")
@@ -158,10 +158,10 @@ class Bus(Panel):
         master = Master(simulator.lines[0])
         self.addCleanup(master.close)
         error = "document.querySelector('.row[data-kind=error]')"
-        # A frame of 0.3 s. During this time the simulator writes notes, and the page receives them before the frame.
+        # The frame takes 0.33 s. In this time the simulator writes notes, and the page receives them before the frame.
         page.say("1 fault hang every 50ms")
         master.send(bytes([7] * 40))
-        pause = "(document.getElementById('pause').click(), true)"  # otherwise more notes would move it out of sight
+        pause = "(document.getElementById('pause').click(), true)"  # otherwise notes move the frame out of sight
         self.browser.until(f"{error} !== null && {PAINTED}('bad', 20) && {PAINTED}('note', 46) && {pause}")
         in_turn = """const rows = [...document.querySelectorAll('#filler .row')];
             rows.sort((a, b) => a.ariaRowIndex - b.ariaRowIndex);
@@ -197,7 +197,7 @@ class Bus(Panel):
 
     def test_the_strip_is_moved_by_keys_and_by_dragging_while_paused(self):
         _, master = self.show_two()
-        with self.asking_inputs(master):  # after each move the strip shows different frames
+        with self.asking_inputs(master):  # so that the strip shows different frames after each move
             self.browser.until(f"{ROWS} > 20 && {PAINTED}('master', 20)")
             self.browser.click("#pause")
         self.browser.run("document.getElementById('canvas').focus()")

@@ -21,7 +21,7 @@ class Console(Panel):
         self.browser.until(f"{ITEMS}.length > 1")
 
     def choose(self, selector, beginning):
-        """Chooses the option whose text begins with `beginning`. Sends the event that the choice of a user causes."""
+        """Chooses the first option whose text begins with `beginning`. Sends the event that a user's choice causes."""
         self.browser.run("""const list = document.querySelector(arguments[0]);
             const option = [...list.options].find((each) => each.textContent.startsWith(arguments[1]));
             list.value = option.value;
@@ -70,14 +70,14 @@ class Console(Panel):
         self.send("$01M")
         self.assertIn("$01MD2 → !019042D", self.replies(1)[0])
 
-    def test_polling_sends_until_it_is_switched_off(self):
+    def test_polling_repeats_a_request_and_a_later_request_gets_its_reply(self):
         self.open("EX9042D-M@01")
         self.choose(f"{FORM} select[aria-label^='Interval']", "0.2 s")
         self.browser.run(f"""document.querySelector("{REQUEST}").value = "01 0000 000D" """)
         self.browser.click(POLL)
         self.replies(3)
         self.browser.click(POLL)
-        self.send("46 00")  # its reply comes after those of all polls
+        self.send("46 00")
         self.browser.until(f"{REPLIES}.some((each) => each.startsWith('46 00'))")
 
     def test_each_line_has_a_console_of_its_own(self):

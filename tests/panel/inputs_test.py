@@ -1,4 +1,5 @@
-"""Tests inputs in the browser: click, hold, pulse and touch, with pointer, finger, keyboard and screen reader."""
+"""Tests the inputs on the page. The tests switch, hold or pulse inputs with a mouse, a finger and keys, and with
+clicks without a pointer. One test presses the reset button of a module."""
 
 import unittest
 
@@ -13,7 +14,7 @@ PULSE = "input[value=pulse]"
 
 class Inputs(Panel):
     def click_in_the_page(self, selector, times=1):
-        """Clicks as a screen reader does, without pointer and keyboard."""
+        """Clicks `times` times as a screen reader does, without a pointer and without keys."""
         self.browser.run(f"""for (let i = 0; i < {times}; ++i) {{ document.querySelector("{selector}").click(); }}""")
 
     def middle_of(self, selector):
@@ -31,12 +32,12 @@ class Inputs(Panel):
         self.browser.until(pressed(DI3))
         simulator.stop()
         self.browser.until(LOST)
-        self.assertTrue(self.browser.run(f"return {pressed(DI3)}"))  # unchanged
+        self.assertTrue(self.browser.run(f"return {pressed(DI3)}"))  # the page shows the last known state
         self.browser.pointer("up")
         simulator.go_on()
         self.browser.until(f"!({LOST})")
         self.browser.until(f"!({pressed(DI3)})")
-        # This input is still on, because the simulator has not started again.
+        # DI1 is still on, because the simulator has not started again.
         self.assertTrue(self.browser.run("return " + pressed("[aria-label='2 EX9052D-M: input DI1']")))
         self.browser.click("input[value=toggle]")
         self.browser.click(DI3)
@@ -51,7 +52,7 @@ class Inputs(Panel):
         self.browser.until(f"!({pressed(DI3)}) && {COUNT} === 1")
         self.browser.pointer("up")
 
-    def test_each_of_several_fast_clicks_on_an_input_counts(self):
+    def test_each_of_several_fast_clicks_switches_the_input(self):
         _, master = self.show_two()
         self.click_in_the_page(DI3, 5)
         self.browser.until(f"{pressed(DI3)} && {COUNT} === 2")
@@ -97,7 +98,7 @@ class Inputs(Panel):
         self.click_in_the_page(DI3)
         self.browser.until(pressed(DI3))
 
-    def test_alt_with_a_click_and_keys_in_pulse_mode_give_a_pulse(self):
+    def test_a_click_with_alt_gives_a_pulse_and_so_does_a_key_in_pulse_mode(self):
         self.show_two()
         self.browser.key("+Alt")
         self.browser.click(DI3)
@@ -110,7 +111,7 @@ class Inputs(Panel):
             self.browser.until(f"{COUNT} === {turn + 2}")
         self.assertFalse(self.browser.run(f"return {pressed(DI3)}"))
 
-    def test_reset_switches_the_outputs_back(self):
+    def test_the_reset_button_switches_an_output_back_off(self):
         simulator, master = self.show_two()
         master.coil(1, 0, True)
         page = Page(simulator.port)

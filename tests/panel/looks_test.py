@@ -1,5 +1,6 @@
-"""Tests the appearance of the panel and its content for a screen reader: contrast, names, narrow windows, the content
-of a drawer, the terminals, and the message of an extra page."""
+"""Tests the appearance of the panel, and what a screen reader finds in it: contrast, roles and names, narrow windows,
+the header, the terminals, a timed output, the drawer of a module (its settings and values), and the text on a page that
+exceeds the limit of open pages."""
 
 import tempfile
 import unittest
@@ -9,10 +10,11 @@ from simulator import Master, wait_until
 from web_socket import Page
 
 MOST_PAGES = 16
-LEGIBLE = 4.5
-VISIBLE = 3  # for everything that is not text
-# Returns the contrast between a colour and a background. The colour is a property of an element, or of the content
-# generated before or after it. The opacities of all ancestors count.
+LEGIBLE = 4.5  # the lowest contrast ratio of a text
+VISIBLE = 3  # the lowest contrast ratio of a border
+# Returns the contrast ratio between a colour and the background colour of the element `ground`. The colour is a
+# property of the element `selector`, or of the content generated before or after this element. The opacities of this
+# element and of all its ancestors count.
 CONTRAST = """
   const [selector, generated, property, ground] = arguments;
   const channels = (colour) => colour.match(/[0-9.]+/g).slice(0, 3).map((each) => Number(each) / 255);
@@ -112,7 +114,7 @@ class Looks(Panel):
         self.assertEqual(master.say("~01RD05"), "!01")
         for shown in ("DI2 100 ms", "DI0, DI7", "host OK and requests", "5 ms"):
             self.browser.until(text(plate, ".drawer dl", shown))
-        self.assertEqual(master.say("~01X0283FFFF"), "!01")  # output 3 for 6553.5 s
+        self.assertEqual(master.say("~01X0283FFFF"), "!01")  # switches output 3 on for 6553.5 s
         left = f"""[...document.querySelectorAll("{plate} .left")]"""
         self.browser.until(f"{left}.filter((each) => !each.hidden).length === 1 && {left}[3].textContent < '6553.0 s'")
         self.picture("timed-output", whole=True)
@@ -150,7 +152,7 @@ class Looks(Panel):
             pages.append(Page(simulator.port))
             self.addCleanup(pages[-1].close)
         self.browser.open("about:blank")
-        page = wait_until(lambda: self.let_in(simulator))  # the browser's own page has closed
+        page = wait_until(lambda: self.let_in(simulator))  # waits until the browser's page has disconnected
         self.browser.open(simulator.address)
         self.browser.until("document.getElementById('lost').textContent.includes('Too many pages')")
         dot = "getComputedStyle(document.getElementById('link'), '::before').content.includes('○')"
@@ -159,7 +161,7 @@ class Looks(Panel):
         page.close()
         self.browser.until("document.querySelectorAll('.plate').length === 2")
         self.browser.until(f"document.getElementById('lost').textContent === '' && !{dot}")
-        self.assertTrue(self.browser.run(f"document.body.removeAttribute('data-link'); return {dot}"))  # not connected
+        self.assertTrue(self.browser.run(f"document.body.removeAttribute('data-link'); return {dot}"))
 
     def test_320_pixels_are_enough_for_long_names(self):
         self.browser.size(320, 640, phone=True)
@@ -185,7 +187,7 @@ class Looks(Panel):
         self.browser.key("-Shift")
         self.assertGreater(self.browser.run("return document.querySelector('.top').offsetHeight"), 64)
 
-    def test_terminals_are_as_in_the_manual_and_fill_the_width(self):
+    def test_terminals_have_the_labels_of_the_model_and_channels_fill_the_width(self):
         self.show("EX9042D-M@01", "EX9052D-M@02", "EX9063D@03")
         edge = """const terminals = document.querySelectorAll(`[aria-label='${arguments[0]}'] .edge li`);
             return [...terminals].map((each) => each.textContent)"""

@@ -1,5 +1,5 @@
-"""The base class and the helpers of the browser tests. Each test starts its own simulator and shows its page. The tests
-save pictures in build/panel."""
+"""The base class and the helpers of the browser tests. Each test starts its own simulator and shows its page. Some
+tests save pictures in build/panel."""
 
 import atexit
 import contextlib
@@ -29,7 +29,7 @@ def pressed(selector):
 
 
 def lit(outputs):
-    """Returns a condition that is true if exactly these outputs of the first module are lit. Bit n is output n."""
+    """Returns a JavaScript expression that is true if exactly these outputs of module 1 are lit. Bit n is output n."""
     lamps = f"""[...document.querySelectorAll("{OUTPUTS} .output")]"""
     return f"{lamps}.reduce((sum, led, n) => sum + (led.dataset.on === 'true' ? 1 << n : 0), 0) === {outputs}"
 
@@ -47,14 +47,16 @@ def the_browser():
 
 
 def bus(lines):
-    """Starts a simulator with a bus file of these lines. The program reads the file before it prints its greeting."""
+    """Starts a simulator with a bus file of these lines. The program has read the file before this function deletes
+    it."""
     with tempfile.NamedTemporaryFile("w", suffix=".json") as file:
         json.dump({"lines": lines}, file)
         file.flush()
         return Simulator(file.name)
 
 
-# Two lines with 32 modules each, in groups of four: one with outputs, one with inputs, and two with both.
+# Two lines with 32 modules each, in groups of four. The first and the last module of a group have outputs, the second
+# has inputs, and the third has both.
 MANY = [
     {"name": name, "tcp": 0, "modules": [
         {"model": ("EX9042D-M", "EX9052D-M", "EX9055D", "EX9068D-M")[i % 4], "address": f"{i + 1:02X}", "baud": 115200}
@@ -65,7 +67,7 @@ MANY = [
 
 @contextlib.contextmanager
 def both_lines_busy(simulator):
-    """Runs a master without pauses on each line while the block runs."""
+    """Runs a master on each line while the `with` block runs. The masters send their requests without pauses."""
     over = threading.Event()
     loads = [threading.Thread(target=keep_busy, args=(port, over)) for port in simulator.lines]
     for load in loads:
@@ -79,7 +81,8 @@ def both_lines_busy(simulator):
 
 
 def keep_busy(port, over):
-    """In each group of four modules, switches an output of the first and reads the inputs of the second."""
+    """Sends requests to the groups of four modules in turn until `over` is set: switches an output of the first module
+    of the group, and reads the inputs of the second."""
     master = Master(port)
     turn = 0
     while not over.is_set():
@@ -117,7 +120,7 @@ class Panel(unittest.TestCase):
         return simulator, master
 
     def picture(self, name, whole=False):
-        """Saves a picture of a state of the page, and expects that the state is accessible."""
+        """Saves a picture of the page, and expects that the page is accessible."""
         self.browser.screenshot(PICTURES / f"{name}.png", whole)
         self.expect_accessible()
 
@@ -127,7 +130,7 @@ class Panel(unittest.TestCase):
         self.assertEqual(self.browser.violations(), [])
 
     def expect_rows_in_order(self):
-        """Expects that the rows of the frame list have the same order in the document and on the screen."""
+        """Expects that the document contains the rows of the frame list in the order of their row indices."""
         order = """return [...document.querySelectorAll('#filler .row')].map((row) => Number(row.ariaRowIndex))"""
         rows = self.browser.run(order)
         self.assertEqual(rows, sorted(rows))

@@ -1,4 +1,4 @@
-"""Tests a panel with more modules than a page can show at the same time."""
+"""Tests the page of 70 modules on seven lines. With more than 64 modules, the page folds all lines at first."""
 
 import unittest
 
@@ -55,7 +55,7 @@ class Plant(Panel):
         self.browser.click(".line:nth-child(3) > summary")
         self.browser.until("document.querySelector('[aria-label=\"21 EX9042D-M\"] .output')?.dataset.on === 'true'")
 
-    def test_modules_are_found_by_line_model_address_and_name(self):
+    def test_modules_are_found_by_line_position_model_address_and_name(self):
         for words, lines, plates in (
             ("hall3", ["hall3"], 10),
             ("p4v7", ["hall4"], 1),
@@ -85,7 +85,7 @@ class Plant(Panel):
         self.assertEqual(self.value(OPEN_LINES), [], "the lines of a large plant are folded again")
         self.assertEqual(self.value("document.getElementById('found').textContent"), "")
 
-    def test_a_search_also_selects_the_faults_of_the_lines(self):
+    def test_a_search_shows_only_the_faults_of_the_found_lines(self):
         faults = "[...document.querySelectorAll('.faultline:not([hidden]) h3')].map((each) => each.textContent)"
         self.assertEqual(len(self.value(faults)), 7)
         self.find("hall2")

@@ -1,4 +1,5 @@
-"""Tests what the panel's server accepts and rejects, and that this does not disturb a master that polls the line."""
+"""Tests the panel's server: what it accepts and rejects while a master polls the line without errors, at which
+addresses and ports it listens, its end, and a page that does not read."""
 
 import json
 import pathlib
@@ -14,7 +15,7 @@ from web_socket import Page, all_of, ask, open_socket, request, status, upgrade
 MOST_PAGES = 16
 MOST_REQUESTS = 64  # concurrent requests, in addition to the pages
 TRY_AGAIN_LATER = 1013
-LOOKS = 20  # messages to one page, enough to show that another page receives none
+LOOKS = 20  # messages that one page receives while the server sends none to a page that does not read
 
 
 class Polling:
@@ -23,7 +24,7 @@ class Polling:
     def __init__(self, port):
         self._master = Master(port)
         self.wrong = None
-        self._left = None  # remaining polls after end() was called; None before
+        self._left = None  # remaining polls; None until end() is called
         self._thread = threading.Thread(target=self._poll)
         self._thread.start()
 
@@ -34,11 +35,11 @@ class Polling:
                     raise AssertionError("unexpected reply to the poll")
                 if self._left is not None:
                     self._left -= 1
-        except Exception as wrong:  # pylint: disable=broad-exception-caught # the test reads it
+        except Exception as wrong:  # pylint: disable=broad-exception-caught # tearDown reports it
             self.wrong = wrong
 
     def end(self):
-        """Sends five more polls, then ends."""
+        """Stops the polling after up to five more polls, and waits for its end."""
         self._left = 5
         self._thread.join()
         self._master.close()
@@ -66,7 +67,7 @@ class Server(unittest.TestCase):
         self.assertEqual(status(answer), wanted, (data[:200], answer[:200]))
         return answer
 
-    def test_the_page_has_security_headers(self):
+    def test_the_page_has_security_headers_and_localhost_is_accepted(self):
         for target, kind in ("/", b"text/html"), ("/panel.css", b"text/css"), ("/panel.js", b"text/javascript"):
             answer = self.expect(200, request(self.port, target))
             for part in (kind, b"Content-Security-Policy: default-src 'self'", b"Cache-Control: no-store",
@@ -74,12 +75,12 @@ class Server(unittest.TestCase):
                 self.assertIn(part, answer)
         self.expect(200, request(self.port, host=f"localhost:{self.port}"))
 
-    def test_the_maps_of_all_models_are_those_of_describe(self):
+    def test_models_json_is_the_output_of_describe(self):
         answer = self.expect(200, request(self.port, "/models.json"))
         printed = subprocess.run([PROGRAM, "describe", "--format", "json"], stdout=subprocess.PIPE, check=True).stdout
         self.assertEqual(json.loads(answer.partition(b"\r\n\r\n")[2]), json.loads(printed))
 
-    def test_another_host_name_is_refused(self):
+    def test_a_wrong_missing_or_second_host_is_refused(self):
         for host in ("example.org", f"example.org:{self.port}", "127.0.0.1", f"127.0.0.1:{self.port + 1}", False,
                      f"127.0.0.1:{self.port}.example.org"):
             self.expect(403, request(self.port, host=host))
@@ -94,7 +95,7 @@ class Server(unittest.TestCase):
         self.expect(403, upgrade(self.port, origin=None))
         self.expect(403, request(self.port, "/live"))
 
-    def test_a_request_from_another_site_is_refused(self):
+    def test_a_sec_fetch_site_other_than_same_origin_or_none_is_refused(self):
         for site in "cross-site", "same-site", "nonsense":
             self.expect(403, request(self.port, headers=[f"Sec-Fetch-Site: {site}"]))
             twice = ["Sec-Fetch-Site: none", f"Sec-Fetch-Site: {site}"]
@@ -103,7 +104,7 @@ class Server(unittest.TestCase):
         for site in "same-origin", "none":
             self.expect(200, request(self.port, headers=[f"Sec-Fetch-Site: {site}"]))
 
-    def test_unknown_paths_other_methods_and_bodies_are_refused(self):
+    def test_unknown_paths_other_methods_bodies_and_live_without_an_upgrade_are_refused(self):
         for target in ("/nothing", "/../etc/passwd", "/panel.js?x", "//", "http://example.org/"):
             self.expect(404, request(self.port, target))
         for method in "POST", "PUT", "DELETE", "OPTIONS", "FOO":
@@ -121,7 +122,7 @@ class Server(unittest.TestCase):
             self.assertNotEqual(body, b"")
             self.assertEqual(ask(self.port, request(self.port, target, method="HEAD")), header + b"\r\n\r\n")
 
-    def test_malformed_requests_are_refused(self):
+    def test_malformed_and_too_long_requests_are_refused(self):
         self.expect(431, request(self.port, headers=["X: " + "x" * 10000]))
         self.expect(431, request(self.port, "/" + "x" * 20000))
         for garbage in (b"\0\1\2\3\r\n\r\n", b"GET\r\n\r\n", b"GET / HTTP/9.9\r\n\r\n",
@@ -138,7 +139,7 @@ class Server(unittest.TestCase):
     def test_a_request_may_come_in_pieces(self):
         whole = request(self.port)
         with open_socket(self.port) as connection:
-            for at in range(0, len(whole) - 1, 16):  # few pieces, because the server closes a request that takes 5 s
+            for at in range(0, len(whole) - 1, 16):  # few pieces: the server waits 5 s for a whole request
                 connection.sendall(whole[at:min(at + 16, len(whole) - 1)])
                 self.expect(200, request(self.port, "/panel.css"))  # so that the piece arrives separately
             connection.sendall(whole[-1:])
@@ -150,7 +151,7 @@ class Server(unittest.TestCase):
         self.assertIsNone(another.next())
         self.assertEqual(another.closed_with, TRY_AGAIN_LATER)
         another.close()
-        self.expect(200, request(self.port, "/panel.js"))  # requests have separate slots
+        self.expect(200, request(self.port, "/panel.js"))  # requests do not count as pages
         pages[0].close()
         wait_until(lambda: self.page().next())
         self.assertTrue(pages[1].tell("1 status")["ok"])
@@ -162,8 +163,9 @@ class Server(unittest.TestCase):
         rounds = 0
 
         def again():
-            """Carries out a round if the server has a free slot. Returns whether three rounds have passed. The slots of
-            requests that disconnect must be free immediately, not only after their timeout of 5 s."""
+            """Carries out a round if the server answers a request: opens MOST_REQUESTS connections, expects that the
+            server rejects one more connection, and expects that the server still replies to the page. Returns whether
+            three rounds have passed."""
             nonlocal rounds
             if status(ask(self.port, request(self.port))) == 200:
                 waiting = [open_socket(self.port) for _ in range(MOST_REQUESTS)]
@@ -179,7 +181,7 @@ class Server(unittest.TestCase):
 
         wait_until(again)
 
-    def test_a_page_that_sends_invalid_messages_is_closed(self):
+    def test_a_page_that_sends_an_invalid_message_is_disconnected(self):
         for text in ("garbage", "[]", "{}", '{"id":1}', '{"do":"list"}', '{"id":-1,"do":"list"}', '{"id":1,"do":2}',
                      '{"id":1,"do":"list","more":1}', "x" * 5000, json.dumps({"id": 1, "do": "x" * 2000}), b"\xff\xfe",
                      "[" * 4000):
@@ -195,7 +197,7 @@ class Server(unittest.TestCase):
         while binary.next() is not None:
             pass
 
-    def test_a_page_can_send_all_control_commands_except_quit(self):
+    def test_a_page_can_send_control_commands_but_not_quit(self):
         page = self.page()
         hello = page.next()["hello"]
         self.assertEqual([module["model"] for module in hello["modules"]], ["EX9042D-M", "EX9052D-M"])
@@ -215,7 +217,7 @@ class Server(unittest.TestCase):
         page.close()
         wait_until(lambda: another.tell("2 inputs")["text"] == "ok 0000")
 
-    def test_connections_that_end_early_free_their_slots(self):
+    def test_the_server_answers_after_connections_that_end_early(self):
         for data in (b"GET", upgrade(self.port)[:-1], upgrade(self.port), request(self.port)):
             for _ in range(10):
                 with open_socket(self.port) as connection:
@@ -267,7 +269,7 @@ class Start(unittest.TestCase):
                 self.assertEqual(status(page.recv(12)), 101)
         self.assertEqual(status(ask(80, request(80, host="example.org"))), 403)
 
-    def test_the_server_listens_only_on_the_loopback_address(self):
+    def test_the_server_listens_on_the_loopback_address_and_not_on_all_addresses(self):
         simulator = Simulator("EX9042D", "--tcp", "0")
         self.addCleanup(simulator.close)
         listening = [line.split()[1] for line in tcp_sockets() if line.split()[3] == "0A"]
@@ -292,11 +294,12 @@ class Slow(unittest.TestCase):
         for each in slow, page:
             self.addCleanup(each.close)
             self.assertEqual(each.status, 101)
-        told = []  # the simulator times of the messages that the page has received
+        told = []  # the simulator time in each state that `page` has received
         reads = threading.Thread(target=page.until, args=(lambda message: told.extend(times_of(message))
                                                           or message.get("reply"),))
         reads.start()
-        # Bytes that wait to be sent, and the number of messages to the page when that number last changed.
+        # `full` is the number of bytes in the send queue to the slow page. `seen` is the length of `told` at the last
+        # change of `full`.
         full, seen = 0, 0
         while len(told) < seen + LOOKS:
             self.assertTrue(reads.is_alive())
@@ -315,18 +318,19 @@ class Slow(unittest.TestCase):
             times += times_of({"state": state})
             inputs = next((each["plate"]["inputs"] for each in state["modules"]
                            if each["module"] == 1 and "plate" in each), inputs)
-        # The slow page received no message while it could not read.
+        # `most` is the largest number of messages that `page` received between two messages to the slow page.
         most = max(sum(before < each < after for each in told) for before, after in zip(times, times[1:]))
         self.assertGreaterEqual(most, LOOKS - 1)
 
 
 def tcp_sockets():
-    """Returns the lines of the kernel's list of TCP sockets. Each line is one socket."""
+    """Returns the lines of the kernel's list of TCP sockets with IPv4. Each line describes one socket."""
     return pathlib.Path("/proc/net/tcp").read_text(encoding="ascii").splitlines()[1:]
 
 
 def unsent(port, connection):
-    """Returns the number of bytes that the simulator's socket at the other end of `connection` has not sent yet."""
+    """Returns the number of bytes in the send queue of the simulator's socket at the other end of `connection`. These
+    bytes are not acknowledged yet."""
     ends = [f"0100007F:{each:04X}" for each in (port, connection.getsockname()[1])]
     for line in tcp_sockets():
         columns = line.split()

@@ -1,4 +1,4 @@
-"""Runs ex9000-sim with its panel, and a Modbus master on its line."""
+"""Runs ex9000-sim with its panel, and a master for Modbus RTU and DCON on one of its lines."""
 
 import contextlib
 import os
@@ -30,7 +30,7 @@ def wait_until(holds):
 
 
 class Simulator:
-    """A running ex9000-sim. `panel` is the port to request: 0 means any free port, and None means the default port."""
+    """A running ex9000-sim. `panel` is the port after --panel: 0 means any free port, None means no port is given."""
 
     def __init__(self, *arguments, panel=0):
         self._directory = tempfile.TemporaryDirectory()
@@ -57,7 +57,8 @@ class Simulator:
         self.process.stdout.close()
 
     def start_again(self, *others):
-        """Starts the program with the previous arguments, or with `others`."""
+        """Starts the program again with the same port of the panel. Uses the previous arguments, or `others` if given.
+        Call `kill` before."""
         self._arguments = others or self._arguments
         self._start(self.port)
 
@@ -128,7 +129,7 @@ class Master:
 
 @contextlib.contextmanager
 def repeating(do):
-    """Calls `do` repeatedly in a thread while the block runs."""
+    """Calls `do` repeatedly in a thread while the `with` block runs."""
     over = threading.Event()
 
     def repeat():

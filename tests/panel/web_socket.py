@@ -1,4 +1,4 @@
-"""A client of the panel's WebSocket. Unlike a page in a browser, it can also send raw bytes."""
+"""A client of the panel's server, over HTTP and WebSocket. Unlike a browser, the client can send any bytes."""
 
 import base64
 import json
@@ -10,7 +10,7 @@ from simulator import HANG
 
 
 def open_socket(port, receives=None):
-    """Opens a connection. `receives` is the size of the receive buffer in bytes, smaller than the default."""
+    """Opens a connection. `receives` is the size of the receive buffer in bytes; None means the default."""
     connection = socket.socket()
     connection.settimeout(HANG)
     if receives:
@@ -36,7 +36,7 @@ def upgrade(port, origin="ours", headers=(), **others):
 
 
 def all_of(connection):
-    """Returns all bytes until the other side closes the connection."""
+    """Returns all bytes that arrive until the other side closes or resets the connection."""
     answer = b""
     try:
         while piece := connection.recv(65536):
@@ -57,7 +57,7 @@ def status(answer):
 
 
 class Page:
-    """The client side of /live."""
+    """The client's side of one connection to the WebSocket /live."""
 
     def __init__(self, port, receives=None):
         self.closed_with = None
@@ -82,7 +82,7 @@ class Page:
         self.connection.sendall(bytes([0x80 | opcode]) + size + bytes(4) + data)
 
     def show_life(self, data=b""):
-        """Sends a pong, as a browser does after a ping. The server closes a connection that sends nothing for 20 s."""
+        """Sends a pong, as a browser does after a ping. The server disconnects a page that sends nothing for 20 s."""
         self.send(data, opcode=10)
 
     def next(self):
@@ -106,7 +106,8 @@ class Page:
                 return json.loads(data)
 
     def until(self, holds):
-        """Returns the first message for which `holds` is true. Raises AssertionError if the connection ends before."""
+        """Returns the next message for which `holds` is true. Raises AssertionError if the connection is closed before
+        such a message arrives."""
         while (message := self.next()) is not None:
             if holds(message):
                 return message

@@ -121,7 +121,7 @@ class Browser:
         self._post("/actions", {"actions": [{"type": "pointer", "id": "mouse", "actions": moves}]})
 
     def drag(self, selector, pixels):
-        """Drags from the middle of the element by `pixels` to the right, or to the left if negative."""
+        """Drags from the middle of the element by `pixels` to the right, or to the left if `pixels` is negative."""
         origin = {ELEMENT: self.find(selector)}
         self._post("/actions", {"actions": [{"type": "pointer", "id": "mouse", "actions": [
             {"type": "pointerMove", "x": 0, "y": 0, "origin": origin},
@@ -131,8 +131,8 @@ class Browser:
         ]}]})
 
     def touch(self, kind, *at):
-        """Sends a touch event. `kind` is start, move, end or cancel. `at` is x and y in the window, for start and
-        move."""
+        """Sends a touch event. `kind` is start, move, end or cancel. `at` is x and y in the viewport, in pixels,
+        for start and move."""
         points = [{"x": at[0], "y": at[1]}] if at else []
         self.devtools("Input.dispatchTouchEvent", type=f"touch{kind.capitalize()}", touchPoints=points)
 
@@ -156,20 +156,21 @@ class Browser:
         )
 
     def prefers(self, **features):
-        """Sets media features, for example color_scheme="dark". All others get their defaults."""
+        """Sets media features whose names begin with prefers-, for example color_scheme="dark". Sets all other media
+        features to their defaults."""
         media = [{"name": "prefers-" + name.replace("_", "-"), "value": value} for name, value in features.items()]
         self.devtools("Emulation.setEmulatedMedia", features=media)
 
     def logged_errors(self):
-        """Returns the errors that the page has logged since the last call, except failed connections to the server.
-        Errors of the pages that the browser opens when it starts do not count."""
+        """Returns the messages of all levels that the browser has logged since the last call. Omits failed connections
+        to the server, and messages that begin with chrome://, which are from pages of the browser itself."""
         nobody = ("ERR_CONNECTION_REFUSED", "ERR_CONNECTION_RESET", "closed before the connection is established")
         said = self._post("/se/log", {"type": "browser"})
         messages = [each["message"] for each in said if not each["message"].startswith("chrome://")]
         return [message for message in messages if not any(text in message for text in nobody)]
 
     def violations(self):
-        """Returns the violations that axe-core finds in the page: the rule, the problem, and the first elements."""
+        """Returns the violations that axe-core finds in the page: the rule, the problem, and up to three elements."""
         self.run(AXE.read_text(encoding="utf-8") + "; window.axe = axe;")
         found = self.promised("""
             const rules = ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa", "best-practice"];

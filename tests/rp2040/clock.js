@@ -1,4 +1,5 @@
-// Virtual time, in nanoseconds. It continues while the supply is off. The clock of a chip starts at its reset.
+// Virtual time, in nanoseconds. It continues while the supply is off. The clock of a chip begins at 0 at power-on and
+// at each reset.
 "use strict";
 
 class Alarm {
@@ -29,9 +30,9 @@ class Alarm {
 
 class Time {
   constructor() {
-    this.time = this; // a Time owns the alarms of the board
+    this.time = this; // an alarm uses `owner.time`, and its owner may be this Time
     this.now = 0; // nanoseconds
-    this.next = Infinity; // time of the next alarm
+    this.next = Infinity; // time of the next alarm; Infinity: no alarm is scheduled
     this.alarms = new Set();
   }
 
@@ -76,7 +77,7 @@ class Time {
   }
 }
 
-// The clock of one chip, with the interface that rp2040js requires. `end` removes its alarms.
+// The clock of one chip, with the interface that rp2040js requires. `end` removes the alarms of this clock.
 class ChipClock {
   constructor(time) {
     this.time = time;

@@ -5,11 +5,12 @@
 const FIRST_INTERRUPT = 16;
 const HARD_FAULT = 3;
 
-// - An interrupt line that is asserted makes its interrupt pending, until the handler is entered. When the handler
-//   returns and the line is still asserted, the interrupt becomes pending again.
-// - An interrupt wakes a sleeping processor, even if it became pending before the sleep, and even if PRIMASK disables
-//   it. If PRIMASK disables it, the handler is not entered.
-// - SysTick wakes the processor too.
+// - When an interrupt line becomes asserted, its interrupt becomes pending. The interrupt stays pending until the
+//   processor enters the handler. If the line is asserted when the handler returns, the interrupt becomes pending
+//   again.
+// - A pending interrupt that the NVIC enables wakes a sleeping processor, even if the interrupt became pending before
+//   the sleep, and even if PRIMASK is set. If PRIMASK is set, the processor does not enter the handler.
+// - A pending SysTick wakes the processor too.
 // - A fault enters the HardFault handler. A fault in that handler stops the processor.
 class Processor {
   constructor(chip) {
@@ -61,8 +62,9 @@ class Processor {
     return (core.pendingInterrupts & core.enabledInterrupts) !== 0 || core.pendingSystick;
   }
 
-  // Executes an instruction. Returns its cycles, or 0 if nothing changes until the next alarm: the processor sleeps, or
-  // it has branched to the same instruction.
+  // Executes an instruction, unless the processor sleeps or is locked up. Returns the cycles of the instruction.
+  // Returns 0 if nothing changes until the next alarm, because the processor sleeps, is locked up, or has branched to
+  // the same instruction.
   step() {
     const { core } = this;
     if (core.waiting) {

@@ -1,5 +1,5 @@
-// The crystal oscillator, and a guard that rejects a reference clock that does not run. Source: RP2040 data sheet,
-// 2.16 (crystal oscillator).
+// The crystal oscillator, and a guard that rejects the crystal as the reference clock while the crystal is not stable.
+// Source: RP2040 data sheet, 2.16 (crystal oscillator).
 "use strict";
 const { BasePeripheral } = require("rp2040js");
 
@@ -7,8 +7,8 @@ const ENABLE = 0xfab;
 const RANGE = 0xaa0;
 const STABLE = (1 << 31) >>> 0;
 const DELAY_AFTER_RESET = 0xc4;
-const DELAY_UNIT = 256; // periods
-const STARTS = 1e6; // ns, until the crystal oscillates
+const DELAY_UNIT = 256; // periods of the crystal
+const STARTS = 1e6; // ns from the enable until the crystal oscillates
 const REFERENCE_CONTROL = 0x30;
 const FROM_CRYSTAL = 2;
 
@@ -38,7 +38,7 @@ class Crystal extends BasePeripheral {
   }
 }
 
-// Makes `clocks` reject the crystal as the reference clock while it is not stable.
+// Makes `clocks` reject the crystal as the reference clock while the crystal is not stable.
 function requireStable(clocks, crystal) {
   const write = clocks.writeUint32.bind(clocks);
   Object.assign(clocks, {

@@ -13,10 +13,10 @@ class Eeprom {
     this.time = time;
     this.content = new Uint8Array(SIZE).fill(0xff);
     this.present = true;
-    this.programs = null; // bytes that are being programmed: [address, value]
+    this.programs = null; // pairs [address, value] that are being programmed, or null
     this.alarm = time.createAlarm(() => this.programmed());
     this.pagesProgrammed = 0;
-    this.changed = () => {}; // is called with the first address and the size of bytes that may have changed
+    this.changed = () => {}; // is called with the first address and the number of the bytes that may have changed
     this.address = 0;
     this.reset();
   }
@@ -88,8 +88,8 @@ class Eeprom {
     this.changed(0, SIZE);
   }
 
-  // Simulates a power failure. If a page is being programmed, its first bytes are new, in proportion to the time that
-  // has passed, and the next byte is corrupted.
+  // Simulates a power failure. If bytes are being programmed, the first ones are new, and the next byte is corrupted.
+  // The number of new bytes is proportional to the time that has passed.
   losePower() {
     if (this.programs !== null) {
       const part = Math.floor(((this.time.now - this.began) / PROGRAMMING) * this.programs.length);

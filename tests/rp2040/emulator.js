@@ -10,14 +10,15 @@ let board = null;
 const integer = (text) => {
   const value = Number(text);
   if (!Number.isSafeInteger(value)) {
-    throw new Error(`${text} is no integer`);
+    throw new Error(`${text} is not an integer`);
   }
   return value;
 };
 const hexOf = (bytes) => Buffer.from(bytes).toString("hex");
 const bytesOf = (text) => [...Buffer.from(text ?? "", "hex")];
 
-// Loads a file to `address` of a memory, and writes each change of these bytes to the file.
+// Loads a file to `address` of a memory. If the image or a power failure changes these bytes, they are written to the
+// file. A command that changes these bytes does not write them to the file.
 function keep(memory, descriptor, address) {
   const { size } = fs.fstatSync(descriptor);
   fs.readSync(descriptor, memory.content, address, size, 0);
@@ -33,14 +34,14 @@ function keep(memory, descriptor, address) {
 }
 
 const COMMANDS = {
-  // new IMAGE.bin TRANSMIT RECEIVE DRIVER-ENABLE SDA: creates a board with this image and these pins. Its supply is
-  // off, and its EEPROM is erased.
+  // new IMAGE.bin TRANSMIT RECEIVE DRIVER-ENABLE SDA: creates a board with this image and these pins. SCL is the pin
+  // after SDA. The supply of the board is off, and its EEPROM is erased.
   new(path, ...pins) {
     const [transmit, receive, driverEnable, data] = pins.map(integer);
     board = new Board(fs.readFileSync(path), { transmit, receive, driverEnable, data });
   },
   now: () => Math.round(board.time.now),
-  // run NANOSECONDS: lets time pass
+  // run NANOSECONDS: lets this time pass
   run(nanoseconds) {
     const until = board.time.now + integer(nanoseconds);
     while (board.time.now < until) {
@@ -55,9 +56,9 @@ const COMMANDS = {
     board.echoes = on === "on";
   },
   baud: (rate) => board.setBaud(integer(rate)),
-  // format 8N1|8N2|8E1|8O1: sets the line format of the master, 8N1 at first
+  // format 8N1|8N2|8E1|8O1: sets the line format of the master, which is 8N1 on a new board
   format: (name) => board.setFormat(name),
-  // send HEX: returns when the last stop bit has been sent
+  // send HEX: sends bytes from the master, and returns when the last stop bit has ended
   send(hex) {
     board.send(bytesOf(hex));
     while (board.master.busy) {
@@ -71,10 +72,10 @@ const COMMANDS = {
       board.runUntil(until);
     }
   },
-  // queue HEX: begins to send, and returns immediately
+  // queue HEX: begins to send bytes from the master, and returns immediately
   queue: (hex) => board.send(bytesOf(hex)),
-  // receive COUNT PATIENCE: lets time pass until COUNT bytes have arrived, or until none has arrived for PATIENCE
-  // nanoseconds. Returns the bytes.
+  // receive COUNT PATIENCE: lets time pass until COUNT bytes have arrived that no earlier command has returned, or
+  // until no byte has arrived for PATIENCE nanoseconds. Returns these bytes, at most COUNT of them.
   receive(count, patience) {
     let had = board.heard.length;
     let until = board.time.now + integer(patience);
@@ -88,7 +89,8 @@ const COMMANDS = {
     return hexOf(board.takeHeard(integer(count)).map(({ byte }) => byte));
   },
   heard: () => hexOf(board.takeHeard().map(({ byte }) => byte)),
-  // arrivals: returns the received bytes as BYTE@TIME, with the time of the middle of the first stop bit in nanoseconds
+  // arrivals: returns the bytes that have arrived and that no earlier command has returned, as BYTE@TIME. BYTE is
+  // decimal. TIME is the middle of the first stop bit, in nanoseconds.
   arrivals: () => board.takeHeard().map(({ byte, at }) => `${byte}@${Math.round(at)}`).join(" "),
   // pin NUMBER high|low|open: drives a pin from outside the chip, or stops driving it
   pin: (number, level) => board.setOutside(integer(number), level === "open" ? null : level === "high"),
@@ -123,8 +125,8 @@ const COMMANDS = {
   // driven: returns the pins that the chip drives. Bit n is GPIOn.
   driven: () => board.levels.reduce(
     (mask, _, number) => mask + (board.chip.level(number) === null ? 0 : 2 ** number), 0),
-  // watch NUMBER NANOSECONDS: lets at most this time pass until the level of a pin changes; returns whether it has
-  // changed
+  // watch NUMBER NANOSECONDS: lets time pass until the level of a pin changes, at most this time. Returns 1 if the
+  // level has changed, otherwise 0.
   watch(number, nanoseconds) {
     const pin = integer(number);
     const level = board.levels[pin];
@@ -149,10 +151,10 @@ const COMMANDS = {
   flash: (address, size) => hexOf(board.flash.content.subarray(integer(address), integer(address) + integer(size))),
   // set-flash ADDRESS HEX: changes bytes of the flash chip
   "set-flash": (address, hex) => board.flash.content.set(bytesOf(hex), integer(address)),
-  // keep-flash DESCRIPTOR ADDRESS: loads an open file to the flash chip from ADDRESS on, and writes each change to
-  // the file
+  // keep-flash DESCRIPTOR ADDRESS: loads an open file to the flash chip from ADDRESS on. Later changes of these
+  // bytes are written to the file, see `keep`.
   "keep-flash": (descriptor, address) => keep(board.flash, integer(descriptor), integer(address)),
-  // keep-eeprom DESCRIPTOR: loads an open file to the EEPROM, and writes each change to the file
+  // keep-eeprom DESCRIPTOR: loads an open file to the EEPROM. Later changes are written to the file, see `keep`.
   "keep-eeprom": (descriptor) => keep(board.eeprom, integer(descriptor), 0),
   // flash-times ERASE PROGRAM: sets the durations of an erase and of a page program, in nanoseconds
   "flash-times"(erase, program) {
@@ -166,21 +168,22 @@ const COMMANDS = {
     .map(([name, value]) => `${name}=${value}`).join(" "),
   // pc: returns the address of the next instruction
   pc: () => board.chip.mcu.core.PC,
-  // read ADDRESS: returns a word of RAM
+  // read ADDRESS: returns a word of RAM, in decimal
   read: (address) => board.chip.mcu.readUint32(integer(address)),
-  // write ADDRESS HALFWORD: changes RAM
+  // write ADDRESS HALFWORD: changes a halfword of RAM
   write: (address, value) => board.chip.mcu.writeUint16(integer(address), integer(value)),
   // trace DESCRIPTOR: writes interrupts and bytes of the UART to an open file, from the next start of the chip on
   trace(descriptor) {
     board.trace = new Trace(integer(descriptor));
   },
-  // trace-instructions on|off: writes each instruction too
+  // trace-instructions on|off: sets whether the trace also contains each instruction
   "trace-instructions"(on) {
     board.trace.instructions = on === "on";
   },
   // note TEXT: writes a line to the file of the trace
   note: (...words) => board.trace.note(words.join(" ")),
-  // cycles: returns the cycles of the processor since the last reset of the chip, without the cycles of sleep
+  // cycles: returns the cycles of the instructions that the chip has executed since power-on or its last reset. Returns
+  // 0 while the supply is off.
   cycles: () => board.chip?.mcu.core.cycles ?? 0,
 };
 

@@ -21,7 +21,8 @@ namespace {
 constexpr const char* kModules = "NODE_PATH=" EX9000_RP2040_MODULES;
 constexpr const char* kProgram = EX9000_RP2040_EMULATOR;
 
-/// Returns the environment of the process: the environment of the test, and the folder of the npm package.
+/// Returns the environment of the emulator: the environment of this process, but with NODE_PATH set to the
+/// folder that contains the npm package rp2040js.
 std::vector<char*> environment() {
   std::vector<char*> variables;
   for (char** each = environ; *each != nullptr; ++each) {

@@ -14,7 +14,8 @@ class EmulatorProcess {
   EmulatorProcess& operator=(const EmulatorProcess&) = delete;
 
   /// Executes a command, see emulator.js, and returns its result. Throws std::runtime_error with the reason
-  /// if the command fails, for example because the image does something that is an error on a real chip.
+  /// if the command fails, for example because the image does something that is an error on a real chip, or
+  /// if no reply arrives.
   std::string execute(const std::string& command);
 
  private:

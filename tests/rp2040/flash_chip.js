@@ -16,14 +16,14 @@ class FlashChip {
     this.selected = false;
     this.bytes = [];
     this.writeEnabled = false;
-    this.operation = null; // the operation that is running: { kind, address, bytes, sector, left }
-    this.ends = 0; // time at which it ends
-    this.suspended = null; // the erase that is suspended
-    this.suspending = 0; // time at which a suspend takes effect
+    this.operation = null; // the operation that is running: { kind, address, bytes, sector, left }, or null
+    this.ends = 0; // time at which the operation ends
+    this.suspended = null; // the erase that is suspended, or null
+    this.suspending = 0; // time at which the last suspend takes effect
     this.resumed = -Infinity; // time of the last resume
     this.erased = new Map(); // number of erases, by sector
     this.done = time.createAlarm(() => this.finish());
-    this.changed = () => {}; // is called with the first address and the size of bytes that have changed
+    this.changed = () => {}; // is called with the first address and the number of the bytes that have changed
   }
 
   get busy() {
@@ -148,7 +148,7 @@ class FlashChip {
       return;
     }
     if (this.operation.kind !== "erase") {
-      throw new Error("flash: a program operation is suspended");
+      throw new Error("flash: suspend during a program operation is not in this model");
     }
     if (this.time.now - this.resumed < SUSPEND) {
       throw new Error("flash: suspend too early after resume");
@@ -170,8 +170,8 @@ class FlashChip {
     }
   }
 
-  // Simulates a power failure. After an unfinished operation the content of the cells is undefined. In this model,
-  // every second byte has changed.
+  // Simulates a power failure. On a real chip, the bytes of an unfinished operation are then undefined. In this model,
+  // every second of these bytes has its new value.
   losePower() {
     for (const unfinished of [this.operation, this.suspended].filter((each) => each !== null)) {
       const { kind, address, bytes, sector } = unfinished;

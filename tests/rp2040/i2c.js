@@ -1,5 +1,5 @@
-// Corrects the I2C master of rp2040js: the interrupt mask, the interrupt "queue is low", and the order of accesses
-// that the chip requires. Source: RP2040 data sheet, 4.3.
+// Corrects the interrupt mask of the I2C master of rp2040js, and the interrupt TX_EMPTY ("queue is low"). Also rejects
+// accesses that a real chip does not permit in the present state of the master. Source: RP2040 data sheet, 4.3.
 "use strict";
 
 const CONTROL = 0x00;

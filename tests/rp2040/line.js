@@ -1,8 +1,8 @@
 // A serial line: a sender of characters, and a receiver that samples each bit in its middle.
 "use strict";
 
-// A character has a start bit, eight data bits, a parity bit in some formats, and stop bits. `parity` is null, or the
-// level of the parity bit of the byte 00.
+// A character has a start bit, eight data bits, a parity bit in some formats, and one or two stop bits. `parity` is the
+// level of the parity bit of the byte 00, or null if the format has no parity bit.
 const FORMATS = {
   "8N1": { parity: null, stopBits: 1 },
   "8N2": { parity: null, stopBits: 2 },
@@ -30,7 +30,7 @@ function levelsOf(byte, format) {
 }
 
 class Sender {
-  // Calls `drive(level)` to set the level, and `ended()` when the last stop bit has ended.
+  // Calls `drive(level)` to set the level of the line, and `ended()` when the last stop bit has ended.
   constructor(clock, drive, ended) {
     this.drive = drive;
     this.ended = ended;
@@ -65,7 +65,8 @@ class Sender {
 
 class Receiver {
   // Calls `receive({ byte, good, rightParity, isBreak })` in the middle of the first stop bit of each character.
-  // `good` is true if the stop bit is high.
+  // `good` is true if this stop bit is high. `rightParity` is also true if the format has no parity bit. `isBreak` is
+  // true if all bits of the character are low, and this stop bit is low too.
   constructor(clock, receive) {
     this.receive = receive;
     this.bitTime = 0; // 0: off

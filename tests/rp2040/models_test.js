@@ -1,4 +1,5 @@
-// Tests that the models reject what is an error on a real chip, and that they take as much time as a real chip.
+// Tests what the models report, how long their operations take, and which accesses they reject because these are errors
+// on a real chip. Also tests the trace.
 "use strict";
 const assert = require("node:assert/strict");
 const fs = require("node:fs");
@@ -71,7 +72,7 @@ test("a receiver reports a byte in the middle of its stop bit", () => {
   assert.deepEqual(received, [{ byte: 0xa5, good: true, rightParity: true, isBreak: false, at: 9.5 * BIT }]);
 });
 
-test("a receiver at another rate reports framing errors, and ignores glitches", () => {
+test("a receiver ignores a glitch, and reports a framing error if the sender has half its rate", () => {
   const time = new Time();
   const received = [];
   const receiver = new Receiver(time, (it) => received.push(it));
@@ -87,7 +88,7 @@ test("a receiver at another rate reports framing errors, and ignores glitches", 
   assert.equal(received[0].good, false);
 });
 
-test("a UART sends 10 bits for a byte, and raises its transmit interrupt when the holding register is empty", () => {
+test("a UART takes 10 bits for a byte, interrupts when its holding register is empty, and rejects a third byte", () => {
   const chip = setUp();
   const { uart } = uartOf(chip);
   uart.writeUint32(0x38, 1 << 5);
@@ -99,12 +100,13 @@ test("a UART sends 10 bits for a byte, and raises its transmit interrupt when th
   assert.throws(() => uart.writeUint32(0x00, 1), /no room/);
   chip.time.advanceTo(10 * BIT + 100);
   assert.equal(uart.readUint32(0x40), 1 << 5);
-  assert.equal(uart.readUint32(0x18) & 8, 8, "it is busy");
+  assert.equal(uart.readUint32(0x18) & 8, 8, "the second byte is not over");
   chip.time.advanceTo(20 * BIT + 100);
-  assert.equal(uart.readUint32(0x18) & 8, 0, "the stop bit is over");
+  assert.equal(uart.readUint32(0x18) & 8, 0, "the second byte is over");
 });
 
-// Sends a byte in the format `sentIn`, and returns what a receiver in the format `format` reports.
+// Sends a byte in the format `sentIn`. Returns what a receiver in the format `format` reports, and the time at which
+// the last stop bit ended.
 function receivedIn(format, byte, sentIn) {
   const time = new Time();
   const received = [];
@@ -117,7 +119,7 @@ function receivedIn(format, byte, sentIn) {
   return received;
 }
 
-test("a character has the bits of its format, and a receiver reports it in its first stop bit", () => {
+test("a character takes the bits of its format, and a receiver reports it in the middle of its first stop bit", () => {
   const middleOfStopBit = { "8N1": 9.5, "8N2": 9.5, "8E1": 10.5, "8O1": 10.5 };
   const ends = { "8N1": 10, "8N2": 11, "8E1": 11, "8O1": 11 };
   for (const format of Object.keys(FORMATS)) {
@@ -140,7 +142,7 @@ test("a receiver reports wrong parity, and a low parity bit in place of the stop
   assert.equal(receivedIn("8N1", 0x55, "8N2")[0].good, true);
 });
 
-test("a UART takes its format from the line control register, and reports wrong parity", () => {
+test("a UART takes its format from the line control register, reports wrong parity, and rejects other formats", () => {
   const values = { 0x60: "8N1", 0x62: "8O1", 0x66: "8E1", 0x68: "8N2" };
   for (const [value, format] of Object.entries(values)) {
     const chip = setUp();
@@ -181,7 +183,7 @@ test("a UART reports an overrun with the next byte, and a break as a framing err
   assert.equal(uart.readUint32(0x00), (1 << 8) | (1 << 10));
 });
 
-test("a UART with FIFOs raises interrupts at a FIFO level and at the receive time-out", () => {
+test("a UART with FIFOs raises interrupts at a FIFO level and at the receive timeout", () => {
   const chip = setUp();
   const { uart } = uartOf(chip, false);
   uart.writeUint32(0x24, 67);
@@ -194,7 +196,7 @@ test("a UART with FIFOs raises interrupts at a FIFO level and at the receive tim
   }
   assert.equal(uart.readUint32(0x3c) & 0x50, 0);
   chip.time.advanceTo(chip.time.now + 33 * BIT);
-  assert.equal(uart.readUint32(0x3c) & 0x50, 1 << 6, "time-out");
+  assert.equal(uart.readUint32(0x3c) & 0x50, 1 << 6, "timeout");
   character(uart, chip.time, 3);
   assert.equal(uart.readUint32(0x3c) & 0x50, (1 << 6) | (1 << 4));
   for (let byte = 0; byte < 4; byte += 1) {
@@ -203,7 +205,7 @@ test("a UART with FIFOs raises interrupts at a FIFO level and at the receive tim
   assert.equal(uart.readUint32(0x3c) & 0x50, 0);
 });
 
-test("a UART rejects a wrong order of its registers", () => {
+test("a UART rejects accesses to its registers in a wrong order", () => {
   const { uart } = uartOf(setUp());
   assert.throws(() => uart.writeUint32(0x24, 1), /while the UART is enabled/);
   assert.throws(() => uart.readUint32(0x00), /nothing has been received/);
@@ -213,7 +215,7 @@ test("a UART rejects a wrong order of its registers", () => {
   assert.throws(() => off.writeUint32(0x30, 0x301), /divisors have no effect/);
 });
 
-test("the flash takes time for an erase and a program, and rejects commands that it cannot execute", () => {
+test("the flash takes time for an erase, a suspend and a program, and rejects commands that it cannot execute", () => {
   const time = new Time();
   const flash = new FlashChip(time, new Uint8Array(FLASH_SIZE));
   const send = (...bytes) => {
@@ -275,7 +277,7 @@ test("the crystal is stable after its delay, and cannot be the reference clock b
   assert.equal(mcu.clocks.refFreq, 12e6);
 });
 
-test("a power failure leaves the content of a sector that is being erased undefined", () => {
+test("a power failure during an erase erases some bytes of the sector and leaves the others unchanged", () => {
   const time = new Time();
   const flash = new FlashChip(time, new Uint8Array(FLASH_SIZE));
   flash.writeEnabled = true;
@@ -285,7 +287,7 @@ test("a power failure leaves the content of a sector that is being erased undefi
   assert.ok(sector.includes(0) && sector.includes(0xff));
 });
 
-test("the SSI rejects settings while it is enabled, and takes the time of each frame", () => {
+test("the SSI rejects a frame before its setup and a setting while it is enabled, and frames take time", () => {
   const { mcu, time } = setUp();
   const flash = new FlashChip(time, new Uint8Array(FLASH_SIZE).fill(0x5a));
   const pins = new QspiPins(mcu, "IO_QSPI", flash);
@@ -307,7 +309,7 @@ test("the SSI rejects settings while it is enabled, and takes the time of each f
   assert.equal(flash.selected, false);
 });
 
-test("a block in reset, or without its clock, cannot be used", () => {
+test("a block in reset cannot be used, and a UART without its clock does not leave its reset", () => {
   const { mcu } = setUp();
   const resets = new Resets(mcu, "RESETS");
   const uart = 1 << 22;
@@ -318,7 +320,7 @@ test("a block in reset, or without its clock, cannot be used", () => {
   assert.equal(resets.readUint32(8) & uart, 0, "its clock does not run");
 });
 
-test("the watchdog counts two for each tick, and requires a tick and a reset of the whole chip", () => {
+test("the watchdog counts two for each tick, requires a tick, and rejects a reset of only a part of the chip", () => {
   const { mcu, time } = setUp();
   const psm = { wdsel: 0 };
   const reasons = [];
@@ -352,7 +354,7 @@ test("the watchdog keeps its scratch registers, and the source of a chip-level r
   assert.throws(() => chipReset.writeUint32(8, 0));
 });
 
-test("an I2C master rejects settings while it is on, and reports a low queue as long as it is low", () => {
+test("an I2C master reports a low queue and rejects accesses at wrong times, and an EEPROM programs for 5 ms", () => {
   const { mcu, time } = setUp();
   const master = mcu.i2c[0];
   correctI2c(master);
@@ -408,7 +410,7 @@ test("a pending interrupt wakes the processor even if PRIMASK prevents its handl
   assert.equal(core.IPSR, 16);
 });
 
-test("the PLL locks while it has power, and cannot clock the system before it has locked", () => {
+test("the PLL requires a reference, and cannot clock the system without a lock or with its dividers off", () => {
   const { time, mcu } = setUp();
   const pll = mcu.peripherals[0x40028];
   const crystal = { stable: false };
@@ -433,7 +435,7 @@ test("the PLL locks while it has power, and cannot clock the system before it ha
   mcu.clocks.writeUint32(0x3c, 1);
 });
 
-test("a trace contains each instruction once, and the interrupt before the first one of its handler", () => {
+test("a trace contains each instruction once, and an interrupt before the first instruction of its handler", () => {
   const { mcu } = setUp();
   const { core } = mcu;
   const processor = new Processor(mcu);

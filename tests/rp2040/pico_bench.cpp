@@ -46,8 +46,8 @@ unsigned pin_of(const Groups& groups, unsigned channel) {
   throw std::out_of_range("there is no pin for the channel");
 }
 
-/// Returns a sector of a page store. Its log has `entries` entries, which contain the pages of `memory` in
-/// turn. `sequence` is the sequence number of the first entry.
+/// Returns a sector of a page store, with `entries` entries, which contain the pages of `memory` in turn.
+/// `sequence` is the sequence number of the first entry.
 Bytes sector_with(const Bytes& memory, std::uint32_t sequence, std::size_t entries) {
   using namespace hal::flash;
   Bytes sector(hal::kFlashSector, 0xFF);

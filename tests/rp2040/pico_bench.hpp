@@ -16,25 +16,27 @@ namespace ex9000::pico {
 
 using board::Memory;
 
-/// All functions throw std::runtime_error if the image does something that is an error on a real chip.
+/// A function that sends a command to the emulator throws std::runtime_error if the command fails, for
+/// example because the image does something that is an error on a real chip.
 class PicoBench {
  public:
   /// `memory` is the memory in which the images of this board store their settings.
   explicit PicoBench(Memory memory = Memory::Flash) : memory_(memory) {}
 
   /// Provides a new board with the image of `model`. Its supply is off. Its memory holds `settings`, or no
-  /// settings if the pointer is null. If the memory is in the flash, its free sectors are marked as erased.
+  /// settings if `settings` is null. If the memory is in the flash, its free sectors are marked as erased.
   void begin_anew(const Model& model, const Settings* settings);
   /// Provides a new board in the same way, but with `memory`, which has 384 bytes, as the content of its
   /// memory. If `memory` is empty, the memory holds no settings.
   void begin_anew(const Model& model, const play::Bytes& memory);
-  /// Removes the marks of erased sectors. The store in the flash then erases all free sectors, as on the
-  /// first start of a module. Call `begin_anew` first.
+  /// Removes the marks of erased sectors from all sectors except the first, which contains the settings. The
+  /// store in the flash then erases the other sectors, as on the first start of a module. First call
+  /// `begin_anew` with settings.
   void forget_erased_sectors();
   /// Fills the log of the page store: all sectors are full of entries with these settings. Call `begin_anew`
   /// first.
   void fill_log(const Settings& settings);
-  /// Provides a new board with the content of its flash from a file, and an erased EEPROM.
+  /// Provides a new board with the content of its flash from a file, and an erased EEPROM. Its supply is off.
   void begin_with(const std::string& file);
 
   void power(bool on);
@@ -45,13 +47,14 @@ class PicoBench {
   /// Returns the virtual time since `begin_anew` or `begin_with`.
   std::chrono::nanoseconds now();
 
-  /// Sets the rate of the master.
+  /// Sets the baud rate of the master, which is 9600 on a new board.
   void set_baud(std::uint32_t rate);
   /// Sets the line format of the master, which is 8N1 on a new board.
   void set_format(LineFormat format);
   /// Sends bytes without a gap. Returns when the last stop bit has ended.
   void send(const play::Bytes& bytes);
-  /// Returns the bytes that arrive until there are `count` of them, or until none has arrived for `patience`.
+  /// Lets time pass until `count` bytes have arrived that no earlier call has returned, or until no byte has
+  /// arrived for `patience`. Returns these bytes, at most `count` of them.
   play::Bytes receive(std::size_t count, std::chrono::nanoseconds patience);
   /// Returns the bytes that have arrived and that no earlier call has returned.
   play::Bytes heard();
@@ -60,7 +63,7 @@ class PicoBench {
   void set_input(unsigned channel, bool level);
   /// Inverts an input and restores it, `count` times, with `between` from edge to edge.
   void pulse_input(unsigned channel, std::uint32_t count, std::chrono::nanoseconds between);
-  /// Returns the energised channels. Bit n is channel n.
+  /// Returns the energised channels: bit n is channel n. Returns 0 while the supply is off.
   std::uint16_t outputs();
   bool led();
   /// Returns the levels of all pins. Bit n is GPIOn.
@@ -68,13 +71,14 @@ class PicoBench {
   /// Lets time pass until the LED changes, at most `patience`. Returns whether it has changed.
   bool led_changes(std::chrono::nanoseconds patience);
 
-  /// Returns the emulator's event counts since `begin_anew` or `begin_with`, by name; see emulator.js.
+  /// Returns the event counts since `begin_anew` or `begin_with`, and other values, by name; see the command
+  /// `counts` in emulator.js.
   std::map<std::string, long> counts();
   std::string execute(const std::string& command) { return emulator_.execute(command); }
 
  private:
   void set_pin(unsigned number, const char* level);
-  /// Sets the bytes of a sector of the page store.
+  /// Sets the first bytes of a sector of the page store to `bytes`.
   void set_sector(unsigned sector, const play::Bytes& bytes);
 
   Memory memory_;
@@ -83,9 +87,9 @@ class PicoBench {
   bool powered_ = false;
 };
 
-/// Returns the path of a file with the content of the flash, which contains the image of a model or a program
-/// for tests.
+/// Returns the path of the image of a model. The file contains the content of the flash.
 std::string image_of(const Model& model, Memory memory);
+/// Returns the path of a program that only tests use. The file contains the content of the flash.
 std::string program_for_tests(const std::string& name);
 
 }  // namespace ex9000::pico

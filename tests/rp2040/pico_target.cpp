@@ -9,7 +9,7 @@ namespace {
 using std::chrono::microseconds;
 using std::chrono::milliseconds;
 
-/// The longest time from a reset until a module is ready to reply (wire.md section 2).
+/// The longest time from a reset until a module is ready to receive requests (wire.md section 2).
 constexpr milliseconds kComingUp{100};
 /// The image processes a byte and updates its pins in less than this time.
 constexpr microseconds kSettling{100};
@@ -26,8 +26,8 @@ void PicoTarget::start(const Model& model, const Settings* preset) {
   power(true);
 }
 
-/// A byte of a reply arrives in the middle of its first stop bit. A master does not begin to send before the
-/// reply is over and the driver of the module is off, which is at most 12 bits later.
+/// Waits until the driver of the module is off, at most for 12 bits, and then sends. The wait is necessary
+/// because `receive` can return in the middle of the first stop bit of a byte, while the driver is still on.
 void PicoTarget::send(const play::Bytes& bytes) {
   constexpr std::uint64_t kLongestTail = 12'000'000'000;  // 12 bits at 1 baud, in ns
   bench_.execute("await-release " + std::to_string(kLongestTail / baud_));

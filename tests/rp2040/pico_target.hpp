@@ -6,7 +6,8 @@
 
 namespace ex9000::pico {
 
-/// Can play several transcripts, one after another. Time is virtual, so the host does not affect the result.
+/// One object can play several transcripts, one after another. Time is virtual, so the load of the host does
+/// not affect the result.
 class PicoTarget final : public play::Target {
  public:
   explicit PicoTarget(Memory memory = Memory::Flash) : bench_(memory) {}

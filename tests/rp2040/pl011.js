@@ -1,4 +1,4 @@
-// A PL011 UART with the duration of each bit, errors, overrun, FIFO levels and receive time-out. Sources: RP2040 data
+// A PL011 UART with the duration of each bit, errors, overrun, FIFO levels and receive timeout. Sources: RP2040 data
 // sheet, 4.2; Arm PrimeCell UART (PL011) TRM, 2.4 and 3.3.
 "use strict";
 const { BasePeripheral } = require("rp2040js");
@@ -25,10 +25,11 @@ const FIFOS_ON = 1 << 4;
 const LINE_CONTROL = { 0x60: FORMATS["8N1"], 0x62: FORMATS["8O1"], 0x66: FORMATS["8E1"], 0x68: FORMATS["8N2"] };
 
 const DEPTH = 32;
-const LEVELS = [4, 8, 16, 24, 28]; // IFLS
+const LEVELS = [4, 8, 16, 24, 28]; // received or waiting bytes, by the value of a field of UARTIFLS
 
 class Pl011 extends BasePeripheral {
-  // `wires` contains { transmit(level), mayReceive(), mayTransmit() }.
+  // `wires` contains { transmit(level), mayReceive(), mayTransmit() }. `transmit` sets the level of the transmit pin.
+  // `mayReceive` and `mayTransmit` return whether the receive pin and the transmit pin are connected to the UART.
   constructor(rp2040, name, irq, wires) {
     super(rp2040, name);
     this.irq = irq;
@@ -201,7 +202,7 @@ class Pl011 extends BasePeripheral {
       }
     } else {
       this.sender.send(byte, this.bitTime, this.format);
-      this.raise(TRANSMITTED); // the holding register is empty again
+      this.raise(TRANSMITTED); // the byte has left the holding register
     }
   }
 

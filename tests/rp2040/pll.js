@@ -1,5 +1,6 @@
-// Corrects the system PLL of rp2040js: the PLL locks only while it has power and a reference, and it cannot clock the
-// system before it has locked. Sources: RP2040 data sheet, 2.18 (PLL), 2.15.3.2 (glitchless multiplexers).
+// Corrects the system PLL of rp2040js: the PLL requires power and a reference to lock, its settings cannot change while
+// it runs, and it cannot clock the system before it has locked or while its dividers have no power. Sources:
+// RP2040 data sheet, 2.18 (PLL), 2.15.3.2 (glitchless multiplexers).
 "use strict";
 
 const CONTROL = 0x00;
@@ -10,7 +11,7 @@ const DIVIDERS_OFF = 1 << 3; // POSTDIVPD
 const LOCKS = 50e3; // ns; the data sheet states no time
 const SYSTEM_CONTROL = 0x3c;
 const FROM_AUXILIARY = 1 << 0;
-const AUXILIARY = 7 << 5; // 0: the system PLL
+const AUXILIARY = 7 << 5; // the auxiliary source; 0: the system PLL
 
 function correctPll(pll, crystal, clocks) {
   const { clock } = pll.rp2040;

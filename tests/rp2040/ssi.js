@@ -1,5 +1,5 @@
-// The synchronous serial interface of the flash, and the pin of its chip select. Source: RP2040 data sheet, 4.10 and
-// 2.19.6.2. The model has the two transfer modes that an image can use: both directions, and "EEPROM read".
+// The synchronous serial interface (SSI) of the flash, and the chip select pin of the flash. Source: RP2040 data sheet,
+// 4.10 and 2.19.6.2. The model has only two transfer modes: both directions, and "EEPROM read".
 "use strict";
 const { BasePeripheral } = require("rp2040js");
 
@@ -7,7 +7,7 @@ const DEPTH = 16;
 const BOTH_WAYS = 0;
 const EEPROM_READ = 3;
 
-// The pin of chip select. Either the SSI controls it, or software drives it low or high.
+// The chip select pin of the flash. Either the SSI controls it, or software drives it low or high.
 class QspiPins extends BasePeripheral {
   constructor(rp2040, name, chip) {
     super(rp2040, name);
@@ -180,7 +180,7 @@ class Ssi extends BasePeripheral {
     }
   }
 
-  // Exchanges a frame, most significant byte first.
+  // Exchanges a frame with the flash, most significant byte first. Returns the received frame.
   exchange(frame) {
     let result = 0;
     for (let shift = this.frameBits - 8; shift >= 0; shift -= 8) {

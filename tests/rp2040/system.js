@@ -1,6 +1,6 @@
-// Resets of blocks, the power-on state machine, the source of the last chip-level reset, the watchdog with its tick,
-// and a guard that rejects each access to a block that cannot be used. Sources: RP2040 data sheet, 2.12.7, 2.13,
-// 2.14, 4.6.2 and 4.7; erratum RP2040-E1.
+// Resets of blocks, the source of the last chip-level reset, the watchdog with its tick, and a guard that rejects each
+// access to a block that cannot be used. Sources: RP2040 data sheet, 2.12.7, 2.13, 2.14, 4.6.2 and 4.7; erratum
+// RP2040-E1.
 "use strict";
 const { BasePeripheral } = require("rp2040js");
 
@@ -18,7 +18,8 @@ class Resets extends BasePeripheral {
     this.held = AFTER_BOOT;
   }
 
-  // Returns the blocks that have left their reset. A block whose clock does not run stays in reset.
+  // Returns the blocks that have left their reset. The UARTs stay in reset while the peripheral clock does not
+  // run.
   get done() {
     const stopped = this.rp2040.clocks.periFreq === 0 ? UARTS : 0;
     return ALL_BLOCKS & ~this.held & ~stopped;

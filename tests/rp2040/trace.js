@@ -1,9 +1,9 @@
-// Writes what a chip executes to a file: lines for each interrupt, for each byte of the UART and, if requested, for
-// each instruction, in the form that tests/bench/instruction_counts reads.
+// Writes what a chip executes to a file: lines for each interrupt, for each access to the data register of the UART
+// and, if requested, for each instruction, in the form that tests/bench/instruction_counts reads.
 "use strict";
 const fs = require("fs");
 
-const ENOUGH = 10_000; // lines in memory
+const ENOUGH = 10_000; // the number of lines in memory that are then written to the file
 const DATA = 0x00; // the data register of the UART
 
 const hexOf = (word) => (word >>> 0).toString(16).padStart(8, "0");
@@ -12,7 +12,7 @@ class Trace {
   constructor(descriptor) {
     this.descriptor = descriptor;
     this.instructions = false; // whether instructions are written too
-    this.executing = null; // address of the instruction that is executed and not yet written
+    this.executing = null; // address of the instruction that is executed and not yet written, or null
     this.lines = [];
   }
 
@@ -31,7 +31,7 @@ class Trace {
     wrap(core, "exceptionEntry", (enter, exception) => {
       enter(exception);
       this.note(`nvic_acknowledge_irq IRQ: ${exception} now active`);
-      this.executing = core.PC; // an interrupt comes before the instruction
+      this.executing = core.PC; // rp2040js enters an interrupt before it executes an instruction
     });
     wrap(core, "exceptionReturn", (leave, code) => {
       const exception = core.IPSR;

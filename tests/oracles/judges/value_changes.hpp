@@ -13,11 +13,11 @@
 
 namespace ex9000::judges {
 
-/// Keeps the values of a module, and attributes each change of them to received requests, to a timeout of the
-/// host watchdog, and to ended timers of outputs.
+/// Stores the values of a module. Checks whether received requests, a timeout of the host watchdog and ended
+/// timers of outputs explain a change of the values.
 class ValueChanges {
  public:
-  /// Call this when the module has started with `values`.
+  /// Call this when the module has started with `values`. `reset`: the time of the reset.
   void module_reset(const Values& values, Microseconds reset) {
     values_ = values;
     watchdog_.module_reset(reset);
@@ -27,11 +27,12 @@ class ValueChanges {
   [[nodiscard]] const Values& values() const { return values_; }
   HostWatchdog& watchdog() { return watchdog_; }
 
-  /// Call this for each received request.
+  /// Call this for each received request other than a host OK.
   void note(const Request& request) { timers_.may_be_restarted(request.demand, request.last); }
 
-  /// Returns the claim that a change of the values to `to` violates, or null. Only `fresh` requests can cause
-  /// a change. Call `change` after this function.
+  /// Returns the claim that a change of the values to `to` violates, or null if the change has a permitted
+  /// cause. Only requests that are `fresh` and not `done` can cause a change. Call `change` after this
+  /// function.
   const char* objection_to_change(const Values& to, Requests& requests, Microseconds now) {
     if (one_leads_to(to, requests, now)) {
       return nullptr;
@@ -45,7 +46,8 @@ class ValueChanges {
                : "values change only because of a command, a timeout or a reset";
   }
 
-  /// Stores the new values `to`. `requests`: those that may have started timers.
+  /// Stores the new values `to`, and the earliest ends of the timers that have started. `requests`: those
+  /// that may have started the timers.
   void change(const Values& to, const Requests& requests) {
     const auto started = static_cast<std::uint16_t>(to.timed & ~values_.timed);
     if (started != 0) {
@@ -67,8 +69,9 @@ class ValueChanges {
   }
 
  private:
-  /// The greatest number of commands that take effect in one turn of the main loop: a broadcast whose storing
-  /// ends, the broadcast after it, and the frame that ends with the silence after that.
+  /// The greatest number of commands that take effect in one turn of the main loop: a broadcast whose store
+  /// ends, a second broadcast that has waited for this store, and a third frame whose silence ends in this
+  /// turn.
   static constexpr unsigned kMostInATurn = 3;
 
   struct Causes {
@@ -84,8 +87,8 @@ class ValueChanges {
              demand.values_after_a_timeout(from, watchdog_.outputs_before()) == to));
   }
 
-  /// Returns whether a single command can have changed the values to `to`; this is the usual case. Also
-  /// records the cause: a timeout if it explains the change, or else the command if it is the only one that
+  /// Returns whether a single command can have changed the values to `to`, which is the usual case. If so,
+  /// records the cause: a timeout if it explains the change too, or else the command if no other command
   /// explains the change.
   bool one_leads_to(const Values& to, Requests& requests, Microseconds now) {
     Request* only = nullptr;
@@ -97,7 +100,7 @@ class ValueChanges {
       }
     }
     if (count != 0 && watchdog_.may_expire(values_, now) && to == values_.expired()) {
-      // The host watchdog may have expired instead. After a timeout it is disabled and does nothing more.
+      // The host watchdog may have expired instead.
       watchdog_.expired(values_, now);
     } else if (count == 1) {
       only->done = true;
@@ -108,8 +111,8 @@ class ValueChanges {
     return count != 0;
   }
 
-  /// Returns whether ended timers, a timeout, and at most `most` commands from number `next` on can have
-  /// changed `from` to `to`.
+  /// Returns whether ended timers, a timeout and at most `most` of the requests from index `next` on can have
+  /// changed `from` to `to`. If so, and if a timeout is one of the causes, records the timeout.
   bool some_lead(const Values& from, const Values& to, const Causes& causes, std::size_t next,
                  unsigned most) {
     if (from == to) {

@@ -24,7 +24,7 @@
 
 namespace ex9000::judges {
 
-/// How a module listens; constant from one reset to the next.
+/// How a module listens immediately after a reset.
 struct Listening {
   bool modbus = false;
   std::uint8_t address = 0;
@@ -40,24 +40,28 @@ struct Listening {
 /// Reports a violated claim if
 ///  - a reply begins that no frame has requested, or begins too early or too late, or does not have the
 ///    format that the request requires;
-///  - the values (outputs, power-on value, safe value, timeout and enable of the host watchdog, timeout
-///    status) change without a permitted cause: a received command that demands exactly this change, the
-///    expiry of the host watchdog, or the end of an output's timer;
-///  - the values are not what a command demands after the reply to this command, or after an idle module has
-///    received a broadcast that drives outputs and stores nothing;
-///  - a command is refused although it has changed a value, or a valid output command is refused although
-///    the timeout status is not set and no store can have failed;
-///  - an idle module does not reply to a frame that is addressed to it;
+///  - the values (outputs, their running timers, power-on value, safe value, timeout and enable of the host
+///    watchdog, timeout status) change, but received commands, an expiry of the host watchdog and ended
+///    timers of outputs do not explain exactly this change;
+///  - the values are not what a command demands when the reply that accepts this command begins, or after an
+///    idle module has received a broadcast that drives outputs and stores nothing;
+///  - an output command is accepted although its form is wrong or the timeout status blocks it;
+///  - a command is refused although it has changed a value;
+///  - a valid output command is refused although the timeout status is not set and no store can have failed,
+///    or with a reply other than `!` and exception 04;
+///  - any other command is refused with `!`, or with exception 04 although it stores nothing;
+///  - an idle module does not reply in time to a request for it that is not a host OK;
 ///  - the host watchdog expires too early;
 ///  - the timer of an output ends too early;
-///  - in ASCII, the address changes without a command;
+///  - in ASCII, the address changes while no received request waits for its reply;
 ///  - outputs are not the safe value while the timeout status is set, or an output is driven that the model
 ///    does not have.
 ///
-/// It does not check that a timer ends in time, that a reply waits for the response delay, or that requests
-/// restart the host watchdog if register 0x0251 is 1.
+/// This class does not check that the host watchdog or a timer expires in time, that a reply waits for the
+/// response delay, or that requests restart the host watchdog if register 0x0251 is 1.
 ///
-/// `now` must never decrease from one call to the next.
+/// `now` must not decrease from one call to the next, except that `reply_begins` gets the time at which the
+/// driver was switched on.
 class Witness {
  public:
   /// Receives the claim that is violated.
@@ -76,7 +80,8 @@ class Witness {
 
   /// Call this when the module has started with `values`. `reset`: the time of the reset. If the reset
   /// interrupted a command, this class does not check what the command has stored
-  /// (tests/boards/power_cuts/power_cuts_test.cpp does that). It checks every later change of the values.
+  /// (tests/boards/power_cuts/power_cuts_test.cpp does that). This class checks the later changes of the
+  /// values.
   void comes_up(const Listening& listening, const Values& values, Microseconds reset) {
     rtu_.reset();
     dcon_.reset();
@@ -97,9 +102,9 @@ class Witness {
   [[nodiscard]] bool hears_modbus() const { return rtu_.has_value(); }
   [[nodiscard]] bool wants_checksum() const { return dcon_ && dcon_->checksum(); }
   [[nodiscard]] Microseconds character() const { return times_.character; }
-  /// Returns T3.5; defined for DCON too, but not used there.
+  /// Returns T3.5. In ASCII the function returns a value too, but T3.5 has no meaning there.
   [[nodiscard]] Microseconds silence() const { return times_.t35; }
-  /// See RtuJudge.
+  /// In Modbus, see RtuJudge::beyond_doubt. In ASCII, returns `end`.
   [[nodiscard]] Microseconds beyond_doubt(Microseconds end) const {
     return rtu_ ? rtu_->beyond_doubt(end) : end;
   }
@@ -122,7 +127,8 @@ class Witness {
   }
 
   /// Call this at the end of the first stop bit of a byte that arrived while the module's driver was off,
-  /// before the module receives the byte. `address`: the address at which the module replies.
+  /// before the module executes a request that this byte completes. `good`: the byte has no line error.
+  /// `address`: the address at which the module replies.
   void hears(std::uint8_t byte, bool good, std::uint8_t address, Microseconds now) {
     pass(now);
     if (rtu_) {
@@ -137,7 +143,8 @@ class Witness {
     }
   }
 
-  /// Call this after a turn of the main loop with the values of the module.
+  /// Checks the present values of the module. Call this after a turn of the main loop, or when an output has
+  /// changed.
   void follow(const Values& values, Microseconds now) {
     if (values == changes_.values()) {
       return;
@@ -168,7 +175,8 @@ class Witness {
     }
   }
 
-  /// Call this when the module's driver has been switched on, after `follow`. `reply`: the complete reply.
+  /// Call this for each reply, after `follow` and before `reply_ends`. `reply`: the complete reply. `now`:
+  /// the time at which the module's driver was switched on.
   void reply_begins(Bytes reply, Microseconds now) {
     now_ = now;
     sending_ = true;
@@ -199,7 +207,7 @@ class Witness {
       case Finding::Kind::HostOk:
         ++counts_.silent;
         ++counts_.host_oks;
-        if (!held_) {  // while the main loop is held, the module uses only the first and last one
+        if (!held_) {  // a held module stores only the times of the first and the last host OK
           changes_.watchdog().restarts_at_the_earliest(finding.last);
         }
         return;
@@ -238,8 +246,8 @@ class Witness {
 
   static constexpr Microseconds kLongestDelay = 30 * kMillisecond;  // wire.md 12
 
-  /// Returns the latest time at which the module executes `request`, if it was idle from `free` on (wire.md 3
-  /// and 7).
+  /// Returns the latest time at which the module executes `request` and begins the reply, if the module is
+  /// idle from `free` on (wire.md 3, 7 and 12).
   [[nodiscard]] Microseconds latest_of(const Request& request, Microseconds free) const {
     constexpr Microseconds kPlain = 20 * kMillisecond;
     constexpr Microseconds kStoring = 200 * kMillisecond;
@@ -259,7 +267,8 @@ class Witness {
     }
   }
 
-  /// Drops requests that can no longer be executed.
+  /// Drops requests that can no longer be executed. Reports a violation if an idle module has not replied to
+  /// such a request.
   void drop_stale() {
     while (pending_.size() != 0 && !held_ && !sending_) {
       const Request& oldest = pending_[0];
@@ -277,8 +286,10 @@ class Witness {
     }
   }
 
-  /// Finds the request to which this reply belongs, according to `form_of` and to the values. Drops it and
-  /// all requests before it.
+  /// Finds the request to which a reply belongs, and drops this request and all requests before it. Returns
+  /// the form of the reply. Reports a violation and returns ReplyForm::Wrong if there is no such request.
+  /// `form_of`: returns the form that the reply has for a request. `refuses_outputs`: see
+  /// objection_to_refusal.
   template <class FormOf>
   ReplyForm answered(bool refuses_outputs, FormOf form_of) {
     mark_fresh();
@@ -348,8 +359,8 @@ class Witness {
     dcon_->may_answer_to(std::nullopt);
   }
 
-  /// Allows frames for a new address if a pending `%` sets this address. Between the end of the store and the
-  /// reply to `%`, the new address is already in force.
+  /// Allows frames for `address` if a pending `%` sets it. Between the end of the store and the reply to `%`,
+  /// the new address is already in force.
   void may_have_taken(std::uint8_t address) {
     for (std::size_t i = 0; i < pending_.size(); ++i) {
       const Request& each = pending_[i];
@@ -359,8 +370,9 @@ class Witness {
     }
   }
 
-  /// Returns why the module cannot have refused the request, or null. `refuses_outputs`: the reply says that
-  /// outputs are blocked or that a Modbus request could not be stored.
+  /// Returns why the module cannot have refused the request, or null if the module can have refused it.
+  /// `refuses_outputs`: the reply is `!` or exception 04, which says that outputs are blocked or that a
+  /// Modbus request could not be stored.
   [[nodiscard]] const char* objection_to_refusal(const Request& request, bool refuses_outputs) const {
     const Demand& demand = request.demand;
     if (request.done) {
@@ -370,12 +382,14 @@ class Witness {
     if (demand.drives()) {
       return refuses_outputs && (changes_.values().timed_out || may_fail)
                  ? nullptr
-                 : "an output command of the right form is refused only after a timeout";
+                 : "an output command of the right form is refused only while the timeout status is set, or "
+                   "if its "
+                   "store has failed";
     }
     return refuses_outputs && !may_fail ? "only an output command is refused for a timeout" : nullptr;
   }
 
-  /// Returns why the module cannot have executed the request, or null.
+  /// Returns why the module cannot have executed the request, or null if the module can have executed it.
   [[nodiscard]] const char* objection_to_answer(const Request& request) const {
     const Demand& demand = request.demand;
     const bool since = changes_.has_expired_since(request);
@@ -391,7 +405,7 @@ class Witness {
                                          : "an answered command has exactly the effects that it requires";
   }
 
-  /// Checks that an idle module has executed the latest broadcast.
+  /// Checks that an idle module has executed the latest broadcast, if this must still be checked.
   void look() {
     if (broadcast_ && !held_) {
       broadcast_ = false;
@@ -401,8 +415,8 @@ class Witness {
     }
   }
 
-  /// The end of a timer can undo the effect of the latest broadcast. Therefore this function checks the
-  /// broadcast before the end of the timer, or not at all if the broadcast may take effect in the same turn.
+  /// Checks the latest broadcast before the values change at the end of a timer, because this change can undo
+  /// the effect of the broadcast. Does not check a broadcast that may take effect in the same turn.
   void look_before_a_timer_ends() {
     if (broadcast_ && now_ > latest_of(pending_[0], free_)) {
       look();
@@ -424,9 +438,10 @@ class Witness {
   bool held_ = false;
   bool delays_ = false;  ///< a response delay may be in force
   bool sending_ = false;
-  /// A broadcast has been received by an idle module, and its effect has not been checked yet.
+  /// An idle module has received a broadcast that drives outputs and stores nothing, and the effect of this
+  /// broadcast has not been checked yet.
   bool broadcast_ = false;
-  Microseconds free_ = 0;  ///< from this time on only requests can delay the next request
+  Microseconds free_ = 0;  ///< from this time on, only earlier requests can delay a request
   Microseconds busy_ = 0;  ///< time of the last byte that arrived while the module was busy
 };
 

@@ -9,7 +9,7 @@
 
 namespace ex9000::reference {
 
-/// Returns the AA of replies. wire.md 2: in INIT mode every reply carries 00.
+/// Returns the address in replies, except those to `%` and `$AA2`. In INIT mode it is 00 (wire.md 2).
 std::string Module::aa() const { return hex(address_, 2); }
 
 /// Returns the fields First and Second of a reply (wire.md 1).
@@ -24,8 +24,8 @@ std::string Module::first_second(unsigned outputs, unsigned inputs) const {
 }
 
 /// Processes a frame from the delimiter to the character before CR. Returns no value if there is no reply.
-/// The line tallies count as function 08 does in Modbus: a value that is read includes the request that reads
-/// it.
+/// `spoiled`: a byte of the frame had a line error. The value of a line tally includes the request that reads
+/// it, like the counters of function 08 in Modbus.
 std::optional<std::string> Module::dcon_frame(std::string frame, bool spoiled) {
   if (spoiled) {
     rule("ASCII frame spoiled");
@@ -367,14 +367,14 @@ std::string Module::tilde_command(const std::string& body) {
     rule(name + " " + argument);
     unsigned& value = argument == "P" ? stored_.power_on : stored_.safe;
     if (command == '5') {
-      // wire.md 6: this works while the timeout status is set, because it drives nothing.
+      // wire.md 6: `~AA5V` works while the timeout status is set, because it drives nothing.
       if (timed_outputs() != 0) {
         rule("~AA5V stores a timed output as off");
       }
       value = outputs_ & ~timed_outputs();
       return "!" + aa();
     }
-    // wire.md E6: the reply contains no inputs, also on a model with inputs and outputs.
+    // wire.md 4: the reply contains no inputs, even on a model with inputs and outputs.
     return "!" + aa() + first_second(value, 0);
   }
   if (command == 'O') {

@@ -185,10 +185,10 @@ std::string command(const Module& module, Random& random) {
   }
 }
 
-/// Returns the frame with one mistake.
+/// Returns the frame with one change. In most cases the module does not accept the changed frame.
 std::string with_one_mistake(const Module& module, std::string frame, Random& random) {
   switch (random.below(8)) {
-    case 0:  // for another module
+    case 0:  // another address, or by chance the same one
       return frame.substr(0, 1) +
              random.one_of<std::string>({"00", "01", "02", "10", "FF", "0a", "**", "*1"}) +
              frame.substr(std::min<std::size_t>(frame.size(), 3));

@@ -8,15 +8,16 @@
 
 namespace ex9000::reference {
 
-/// Returns whether bits 7:6 of CC, which are the line format, are not 0.
+/// Returns whether `baud_code` is at most 0xFF and its bits 7:6, the line format, are not 0.
 bool has_line_format(unsigned baud_code);
 
-/// Returns whether the command begins like `~AARD` or `~AAX`, or is a `%` with a line format.
+/// Returns whether the command begins with `~AAR` or `~AAX`, or is `%AANNTTCCFF` with a line format in CC.
+/// `body`: the characters after the address.
 bool is_extension_command(char delimiter, const std::string& body);
 
-/// Returns whether the first coil or register of the request is one of the extensions, or whether the request
-/// sets a line format. A range that begins before an extension and reaches it includes a hole, so every
-/// module refuses it. `frame`: without its CRC.
+/// Returns whether the first coil of the request is 0x08CA, whether the first register is in the range 0x0240
+/// to 0x030F, or whether the request sets a line format. A range that begins before these addresses and
+/// reaches them includes a hole, so every module refuses it. `frame`: without its CRC.
 bool is_extension_function(const Bytes& frame);
 
 }  // namespace ex9000::reference

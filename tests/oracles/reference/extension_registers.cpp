@@ -1,4 +1,4 @@
-// Values of the extension registers of the reference, and `~AAX`: wire.md, extensions.
+// Values of the extension registers of the reference, and `~AARD` and `~AAX`: wire.md, extensions.
 #include "tests/oracles/reference/extension_registers.hpp"
 
 #include "tests/oracles/reference/dcon_refusal.hpp"
@@ -32,7 +32,8 @@ ExtensionRow extension_row(const ModelRow& model, unsigned address) {
   return {Extension::None, "", 0, 0, false, false};
 }
 
-/// Returns a line tally. The tallies of overruns and lost frames are 0, because a session has none.
+/// Returns a line tally; index 0 is register 0x0308. The tallies of overruns and lost frames are 0, because
+/// no session has an overrun or loses a frame.
 unsigned Module::tally(unsigned index) const {
   const unsigned tallies[] = {counts_.bus_messages, counts_.crc_errors,
                               counts_.exceptions,   counts_.server_messages,

@@ -22,7 +22,7 @@ unsigned extension_address(const Module& module, Random& random) {
     return 0x0280 + channel;
   }
   switch (random.below(12)) {
-    case 0:  // at the ends of the table, and holes
+    case 0:  // at the ends of rows, in holes, and outside the table
       return random.one_of({0x023FU, 0x0240U, 0x024FU, 0x0250U, 0x0253U, 0x025FU, 0x0260U, 0x027FU, 0x0280U,
                             0x0290U, 0x02FFU, 0x0307U, 0x0310U, 0x0311U});
     case 1:

@@ -22,8 +22,7 @@ Step wait(const Module& module, Random& random) {
   return Wait{std::chrono::milliseconds(random.between(1, 300))};
 }
 
-/// Returns a number of pulses: usually a few, sometimes enough to bring a counter to its overflow or just
-/// past it.
+/// Returns a number of pulses: usually a few, sometimes about the number after which a counter wraps.
 std::uint32_t pulses(const Module& module, Random& random) {
   const std::uint32_t wraps = module.runs_modbus() ? 65536 : 100000;
   return random.once_in(60) ? wraps - 2 + random.below(5) : random.between(1, 5);
@@ -85,8 +84,8 @@ Step next_step(const Module& module, Random& random) {
   }
   // Some steps use inputs that the model does not have; these steps have no effect.
   if (what < (module.row().inputs != 0 ? 40U : 15U)) {
-    // An input whose filter time is running is preferred, and so are the first two inputs, which have a
-    // filter more often.
+    // These steps prefer an input whose filter time is running, and the first two inputs, because requests
+    // set the filters of these two more often.
     const std::optional<unsigned> settling = module.settling_input();
     const unsigned channel = settling && random.once_in(2) ? *settling
                              : random.once_in(2)           ? random.below(2)

@@ -6,6 +6,7 @@
 
 namespace ex9000::reference {
 
+/// Returns the last `digits` hex digits of `value`.
 inline std::string hex(unsigned value, std::size_t digits) {
   std::string text;
   for (std::size_t i = 0; i < digits; ++i) {
@@ -15,8 +16,8 @@ inline std::string hex(unsigned value, std::size_t digits) {
   return text;
 }
 
-/// Returns the value of the hex digits in `text`; no value if `text` is empty or has a character that is not
-/// an upper-case hex digit.
+/// Returns the value of the hex digits in `text`, modulo 2^32; no value if `text` is empty or has a character
+/// that is not an upper-case hex digit.
 inline std::optional<unsigned> number(const std::string& text) {
   if (text.empty() || text.find_first_not_of("0123456789ABCDEF") != std::string::npos) {
     return std::nullopt;

@@ -43,15 +43,15 @@ void Module::pulse_input(unsigned channel, std::uint32_t count, Time now) {
   }
 }
 
-/// Accepts the new raw level of an input and processes the edge.
+/// Accepts the new level of an input, after the filter, and processes the edge.
 void Module::take_level(unsigned channel) {
   levels_ ^= 1U << channel;
   edge(channel, (levels_ >> channel & 1U) != 0, 1);
 }
 
-/// A new filter time applies from the last edge at the terminal. If that time is already over, the module
-/// accepts the level as soon as the setting is stored. The setting may have to wait for the store of a
-/// timeout.
+/// Sets a filter time, which applies from the last edge at the terminal. If this time is already over, the
+/// module accepts the level as soon as the setting is stored. The store of the setting may have to wait until
+/// a timeout of the host watchdog has been stored.
 void Module::set_filter(unsigned channel, unsigned milliseconds) {
   if (settling_[channel] && milliseconds != stored_.filters[channel]) {
     const Time settled = last_edges_[channel] + std::chrono::milliseconds(milliseconds);
@@ -61,7 +61,7 @@ void Module::set_filter(unsigned channel, unsigned milliseconds) {
   stored_.filters[channel] = milliseconds;
 }
 
-/// The raw levels and the filtered levels change together, so there is no edge.
+/// Sets the inversion. The levels before and after the filter change together, so there is no edge.
 void Module::set_inversion(unsigned inversion) {
   rule(inversion == stored_.inversion ? "inversion stays" : "inversion changes");
   levels_ ^= inversion ^ stored_.inversion;

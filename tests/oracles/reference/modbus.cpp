@@ -21,10 +21,9 @@ bool known_function(const ModelRow& model, unsigned function) {
 
 }  // namespace
 
-/// Processes a complete frame of any content. Returns the reply with its CRC, or nothing. Function 08 counts
-/// as in Modbus Application Protocol V1.1b3, 6.8. If that specification is unclear, the counters follow
-/// Modbus over Serial Line V1.02: a frame too short for a CRC is a CRC error, and a broadcast is a message
-/// without response. `bad`: which bytes have a line error.
+/// Processes a complete frame of any content. Returns the reply with its CRC, or no bytes if there is no
+/// reply. The counters of function 08 follow wire.md D1: for example, a frame of less than 4 bytes counts as
+/// a CRC error, and a broadcast counts as a message without a reply. `bad`: which bytes have a line error.
 Bytes Module::modbus_frame(Bytes frame, std::vector<bool> bad) {
   const auto spoiled = [&] { return std::find(bad.begin(), bad.end(), true) != bad.end(); };
   // A turn-around 00 before a frame, with or without a line error, does not invalidate the frame.
@@ -98,7 +97,8 @@ Bytes Module::modbus_frame(Bytes frame, std::vector<bool> bad) {
       rule("broadcast refused");
     } else {
       rule(exception.rule);
-      // V1.1b3, 6.8: the counter counts only exception responses that were returned. A broadcast gets none.
+      // wire.md D1: sub-function 0D counts only exceptions that the module has returned. A broadcast gets
+      // none.
       counts_.exceptions += 1;
     }
     reply = {frame[0], static_cast<std::uint8_t>(function | 0x80U), exception.code};

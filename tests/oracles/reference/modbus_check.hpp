@@ -8,7 +8,7 @@
 
 namespace ex9000::reference {
 
-/// Returns whether the frame is long enough for a CRC and has the correct one.
+/// Returns whether the frame has at least 4 bytes and a correct CRC.
 inline bool crc_is_right(const std::vector<std::uint8_t>& frame) {
   return frame.size() >= 4 && with_crc({frame.begin(), frame.end() - 2}) == frame;
 }

@@ -10,7 +10,7 @@ namespace ex9000::reference {
 
 namespace {
 
-/// The kinds of coils and registers: the rows of the table.
+/// The kinds of coils: the rows of the table in wire.md 7.
 enum class Row {
   Outputs,
   Safe,
@@ -76,7 +76,7 @@ CoilRow listed_coils(const ModelRow& model, unsigned first, unsigned quantity, u
   return row;
 }
 
-/// Returns whether the table of registers lists this register for this function.
+/// Returns whether the table lists this register for this model and this function.
 bool register_listed(const ModelRow& model, unsigned address, unsigned function) {
   const bool counter = address < model.inputs;
   const bool code = address == 0x01E2 || address == 0x01E3;
@@ -198,7 +198,7 @@ Bytes Module::read_registers(const Bytes& frame) {
   return reply;
 }
 
-/// Checks the values, then the timeout status. Format and range have been checked before.
+/// Checks the values, then the timeout status. The caller has checked format and range.
 void Module::judge_coils(unsigned first, const std::vector<bool>& values, unsigned function) {
   const CoilRow row = coil_row(row_, first);
   const std::string value_refused = function_name(function) + " 03 " + row.name;
@@ -215,7 +215,7 @@ void Module::judge_coils(unsigned first, const std::vector<bool>& values, unsign
       }
       break;
     case Row::ClearCounters:
-      // wire.md E8: in 0F, a 0 bit leaves the counter unchanged; 05 with 0000 is refused.
+      // wire.md 7: in 0F, a 0 bit leaves the counter unchanged; 05 with 0000 is refused.
       if (function == 0x05 && !values[0]) {
         throw Exception{0x03, value_refused};
       }
@@ -245,7 +245,7 @@ void Module::set_coils(unsigned first, const std::vector<bool>& values) {
         drive(1U << channel, values[i] ? 1U << channel : 0U);
         break;
       case Row::Safe:
-        // A write of safe values also drives the outputs.
+        // A write of the safe value or of the power-on value also drives the outputs.
         put(stored_.safe);
         drive(1U << channel, values[i] ? 1U << channel : 0U);
         break;
@@ -267,7 +267,7 @@ void Module::set_coils(unsigned first, const std::vector<bool>& values) {
         clear_timeout_status();
         break;
       case Row::CountingEdge:
-        // Takes effect immediately, unlike FF of `%`.
+        // The edge takes effect immediately, unlike bit 7 of FF in `%AANNTTCCFF`.
         stored_.format = values[i] ? stored_.format | 0x80U : stored_.format & 0x7FU;
         counts_rising_ = values[i];
         break;
@@ -292,7 +292,7 @@ Bytes Module::write_coil(const Bytes& frame) {
   const CoilRow row = listed_coils(row_, address, 1, 0x05);
   const std::vector<bool> values = {value == 0xFF00};
   judge_coils(address, values, 0x05);
-  // Configuration is not allowed in broadcasts.
+  // A broadcast never changes the protocol or the counting edge.
   if (frame[0] == 0 && (row.row == Row::Protocol || row.row == Row::CountingEdge)) {
     rule("broadcast ignored: configuration");
     return {};

@@ -9,8 +9,8 @@
 
 namespace ex9000::reference {
 
-/// A Modbus exception: nothing changes, and the reply is the function code with bit 7 set and the exception
-/// code.
+/// A Modbus exception: the module refuses the request, and nothing changes. The reply has the function code
+/// with bit 7 set, and the exception code. A broadcast gets no reply.
 struct Exception {
   std::uint8_t code;
   std::string rule;

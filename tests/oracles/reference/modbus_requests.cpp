@@ -37,7 +37,9 @@ unsigned coil_quantity(const Module& module, unsigned address, Random& random) {
   switch (random.below(8)) {
     case 0:
       return random.one_of({0U, 1U, 1968U, 1969U, 2000U, 2001U, 0xFFFFU});
-    case 1:  // for a model with inputs only or outputs only: to the end of the row, or one coil more
+    case 1:
+      // On a model without inputs or without outputs, from the coil of a channel: to the end of the row, or
+      // one coil more.
       return module.row().inputs + module.row().outputs - (address & 0x1FU) % 16 + random.below(2);
     case 2:
       return random.between(1, 40);

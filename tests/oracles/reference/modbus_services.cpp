@@ -1,4 +1,4 @@
-// The functions of the reference that do not access coils or registers: 08, 11, 2B and 46, wire.md 7.
+// The functions of the reference that do not access coils, inputs or registers: 08, 11, 2B and 46, wire.md 7.
 #include "tests/oracles/reference/hexadecimal.hpp"
 #include "tests/oracles/reference/modbus_refusal.hpp"
 #include "tests/oracles/reference/module.hpp"
@@ -13,7 +13,7 @@ Bytes Module::diagnostics(const Bytes& frame) {
   const unsigned sub_function = word(frame, 2);
   const std::string name = "FC08 " + hex(sub_function, 2);
   if (sub_function == 0x00) {
-    // N x 2 bytes, returned unchanged.
+    // The data is one word or more, and the reply returns it unchanged.
     if (frame.size() < 6 || frame.size() % 2 != 0) {
       throw Exception{0x03, "FC08 03 length"};
     }
@@ -40,7 +40,7 @@ Bytes Module::diagnostics(const Bytes& frame) {
       count = counts_.no_response;
       break;
     case 0x12:
-      count = 0;  // no session loses a frame to an overrun
+      count = 0;  // no session has an overrun
       break;
     default:
       throw Exception{0x01, "FC08 01"};

@@ -9,8 +9,8 @@ namespace ex9000::reference {
 /// Whether a module has the extensions of wire.md 12.
 enum class Extensions {
   Present,
-  /// The module has only what the manuals describe. The reply to a request that requires an extension is left
-  /// open, because the firmware always has the extensions.
+  /// The module has none of these extensions. The reply to a request that requires an extension is left open,
+  /// because the firmware always has the extensions.
   Absent,
 };
 
@@ -21,11 +21,12 @@ struct ModelRow {
   unsigned outputs;
   bool both_protocols;    ///< the -M models: Modbus RTU and ASCII
   bool status_80_84;      ///< `~AA0` returns 00, 80 or 84; if false, 00 or 04
-  const char* name;       ///< factory name, `$AAM`
-  unsigned longest_name;  ///< 7 on the -M models of the 9068, wire.md E5
+  const char* name;       ///< factory name, as `$AAM` reads it
+  unsigned longest_name;  ///< greatest length of a name that `~AAO(Data)` stores
   std::uint16_t code;     ///< Modbus module code; 0 without Modbus
   const char* in_words;   ///< object 04 of function 2B
-  /// An additional model: the manuals neither describe it nor name it in their parameter tables.
+  /// An additional model: the four manuals of wire.md neither describe it nor name it in their parameter
+  /// tables.
   bool extension = false;
 };
 

@@ -9,10 +9,10 @@ namespace ex9000::reference {
 namespace {
 
 constexpr std::chrono::milliseconds kTimeoutUnit{100};  // wire.md 6: VV x 0.1 s
-/// One tick and the time until the module executes a received request.
+/// Covers one tick, and the time until the module executes a received request.
 constexpr std::chrono::milliseconds kTick{3};
-/// The longest time from the last byte of a frame to its execution, if the frame stores nothing: the silence
-/// that ends a frame at 1200 baud (wire.md 7).
+/// The longest silence that ends a Modbus frame: 32.08 ms at 1200 baud (wire.md 7), rounded up. The module
+/// judges an ASCII frame earlier.
 constexpr std::chrono::milliseconds kLongestSilence{33};
 
 auto members(const Stored& s) {
@@ -20,7 +20,7 @@ auto members(const Stored& s) {
                   s.timeout, s.timed_out, s.restarted_by_requests, s.delay, s.filters, s.inversion);
 }
 
-/// Returns the level after the data bits: the parity bit, or the first stop bit.
+/// Returns the level after the data bits: the parity bit, or the first stop bit if there is no parity.
 bool ninth_bit(std::uint8_t byte, LineFormat format) {
   unsigned ones = 0;
   for (unsigned bit = 0; bit < 8; ++bit) {
@@ -78,7 +78,7 @@ Module::Module(const ModelRow& row, Extensions extensions) : row_(row), extensio
 }
 
 unsigned Module::rate() const {
-  // The baud rates of CC: README, DCON commands.
+  // wire.md 4: the baud rates of CC.
   constexpr unsigned kRates[] = {1200, 2400, 4800, 9600, 19200, 38400, 57600, 115200};
   return kRates[baud_code_ % 0x40 - 3];
 }
@@ -109,8 +109,8 @@ void Module::reset(Time now) {
 }
 
 void Module::come_up(Time now) {
-  // wire.md 2: INIT* is sampled only at reset. If INIT* is asserted, the module uses ASCII, address 00, 9600
-  // baud, 8N1 and no checksum.
+  // wire.md 2: the module selects its mode only at reset. If INIT* is asserted then, the module uses ASCII,
+  // address 00, 9600 baud, 8N1 and no checksum.
   init_mode_ = init_asserted_;
   runs_modbus_ = !init_mode_ && stored_.modbus;
   address_ = init_mode_ ? 0x00 : stored_.address;
@@ -126,7 +126,7 @@ void Module::come_up(Time now) {
   counters_ = {};
   wide_counters_ = {};
   clear_latches();
-  // wire.md, extensions: the raw levels at reset are the baseline, not edges.
+  // wire.md, extensions: the raw levels at reset are the baseline and do not count as edges.
   levels_ = raw_levels();
   settling_ = {};
   sample_.reset();
@@ -140,7 +140,7 @@ void Module::come_up(Time now) {
   read_blank_memory_ = blank_memory_;
   stored_by_ = Time(0);
   timeout_stored_ = Time(0);
-  // wire.md 6: every reset starts the host watchdog with its full VV, in every mode.
+  // wire.md 6: if the host watchdog is enabled, every reset starts it with its full timeout, in every mode.
   expiry_.reset();
   if (stored_.enabled) {
     rule("reset starts the host watchdog");
@@ -148,7 +148,7 @@ void Module::come_up(Time now) {
   }
 }
 
-/// Returns the value of registers 0x0302 and 0x0303.
+/// Returns the value of registers 0x0302 and 0x0303. Sets `left_open_` if the value is not known.
 unsigned Module::seconds_since_reset() {
   const auto seconds = [](Time time) { return std::chrono::duration_cast<std::chrono::seconds>(time); };
   const auto least = seconds(now_ - came_up_ - kComingUp);
@@ -161,7 +161,8 @@ unsigned Module::seconds_since_reset() {
 
 // --- wire.md 6 ---
 
-/// Restarts the host watchdog by a command, which takes effect when it is stored.
+/// Restarts the host watchdog by a command, if the host watchdog is enabled. If the command changes settings,
+/// the restart happens when they are stored.
 void Module::restart_host_watchdog() {
   if (stored_.enabled) {
     restarted_ = true;
@@ -180,7 +181,8 @@ void Module::restart_host_watchdog_by_host_ok() {
   }
 }
 
-/// Call this for each complete request with this module's own address, before its execution.
+/// Restarts the host watchdog if it is enabled and register 0x0251 is 1. Call this for each correctly
+/// received request with this module's own address, before its execution.
 void Module::restart_host_watchdog_by_request() {
   if (stored_.restarted_by_requests) {
     rule(!expiry_       ? "request does not start a host watchdog that does not run"
@@ -192,7 +194,7 @@ void Module::restart_host_watchdog_by_request() {
 
 // --- wire.md, extensions: timed outputs ---
 
-/// Sets outputs by a command, which ends the timers of all channels that it covers.
+/// Sets outputs by a command. The command ends the timers of all channels that it covers.
 void Module::drive(unsigned channels, unsigned values) {
   outputs_ = (outputs_ & ~channels) | (values & channels);
   if ((timed_outputs() & channels) != 0) {
@@ -216,7 +218,8 @@ void Module::set_timed_output(unsigned channel, unsigned time) {
   }
 }
 
-/// Returns the time until a timed output ends, in 0.1 s, rounded up; 0 if none is running.
+/// Returns the remaining time of a timed output in 0.1 s, rounded up; 0 if no time is running. Sets
+/// `left_open_` if the remaining time is not known.
 unsigned Module::time_left(unsigned channel) {
   const std::optional<Moment>& timer = timers_[channel];
   rule(timer ? "0x0280 reads the remaining time" : "0x0280 reads 0");
@@ -329,10 +332,12 @@ Answer Module::on_bytes(const Bytes& bytes, LineFormat sent_in, Time now) {
   if (runs_modbus_) {
     answer.reply = modbus_frame(bytes, bad);
   } else {
-    // wire.md 3: the first delimiter of a command or of a reply decides. A CR ends any frame.
+    // wire.md 3: a delimiter begins a frame. The first character of a reply begins another module's reply,
+    // which is skipped. A CR ends both.
     for (std::size_t i = 0; i < bytes.size(); ++i) {
       const char character = static_cast<char>(bytes[i]);
-      // If one of several frames restarts the host watchdog, the restart happens at the end of that frame.
+      // The end of this byte: if one of several frames restarts the host watchdog, the restart happens at the
+      // end of that frame.
       now_ = now - Time((bytes.size() - 1 - i) * character_bits(sent_in) * 1'000'000'000ULL / rate());
       if (!answer.reply.empty()) {
         left_open_ = "the effect of bytes that arrive while the module answers depends on its timing";

@@ -23,8 +23,8 @@ using Bytes = std::vector<std::uint8_t>;
 using Time = std::chrono::nanoseconds;
 /// wire.md 2: the longest time from power-on or reset until the module listens.
 inline constexpr std::chrono::milliseconds kComingUp{100};
-/// wire.md 3: the reply starts at most 200 ms after a request that stores a setting. A Modbus frame ends up
-/// to 32 ms after its last byte.
+/// wire.md 3: the reply starts at most 200 ms after a request that stores a setting. wire.md 7: at 1200 baud,
+/// a Modbus frame ends about 32 ms after its last byte.
 inline constexpr std::chrono::milliseconds kLongestStore{232};
 /// wire.md, extensions: the longest response delay, in ms.
 inline constexpr unsigned kLongestDelay = 0x1E;
@@ -50,7 +50,8 @@ struct Stored {
   bool enabled = false;     ///< host watchdog enabled
   unsigned timeout = 0xFF;  ///< of the host watchdog, in 0.1 s
   bool timed_out = false;   ///< the timeout status
-  /// Whether every complete request for this module restarts the host watchdog.
+  /// Register 0x0251: whether every correctly received request with this module's own address restarts the
+  /// host watchdog.
   bool restarted_by_requests = false;
   unsigned delay = 0;                  ///< the response delay in ms
   std::array<unsigned, 16> filters{};  ///< the filter times of the inputs, in ms
@@ -63,7 +64,7 @@ bool operator==(const Stored& a, const Stored& b);
 struct Answer {
   Bytes reply;          ///< empty: no reply
   bool stores = false;  ///< settings change; storing takes up to 200 ms
-  /// If not null, the specification does not define what happens; the text says why. The other members are
+  /// If not null, the reference cannot predict what the module does; the text says why. The other members are
   /// not valid then.
   const char* left_open = nullptr;
 };
@@ -75,7 +76,8 @@ class Module {
 
   // --- events ---
 
-  /// Sets the values that the module loads at the next reset.
+  /// Sets the stored values. Call this only while the supply is off, because some of the values would take
+  /// effect immediately.
   void store(const Stored& stored) {
     stored_ = stored;
     blank_memory_ = false;
@@ -83,7 +85,7 @@ class Module {
   /// Switches the supply. A module that is switched on has 100 ms to start. Its reset is at an unknown time
   /// within these 100 ms.
   void power(bool on, Time now);
-  /// Resets the module, which has 100 ms to start.
+  /// Resets the module, which then has 100 ms to start. Has no effect while the supply is off.
   void reset(Time now);
   void set_init(bool asserted) { init_asserted_ = asserted; }
   void set_input(unsigned channel, bool level, Time now);
@@ -93,8 +95,8 @@ class Module {
   /// Like `on_request`, for a master that uses another line format. If the module uses parity, `sent_in` must
   /// not be 8N1, because the module cannot determine where such bytes end if there is no gap between them.
   Answer on_bytes(const Bytes& bytes, LineFormat sent_in, Time now);
-  /// Call this when the first byte of the reply to the last request began at `now`. All effects of the
-  /// request are complete by then.
+  /// Reports that the first byte of the reply to the last request began at `now`. All effects of the request
+  /// are complete by then.
   void replied(Time now);
   /// Lets time pass until `now`, which must not lie within one of the `moments`.
   void pass(Time now);
@@ -107,7 +109,7 @@ class Module {
 
   [[nodiscard]] bool powered() const { return powered_; }
   [[nodiscard]] unsigned outputs() const { return outputs_; }
-  /// Returns whether the LED flashes: it does while the timeout status is set (wire.md 6).
+  /// Returns whether the timeout status is set. The LED of a powered module then flashes (wire.md 6).
   [[nodiscard]] bool led_flashes() const { return stored_.timed_out; }
   [[nodiscard]] unsigned rate() const;
   [[nodiscard]] LineFormat format() const { return format_of(baud_code_); }
@@ -119,16 +121,15 @@ class Module {
   [[nodiscard]] unsigned address() const { return address_; }
   [[nodiscard]] bool init_mode() const { return init_mode_; }
   [[nodiscard]] bool init_asserted() const { return init_asserted_; }
-  /// Returns whether a reset would change the settings that the master needs to reach the module.
+  /// Returns whether a reset would start or end INIT mode, or would change the protocol, address, baud rate,
+  /// line format or checksum in force.
   [[nodiscard]] bool waits_for_reset() const;
   [[nodiscard]] const Stored& stored() const { return stored_; }
   [[nodiscard]] const ModelRow& row() const { return row_; }
   [[nodiscard]] bool has_extensions() const { return extensions_ == Extensions::Present; }
-  /// Returns whether the module has received the beginning of a frame but not its end.
-  [[nodiscard]] bool frame_open() const { return framing_ != Framing::Nothing; }
 
-  /// The module changes by itself between these two times. The exact time is unknown if the time at which a
-  /// command took effect is not visible from outside.
+  /// The module changes by itself between these two times. The exact time is unknown if the time of the
+  /// cause, for example of a command or a reset, is not visible from outside.
   struct Moment {
     Time earliest;
     Time latest;
@@ -143,18 +144,18 @@ class Module {
 
  private:
   void rule(const std::string& rule) { rules_.push_back(rule); }
-  /// Returns whether the request requires an extension that this module does not have, and in this case
-  /// leaves the reply open. `needed`: whether the request requires an extension.
+  /// Returns whether the request requires an extension that this module does not have. In this case, sets
+  /// `left_open_`. `needed`: whether the request requires an extension.
   bool refuses_extension(bool needed) {
     const bool refuses = needed && !has_extensions();
     left_open_ = refuses ? "only a module with extensions has this request" : left_open_;
     return refuses;
   }
 
-  // wire.md 2
+  // wire.md 2 and 12
   void come_up(Time now);
   unsigned seconds_since_reset();
-  // wire.md 5
+  // wire.md 5 and 12, inputs.cpp
   [[nodiscard]] unsigned raw_levels() const { return terminals_ ^ stored_.inversion; }
   void edge(unsigned channel, bool rising, std::uint32_t count);
   void take_level(unsigned channel);
@@ -163,7 +164,7 @@ class Module {
   void clear_latches();
   void clear_counter(unsigned channel);
   [[nodiscard]] std::uint32_t counter_modulus() const { return runs_modbus_ ? 65536 : 100000; }
-  // wire.md 6
+  // wire.md 6 and 12
   void restart_host_watchdog();
   void restart_host_watchdog_by_host_ok();
   void restart_host_watchdog_by_request();
@@ -193,7 +194,7 @@ class Module {
   [[nodiscard]] std::string first_second(unsigned outputs, unsigned inputs) const;
   [[nodiscard]] bool permission() const { return init_mode_ || init_asserted_; }
 
-  // wire.md 7, modbus.cpp
+  // wire.md 7: modbus.cpp, modbus_map.cpp and modbus_services.cpp
   Bytes modbus_frame(Bytes frame, std::vector<bool> bad);
   Bytes modbus_function(const Bytes& frame);
   Bytes read_bits(const Bytes& frame);
@@ -229,7 +230,7 @@ class Module {
   Stored stored_;
   bool blank_memory_ = true;  ///< nothing has been stored yet
 
-  // State that is not stored. A reset sets most of this state anew.
+  // State that is not stored. A reset initialises most of it.
   bool powered_ = false;
   bool init_asserted_ = false;
   bool init_mode_ = false;
@@ -243,7 +244,7 @@ class Module {
   std::array<std::optional<Moment>, 16> timers_;
   bool reset_status_ = false;
   unsigned terminals_ = 0;             ///< levels at the inputs; a reset does not change them
-  std::array<Time, 16> last_edges_{};  ///< the latest edges at the terminals
+  std::array<Time, 16> last_edges_{};  ///< the times of the latest edges at the terminals
   /// The moments at which the running filter times end.
   std::array<std::optional<Moment>, 16> settling_;
   unsigned levels_ = 0;  ///< levels after inversion and filter
@@ -258,8 +259,9 @@ class Module {
   std::optional<Sample> sample_;
   Framing framing_ = Framing::Nothing;
   std::string frame_;
-  bool spoiled_ = false;  ///< a byte of `frame_` had a line error
-  /// The counters of function 08, and their counterparts in ASCII.
+  bool spoiled_ = false;  ///< in a frame: one of its bytes had a line error
+  /// The line tallies (wire.md, extensions), except those of overruns and of lost frames. In Modbus, the
+  /// first five are counters of function 08.
   struct Counts {
     unsigned bus_messages = 0;
     unsigned crc_errors = 0;
@@ -274,8 +276,8 @@ class Module {
   unsigned timeouts_ = 0;           ///< register 0x0304
   unsigned stores_ = 0;             ///< register 0x0305
   bool read_blank_memory_ = false;  ///< the last reset found nothing stored
-  Time stored_by_{0};               ///< the latest time at which the last command without reply is stored
-  Time timeout_stored_{0};          ///< the latest time at which the last timeout is stored
+  Time stored_by_{0};               ///< the time by which the last command without a reply has been stored
+  Time timeout_stored_{0};          ///< the time by which the last timeout has been stored
 
   // State of the latest request.
   Time now_{0};

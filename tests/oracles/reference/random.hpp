@@ -1,5 +1,5 @@
-// Random numbers that are the same on every platform. The standard specifies the numbers of its engine, but
-// not those of its distributions, so this file does not use the distributions.
+// Random numbers that are the same on every platform. The C++ standard specifies the numbers of its engines,
+// but not those of its distributions, so this file uses no distribution.
 #pragma once
 
 #include <cstdint>

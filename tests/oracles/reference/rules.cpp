@@ -7,7 +7,7 @@ namespace ex9000::reference {
 
 namespace {
 
-/// Rules of what the manuals describe.
+/// Rules that a module applies with extensions and without.
 const char* const kRules[] = {
     // wire.md 2
     "reset into ASCII",

@@ -1,4 +1,5 @@
-// Counts how often random sessions reach each row, refusal and exception of the specification.
+// Counts how often random sessions reach each rule that the reference names, for example a command, a refusal
+// or an exception.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +14,7 @@ namespace ex9000::reference {
 /// Counts how often each rule of a fixed list was reached, so that a rule that no session reaches is found.
 class Rules {
  public:
-  /// Without extensions, the list has only the rules of what the manuals describe.
+  /// Without extensions, the list does not contain the rules that only a module with extensions applies.
   explicit Rules(Extensions extensions = Extensions::Present);
 
   /// Counts `rule`. Throws std::logic_error if `rule` is not in the list.

@@ -14,23 +14,24 @@ namespace {
 
 using std::chrono::milliseconds;
 
-/// The session decides, sends and compares nothing within this time before or after a moment at which the
+/// The session sends nothing and compares nothing within this time before or after a moment at which the
 /// module changes by itself. This time covers one tick, and the time until the module executes a received
 /// request.
 constexpr milliseconds kMargin{3};
-/// Longer than the store of a command (wire.md 3), or of the timeout status and the enable after an expiry
-/// (wire.md 6).
+/// Longer than the store of a command (wire.md 3), or of the timeout status and the enable flag after an
+/// expiry (wire.md 6).
 constexpr milliseconds kStored{250};
 /// wire.md 3: the reply to a request that stores nothing starts within 20 ms.
 constexpr milliseconds kAnswers{20};
 constexpr milliseconds kAnswersStoring{200};
-/// Longer than the time until the reply to a request that stores nothing begins, at any baud rate. The player
-/// of transcripts (sim/app/play/player.cpp) waits equally long, so a transcript has the same timing there.
+/// Longer than the time until the reply to a request that stores nothing begins, at any baud rate, without a
+/// response delay. The player of transcripts (sim/app/play/player.cpp) waits equally long, so a transcript
+/// has the same timing there.
 constexpr milliseconds kNoAnswer{65};
-/// The time before the next step. If a reply is too long, its first extra byte arrives in this time, at 9600
-/// baud or more.
+/// The time for which the session listens for extra bytes, for example before a reset. If a reply is too
+/// long, its first extra byte arrives in this time, at 9600 baud or more.
 constexpr milliseconds kBetween{2};
-/// Longer than the debounce time of any switch; wire.md 2: INIT* is debounced.
+/// Longer than the debounce time of INIT* (wire.md 2).
 constexpr milliseconds kDebounced{100};
 
 std::string text_of(const Bytes& bytes) { return std::string(bytes.begin(), bytes.end()); }
@@ -40,8 +41,8 @@ bool printable(const std::string& text) {
                      [](char character) { return character >= 0x20 && character <= 0x7E; });
 }
 
-/// Returns whether the text can be a line of a transcript, in which `  ;` begins a comment and braces enclose
-/// a variable.
+/// Returns whether the text can be the text of a request in a transcript. There, two blanks and `;` begin a
+/// comment, and braces enclose a variable.
 bool can_be_written(const std::string& text) {
   return printable(text) && text.find("  ;") == std::string::npos && text.find('{') == std::string::npos;
 }
@@ -81,7 +82,8 @@ std::string Session::transcript() const {
 }
 
 bool Session::play(const Step& step) {
-  // The rules are moved before each step, because `play_step` copies the reference with its rules.
+  // The rules are moved before each step, so that `play_step` does not copy the rules of earlier steps with
+  // the reference.
   for (std::string& rule : reference_.take_rules()) {
     rules_.push_back(std::move(rule));
   }
@@ -124,7 +126,7 @@ void Session::set_format(LineFormat format) {
   target_.set_format(format);
 }
 
-/// Lets a short time pass that the transcript does not mention, and checks that nothing is sent.
+/// Lets a short time pass that the transcript does not mention, and checks that the module sends nothing.
 bool Session::nothing_more() {
   const play::Bytes heard = target_.listen(kBetween);
   return heard.empty() || differs("; nothing more", reply_line(heard));
@@ -167,8 +169,8 @@ bool Session::listen(milliseconds time) {
   lines_.push_back("wait " + std::to_string(time.count()) + "ms");
   const play::Bytes heard = target_.listen(time);
   reference_.pass(target_.now());
-  // Outputs and timeout status change immediately. The next request may arrive while the timeout is being
-  // stored.
+  // At a timeout, the outputs and the timeout status change immediately. The next request may arrive while
+  // the timeout is being stored.
   storing_timeout_ = false;
   if (might_expire && !reference_.expiry()) {
     timeout_stored_ = expired + kStored;
@@ -178,7 +180,7 @@ bool Session::listen(milliseconds time) {
 }
 
 /// Adds the difference to the transcript and returns false. `expected`: the next step of the transcript, or a
-/// comment if no step describes it.
+/// comment if no kind of step can express the expectation.
 bool Session::differs(const std::string& expected, const std::string& got) {
   lines_.push_back(expected);
   lines_.push_back("; but the firmware: " + got);
@@ -209,23 +211,24 @@ Time Session::takes(std::size_t bytes, LineFormat format) const {
 }
 
 /// Returns the time from the first start bit of a reply to the end of the first stop bit of its last byte. At
-/// that time the master has received the reply.
+/// the end of this time, the master has received the reply.
 Time Session::heard_in(std::size_t bytes) const {
   const unsigned second_stop_bit = format_ == LineFormat::k8N2 ? 1 : 0;
   return Time((bytes * character_bits(format_) - second_stop_bit) * 1'000'000'000ULL / rate_);
 }
 
 bool Session::play_step(const Send& send) {
-  // wire.md 7: a Modbus frame ends, and a reply starts, after 3.5 characters of 11 bits, or after 1.75 ms
-  // above 19200 baud.
+  // wire.md 7: a silence of 3.5 characters of 11 bits, or of 1.75 ms above 19200 baud, ends a Modbus frame.
+  // The reply starts no earlier.
   const Time modbus_silence = rate_ <= 19200 ? Time(77ULL * 1'000'000'000ULL / (2ULL * rate_))
                                              : Time(std::chrono::microseconds(1750));
   const Time turn_around = reference_.runs_modbus() ? modbus_silence : takes(1);
-  // The 20 and 200 ms count from the end of the response delay, if that is later.
+  // The 20 and 200 ms count from the end of the response delay, if the delay is longer than the turn-around.
   const Time delay = reference_.reply_delay() > turn_around ? reference_.reply_delay() : Time(0);
   const Time earliest = std::max(turn_around, delay);
-  // wire.md 3 allows 20 ms for Modbus too, but the silence alone takes 32 ms at 1200 baud and 16 ms at 2400
-  // baud.
+  // wire.md 7 allows 20 ms from the end of a Modbus frame, which is the end of its silence. Without a
+  // response delay, this limit is earlier: 20 ms after the last byte, or 5 ms after the silence if that is
+  // later.
   const Time answers = std::max<Time>(kAnswers + delay, turn_around + milliseconds(5));
 
   Answer answer;
@@ -248,7 +251,8 @@ bool Session::play_step(const Send& send) {
     }
   }
 
-  // The player sends a `bytes` line immediately, but any other request only when no more replies can arrive.
+  // The player of transcripts sends a `bytes` line immediately. Before any other request it checks that no
+  // more bytes arrive.
   behind_expiry_ += storing_timeout_ ? 1U : 0U;
   const bool behind_another = std::exchange(storing_, false) || storing_timeout_;
   storing_timeout_ = false;
@@ -264,7 +268,7 @@ bool Session::play_step(const Send& send) {
   answer = reference_.on_request(send.bytes, sent);
   ++transactions_;
   if (answer.reply.empty()) {
-    // wire.md 8: while one command is being stored, the module keeps one more frame.
+    // wire.md 8: while one command is being stored, the module keeps at least one more frame.
     storing_ = send.next_may_follow_at_once && answer.stores && reference_.runs_modbus() && !behind_another;
     if (storing_) {
       return listen(std::chrono::duration_cast<milliseconds>(modbus_silence) + milliseconds(2));
@@ -299,7 +303,7 @@ bool Session::play_step(const SendInAnotherFormat& send) {
   const Answer answer = trial.on_bytes(send.bytes, send.format,
                                        target_.now() + kBetween + takes(send.bytes.size(), send.format));
   if (answer.left_open != nullptr || !answer.reply.empty()) {
-    ++left_open_;  // the module receives some bytes correctly, but the master cannot read the reply
+    ++left_open_;  // the reference cannot predict the reply, or the master could not read it
     return true;
   }
   if (!listen(kBetween)) {
@@ -362,7 +366,7 @@ bool Session::play_step(const Init& init) {
 }
 
 /// Returns the beginning of a line about an input. A transcript cannot set inputs that its model does not
-/// have, so such a line becomes a comment.
+/// have, so a line about such an input becomes a comment.
 std::string Session::lacking(unsigned channel) const { return channel < reference_.row().inputs ? "" : "; "; }
 
 bool Session::play_step(const Input& input) {
@@ -387,7 +391,7 @@ std::string Session::sent_line(const Bytes& bytes) const {
                                : "bytes " + hex_of(bytes);
   }
   const std::string text = text_of(bytes);
-  const std::size_t behind = checksum_ ? 3 : 1;  // CHK and CR
+  const std::size_t behind = checksum_ ? 3 : 1;  // CR, and CHK before it if the checksum is enabled
   if (text.size() > behind && text.back() == '\r') {
     const std::string frame = text.substr(0, text.size() - behind);
     if (can_be_written(frame) && frame.front() != ' ' && frame.back() != ' ' &&

@@ -1,5 +1,5 @@
-// Plays a session on the firmware and on the reference: the actions of a master, and of a person at the
-// terminals of one module.
+// Plays a session on the firmware and on the reference. A session consists of the actions of a master and of
+// a person who operates the inputs, INIT*, the reset pin and the supply of one module.
 #pragma once
 
 #include <chrono>
@@ -19,11 +19,12 @@ namespace ex9000::reference {
 /// silence follows.
 struct Send {
   Bytes bytes;
-  /// If the request gets no reply, the next request may follow while the module is still storing.
+  /// If the module runs Modbus and the request gets no reply, the next request may follow while the module is
+  /// still storing the settings of this request.
   bool next_may_follow_at_once = false;
 };
-/// The master sends these bytes with another parity than the module has, and then uses the module's line
-/// format again.
+/// The master sends these bytes in another line format, `format`, and then uses the module's line format
+/// again. See `Module::on_bytes` for the formats that are permitted.
 struct SendInAnotherFormat {
   LineFormat format;
   Bytes bytes;
@@ -31,8 +32,8 @@ struct SendInAnotherFormat {
 struct Wait {
   std::chrono::milliseconds time;
 };
-/// Waits until the host watchdog expires in the time `before`. Does not wait if the host watchdog is not
-/// running.
+/// Waits until the earliest possible expiry of the host watchdog is `before` away. Does not wait if the host
+/// watchdog is not running, or if the wait would be shorter than 1 ms.
 struct WaitForExpiry {
   std::chrono::milliseconds before;
 };
@@ -54,17 +55,18 @@ struct Pulse {
 
 using Step = std::variant<Send, SendInAnotherFormat, Wait, WaitForExpiry, Reset, Power, Init, Input, Pulse>;
 
-/// Plays steps on a firmware module and on a reference module, from factory settings. `extensions`: those of
-/// the reference module; the firmware always has them. If a result could depend on the exact time at which
-/// the module changes by itself, for example because the host watchdog expires, the session waits. The
-/// specification defines that time to a tick, not to a nanosecond.
+/// Plays steps on a firmware module and on a reference module, from factory settings. `extensions`: whether
+/// the reference module has the extensions; the firmware always has them. The specification does not define
+/// exactly when the module changes by itself, for example when the host watchdog expires. If a result could
+/// depend on the exact time of such a change, the session waits until the change is over.
 class Session {
  public:
   explicit Session(const ModelRow& row, Extensions extensions = Extensions::Present);
 
-  /// Plays a step on both modules and compares reply, its time, outputs and LED. Returns false if they
-  /// differ; the last lines of the transcript describe the difference. Does not send a request whose reply
-  /// the specification leaves open.
+  /// Plays a step on both modules and compares the reply, the time of the reply, the outputs and the LED.
+  /// Does not compare the outputs and the LED while the module may be storing the last request. Returns false
+  /// if the modules differ; the last lines of the transcript describe the difference. Does not send a request
+  /// that `left_open` counts.
   bool play(const Step& step);
 
   [[nodiscard]] const Module& reference() const { return reference_; }
@@ -74,12 +76,13 @@ class Session {
   [[nodiscard]] std::vector<std::string> rules() const;
   /// Returns the number of requests that `Send` steps have sent.
   [[nodiscard]] std::uint64_t transactions() const { return transactions_; }
-  /// Returns the number of requests that ended less than 0.1 s before the host watchdog could expire.
+  /// Returns the number of these requests that ended less than 0.1 s before the host watchdog could expire.
   [[nodiscard]] std::uint64_t before_expiry() const { return before_expiry_; }
-  /// Returns the number of requests that were sent while the module might be storing an expiry.
+  /// Returns the number of `Send` requests that were sent while the module might be storing a timeout of the
+  /// host watchdog.
   [[nodiscard]] std::uint64_t behind_expiry() const { return behind_expiry_; }
-  /// Returns the number of requests that were not sent because the specification leaves their reply open, or
-  /// because the master could not read the reply.
+  /// Returns the number of requests that were not sent because the reference cannot predict what the module
+  /// does, or because the master could not read the reply.
   [[nodiscard]] std::uint64_t left_open() const { return left_open_; }
 
  private:
@@ -111,11 +114,11 @@ class Session {
 
   Module reference_;
   runner::CoreTarget target_;
-  /// Whether the module may be storing the last request.
+  /// Whether the module may be storing the settings of the last request.
   bool storing_ = false;
-  /// Whether the module may be storing the host watchdog's expiry.
+  /// Whether the module may be storing a timeout of the host watchdog.
   bool storing_timeout_ = false;
-  /// The time by which the latest timeout status has been stored, independently of later requests.
+  /// The time by which the latest timeout has been stored. Later requests do not change it.
   Time timeout_stored_{0};
   unsigned rate_ = 9600;
   LineFormat format_ = LineFormat::k8N1;

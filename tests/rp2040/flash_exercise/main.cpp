@@ -1,5 +1,5 @@
-// A program for the emulator: it erases, programs and reads the flash in an endless loop, while the interrupt
-// of the UART receives bytes. It runs from RAM, like an image.
+// A program for the emulator: it erases, programs and reads the flash in an endless loop, while the
+// interrupt handler of the UART receives bytes. The program runs from RAM, like an image.
 #include <array>
 #include <cstdint>
 
@@ -31,13 +31,13 @@ using LineEndTimer = OneShotTimer<1>;
 using Line = hal::pl011::Uart<0x4003'4000, kHertz, DriverEnablePin<kDriverEnable>, LineEndTimer>;
 using Watchdog = HardwareWatchdog<kClock.crystal / 1'000'000>;
 
-/// The test reads these words from a bank of RAM that images do not use.
+/// tests/boards/pico_flash_test.cpp reads these words. Images have no variables in this bank of RAM.
 struct Results {
   std::uint32_t received;    ///< bytes
   std::uint32_t unexpected;  ///< bytes with an error, or out of sequence
-  std::uint32_t rounds;      ///< a round is one erase, and then records up to the end of the sector
+  std::uint32_t rounds;      ///< a round erases the first sector and programs all its records
   std::uint32_t wrong;       ///< bytes that differ from the expected ones when they are read
-  std::uint32_t erasing;     ///< 1 during an erase
+  std::uint32_t erasing;     ///< 1 during an erase, otherwise 0
   std::uint32_t reason;      ///< ResetReason
 };
 // NOLINTNEXTLINE(performance-no-int-to-ptr): a fixed address
@@ -89,7 +89,8 @@ void program(std::uint32_t address) {
   wait();
 }
 
-/// Erases the sector. Suspends the erase once, and reads the other sector in the meantime.
+/// Erases the first sector. Suspends the erase once, and reads a record of the other sector while the erase
+/// is suspended.
 void erase() {
   results().erasing = 1;
   Flash::start_erase(kSector);
