@@ -161,6 +161,7 @@ class Looks(Panel):
         page.close()
         self.browser.until("document.querySelectorAll('.plate').length === 2")
         self.browser.until(f"document.getElementById('lost').textContent === '' && !{dot}")
+        # Without data-link, as before the first connection, the dot also shows that the page is not connected.
         self.assertTrue(self.browser.run(f"document.body.removeAttribute('data-link'); return {dot}"))
 
     def test_320_pixels_are_enough_for_long_names(self):

@@ -1,5 +1,6 @@
-"""Tests the panel's server: what it accepts and rejects while a master polls the line without errors, at which
-addresses and ports it listens, its end, and a page that does not read."""
+"""Tests what the panel's server accepts and rejects while a master polls the line without errors. Also tests at which
+addresses and ports the server listens, how the simulator ends while pages are open, and what happens if a page does not
+read."""
 
 import json
 import pathlib

@@ -156,8 +156,8 @@ class Browser:
         )
 
     def prefers(self, **features):
-        """Sets media features whose names begin with prefers-, for example color_scheme="dark". Sets all other media
-        features to their defaults."""
+        """Sets media features whose names begin with prefers-, for example color_scheme="dark". Ends the emulation
+        of all other media features."""
         media = [{"name": "prefers-" + name.replace("_", "-"), "value": value} for name, value in features.items()]
         self.devtools("Emulation.setEmulatedMedia", features=media)
 

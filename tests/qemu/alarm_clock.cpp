@@ -12,7 +12,7 @@ namespace {
 
 using std::chrono::nanoseconds;
 
-// GPTM3 is the alarm timer. The image uses the other timers.
+// GPTM3 is the timer of the alarm. Images use the other timers.
 constexpr std::uint32_t kTimers = 0x4003'0000;
 constexpr std::uint32_t kTimerSize = 0x1000;
 constexpr std::uint32_t kTimerCount = 4;
@@ -30,17 +30,17 @@ constexpr std::uint32_t kAlarmInterrupt = 35;
 constexpr std::uint32_t kSetEnable = 0xE000'E104;  // for interrupts from 32 on
 constexpr std::uint32_t kVectorTableOffset = 0xE000'ED08;
 constexpr std::uint32_t kExceptions = 16;
-/// The number of vectors in an image: 16 exceptions and 24 interrupts.
-constexpr std::uint32_t kVectors = kExceptions + 24;
+/// The number of vectors in an image: 16 exceptions and the interrupts 0 to 31.
+constexpr std::uint32_t kVectors = kExceptions + 32;
 
-// RAM between the data of an image at the bottom and the stack at the top. The emulator retranslates code if
-// data near it is written, so the data that the test bench writes is far from code.
+// Addresses in RAM between the data of an image at the bottom and the stack at the top. The emulator
+// retranslates code if data near it is written, so the data that the test bench writes is far from code.
 constexpr std::uint32_t kTable = 0x2000'8000;
 constexpr std::uint32_t kCode = 0x2000'9000;
 constexpr std::uint32_t kOrders = 0x2000'A000;
 constexpr std::uint32_t kThumb = 1;
 
-/// Offsets of the interrupt code's parameters. Each parameter is one word.
+/// Offsets of the interrupt code's parameters from kOrders. Each parameter is one word.
 constexpr std::uint32_t kNextAlarm = 0;  // clocks
 constexpr std::uint32_t kEdges = 4;      // number of alarms that make an edge instead of stopping the machine
 constexpr std::uint32_t kEdgePin = 8;    // mask
@@ -48,8 +48,8 @@ constexpr std::uint32_t kEdgeDirection = 12;
 constexpr std::uint32_t kEdgeData = 16;
 constexpr std::uint32_t kHalt = 20;  // if not 0, the machine halts after the gate
 constexpr std::uint32_t kLeft = 24;  // remaining clocks after the current part of the time
-/// The interrupt code reports its state as the distance from this address to the address of the byte that it
-/// loads at the gate.
+/// The interrupt code reports the UART flags and two pin levels as the distance from this address to the
+/// address of the byte that it loads at the gate.
 constexpr std::uint32_t kReportBase = 0x2000'8000;
 
 constexpr std::uint32_t kReceiverEmpty = 1U << 4U;
@@ -60,7 +60,7 @@ static_assert(board::kDriverEnable.mask() != board::kStatusLed.mask());
 constexpr std::uint32_t kUartFlags = 0x4000'C018;
 
 constexpr std::uint32_t kTickCounter = 0xE000'E018;
-/// The time from the alarm to the end of its interrupt: 29 instructions of 16 ns, rounded up.
+/// The time from the alarm to the end of its interrupt: 29 instructions of 16 ns, and 16 ns more.
 constexpr nanoseconds kInterruptTakes{480};
 constexpr nanoseconds kAtLeast{2000};
 
@@ -113,8 +113,8 @@ void AlarmClock::set_up() {
 }
 
 std::uint32_t AlarmClock::clocks(nanoseconds time) {
-  // The PLL supplies 200 MHz. The processor's clock divides it by 16 after a reset, and later by the divider
-  // that the image sets.
+  // The emulated processor's clock is 200 MHz divided by 16 after a reset, and later 200 MHz divided by the
+  // divider that the image sets.
   constexpr std::uint32_t kDivider = 16;
   constexpr std::int64_t kPllClock = 5;
   const std::int64_t period = kPllClock * (at_first_ ? kDivider : board::kClock.divider);
@@ -122,7 +122,8 @@ std::uint32_t AlarmClock::clocks(nanoseconds time) {
 }
 
 void AlarmClock::run_for(nanoseconds time) {
-  // The first alarm is not divided into parts (alarm_interrupt.inc), so it must end before the first tick.
+  // The time until the first alarm is not divided into parts (see alarm_interrupt.inc), so the first alarm
+  // must occur before the first tick.
   constexpr std::chrono::milliseconds kBeforeTicks{1};
   if (at_first_ && time > 2 * kBeforeTicks) {
     run_for(kBeforeTicks);
@@ -158,7 +159,7 @@ void AlarmClock::run(std::uint32_t clocks, const std::string& orders) {
 
 void AlarmClock::begin_to_run(std::uint32_t clocks, const std::string& orders) {
   std::string commands = orders;
-  if (at_first_ || ordered_ != clocks) {  // the same for each byte of a request
+  if (at_first_ || ordered_ != clocks) {  // often the same for several bytes of a request
     commands += QtestClient::write_command(kOrders + kNextAlarm, clocks);
     ordered_ = clocks;
   }
@@ -188,8 +189,8 @@ void AlarmClock::go_on() {
 /// Waits until the machine stops. Returns true if the processor waits at the gate, and false if the machine
 /// has stopped before a watched store.
 bool AlarmClock::wait_for_alarm() {
-  // The emulator can take seconds for an interrupt storm of 1.6 s, and more than `kHang` on a busy machine.
-  // It still replies to reads during that time.
+  // The emulator can take seconds for an interrupt storm of 1.6 s of emulated time, and more than `kHang` on
+  // a busy machine. The emulator still replies to reads during that time.
   constexpr int kMostQuestions = 5;
   for (int asked = 0; !machine_.gdb().has_packet() && !machine_.gate().has_bytes();) {
     if (!wait_for_any({&machine_.gdb().socket(), &machine_.gate()})) {
@@ -245,7 +246,7 @@ void AlarmClock::watch_stores(std::uint32_t address, std::uint32_t size) {
   }
 }
 
-/// While the emulator counts instructions, it stops before a watched store, and stops there again when it
+/// With the option -icount, the emulator stops before a watched store, and stops there again when it
 /// continues. Therefore this function removes the watchpoint while the emulator executes one instruction.
 bool AlarmClock::run_to_store(nanoseconds time) {
   if (at_store_) {

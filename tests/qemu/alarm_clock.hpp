@@ -11,7 +11,7 @@
 
 namespace ex9000::rig {
 
-/// The machine has halted: its image or its watchdog is about to reset it.
+/// The machine has halted, because its image or its watchdog is about to reset it.
 class Halted : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -19,24 +19,25 @@ class Halted : public std::runtime_error {
 
 /// The machine is stopped between calls. The same calls have the same effects, independently of the host,
 /// with one exception. When the emulator advances time for a processor that has just gone to sleep, it can
-/// lose the last instructions, depending on the host. About one in a hundred transcripts then ends up to 2 us
-/// later or earlier than in the previous run, or up to 7 us with input pulses.
+/// lose the last instructions, depending on the host. About one transcript in a hundred therefore ends
+/// earlier or later than in the previous run, by at most 2 us, or by at most 7 us with input pulses.
 ///
-/// GPTM3, which no image uses, interrupts when the time has elapsed. Its interrupt code is in RAM that no
-/// image uses, and reaches the gate (gate.cpp), where the processor waits. The image and its vectors are not
-/// changed: the processor uses a copy of the vectors with one more entry. Neither this interrupt nor the
-/// interrupts of the image can preempt another one. This interrupt delays those of the image by 0.5 us each
-/// time the machine stops, and uses as much stack as they do.
+/// The timer GPTM3, which no image uses, generates an interrupt when the requested time, or a part of it, has
+/// elapsed. The interrupt code is in RAM that no image uses. At the end of the requested time, the interrupt
+/// code reaches the gate (gate.cpp), where the processor waits. The image and its vectors are not changed:
+/// the processor uses a copy of the vectors with an entry for this interrupt. This interrupt and the
+/// interrupts of the image cannot preempt each other. This interrupt can delay an interrupt of the image by
+/// 0.5 us. It uses no more stack than an interrupt of the image.
 ///
-/// All functions throw std::runtime_error on an unexpected state, and Halted if the machine is about to be
-/// reset.
+/// The functions that access the emulator throw std::runtime_error on an unexpected state. The functions that
+/// run the machine throw Halted if the machine is about to be reset.
 class AlarmClock {
  public:
   explicit AlarmClock(Emulator& machine) : machine_(machine) {}
 
-  /// Prepares the alarm. Call it after each reset, before the first instruction.
+  /// Prepares the alarm. Call this after power-on and after each reset, before the first instruction.
   void set_up();
-  /// Runs the machine for `time`, but at least for 2.5 us.
+  /// Runs the machine for `time`, or for about 2.5 us if `time` is shorter.
   void run_for(std::chrono::nanoseconds time);
   /// Runs the machine and generates `edges` edges at an input, about one every 4 us. Returns the duration.
   std::chrono::nanoseconds make_edges(Pin pin, std::uint32_t edges);
@@ -44,15 +45,16 @@ class AlarmClock {
   /// Makes the machine also stop before each store to these bytes of the bus. After this call only
   /// `run_to_store` may run the machine.
   void watch_stores(std::uint32_t address, std::uint32_t size);
-  /// Runs the machine until the next watched store, at most for the `time` of the first call. Returns whether
-  /// the machine has stopped before a store.
+  /// Runs the machine until the next watched store, but at most for `time`. If the previous call has returned
+  /// true, this call ignores `time` and continues with the rest of the earlier time. Returns whether the
+  /// machine has stopped before a store.
   bool run_to_store(std::chrono::nanoseconds time);
 
   /// Halts the whole machine, for example for a reset. Before this call, only the processor waits. After this
   /// call the machine can be reset or can run again.
   void halt();
 
-  // --- state at the last stop ---
+  // --- state when the processor last reached the gate ---
 
   [[nodiscard]] bool receiver_empty() const;
   [[nodiscard]] bool driver_on() const;
@@ -66,12 +68,12 @@ class AlarmClock {
   bool wait_for_alarm();
 
   Emulator& machine_;
-  bool at_first_ = true;       ///< no alarm has occurred since the reset
+  bool at_first_ = true;       ///< the machine has not run since the last reset
   bool at_gate_ = false;       ///< the processor waits at the gate
   const char* go_on_ = "c";    ///< the debugger's packet that continues a machine that is not at the gate
   bool at_store_ = false;      ///< the machine has stopped before a store, and the alarm has not occurred yet
-  std::string watched_;        ///< the range in the debugger's format
-  std::uint32_t ordered_ = 0;  ///< the time until the next alarm, in clocks
+  std::string watched_;        ///< the watched range in the debugger's format
+  std::uint32_t ordered_ = 0;  ///< the time from the gate to the next alarm, in clocks
   std::uint32_t last_report_ = 0;  ///< the last report of the interrupt code
 };
 

@@ -14,7 +14,7 @@
 
 namespace ex9000::rig {
 
-/// The supply is off at first. All functions throw std::runtime_error if the emulator fails.
+/// The supply is off at first. The functions that access the emulator throw std::runtime_error if it fails.
 class EmulatedBoard {
  public:
   EmulatedBoard(const EmulatedBoard&) = delete;
@@ -22,15 +22,15 @@ class EmulatedBoard {
 
   [[nodiscard]] const Model& model() const { return model_; }
   [[nodiscard]] bool powered() const { return powered_; }
-  /// Connects INIT* to GND, or disconnects it.
+  /// Connects INIT* to GND if `asserted` is true; otherwise disconnects INIT*.
   void set_init(bool asserted);
 
-  /// Returns the output levels. Bit n is channel n.
+  /// Returns the output levels. Bit n is channel n. The levels are 0 if the supply is off.
   [[nodiscard]] std::uint16_t outputs();
   [[nodiscard]] bool led_lit();
   /// Returns the baud rate and the line format of the UART as the image has configured its registers. The
-  /// rate is 0 if the UART is off. Throws std::runtime_error if the line control register selects a format
-  /// that modules do not have, or enables the FIFOs.
+  /// rate is 0 if the supply or the UART is off, or if the divisor is 0. Otherwise throws std::runtime_error
+  /// if the line control register selects a format that modules do not have, or enables the FIFOs.
   [[nodiscard]] hal::SerialMode mode();
 
   /// Returns the emulator. Call it only while the board is powered.
@@ -40,19 +40,20 @@ class EmulatedBoard {
   void set_memory(const std::string& bytes) { system::write_file(directory_ / "memory", bytes); }
 
  protected:
-  /// Stores `settings` in the EEPROM. If the pointer is null, erases the EEPROM, which means factory
-  /// settings.
+  /// Stores `settings` in the EEPROM. If the pointer is null or the settings are the factory settings, erases
+  /// the EEPROM, which means factory settings.
   EmulatedBoard(const Model& model, const Settings* settings);
   ~EmulatedBoard() = default;
 
   /// Switches the supply. When the supply goes on, the machine is halted before its first instruction, and
-  /// only the EEPROM has kept its content. The start of an emulator takes most of the time of a short test.
-  /// Therefore this function resets an emulator that is already running, which must be halted, and fills RAM
-  /// with noise. The reset makes the emulator read the EEPROM's file again.
+  /// RAM contains noise. The start of an emulator takes most of the time of a short test. Therefore this
+  /// function resets an emulator that already exists, which must be halted. The reset makes the emulator read
+  /// the EEPROM's file again.
   void supply(bool on);
   /// Switches the supply off and kills the emulator with SIGKILL. The next `supply` starts a new emulator.
   void kill();
-  /// Resets the machine with the reset pin. The machine must be halted and stays halted.
+  /// Resets the machine with the reset pin. The machine must be halted and stays halted. Discards the bytes
+  /// from UART0 that have not been read.
   void pull_reset();
   /// Makes the board like a new one whose supply has just gone on: INIT* is disconnected, inputs are off, and
   /// the EEPROM contains `settings`, see the constructor.

@@ -8,7 +8,7 @@ namespace ex9000::rig {
 namespace {
 
 std::vector<std::string> command_of(const std::string& image, const std::string& memory) {
-  return {"setpriv",  // the emulator ends when the test ends
+  return {"setpriv",  // so that the emulator ends when the test ends
           "--pdeathsig",
           "KILL",
           "qemu-system-arm",
@@ -69,9 +69,9 @@ Emulator::Emulator(const std::string& image, const std::string& memory) {
   gate_.emplace(gate.accept());
 }
 
-/// With reboot=shutdown the emulator halts even if a reset is requested, so this function changes the action
-/// temporarily. The emulated UARTs ignore a reset, so this function also restores the registers of UART0 that
-/// affect a start.
+/// With reboot=shutdown, the emulator halts the machine when a reset is requested, so this function changes
+/// the action temporarily. The emulated UARTs ignore a reset, so this function also restores the registers of
+/// UART0 that affect the start of an image.
 void Emulator::reset() {
   qmp_->execute("set-action", "return", R"({"reboot": "reset"})");
   qmp_->execute("system_reset", "RESET");

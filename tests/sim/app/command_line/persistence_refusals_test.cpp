@@ -48,7 +48,7 @@ TEST(BadFile, AFileOfTheWrongSizeIsRefused) {
   }
 }
 
-TEST(BadFile, AReadOnlyFileIsRefusedForEveryUser) {
+TEST(BadFile, AFileWithoutWritePermissionIsRefused) {
   const Directory directory;
   write_file(directory / "image", some_image());
   fs::permissions(directory / "image", fs::perms(0444));

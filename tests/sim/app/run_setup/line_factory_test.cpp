@@ -1,4 +1,4 @@
-// Tests the lines that a setup describes.
+// Tests lines that are created from a setup: their input programs, their faults and the time of a byte.
 #include "sim/app/run_setup/line_factory.hpp"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,8 @@ using std::chrono::milliseconds;
 
 class MadeLine : public testing::Test {
  protected:
-  /// Makes a line of two modules and starts its programs. The line's time is then 100 ms.
+  /// Creates a line of two modules, starts its input programs and adds its faults. The line's time is then
+  /// 100 ms.
   void begin() {
     setup_.modules = {parse_module_spec("EX9055D@01"), parse_module_spec("EX9055D@02")};
     const Model& model = *find_model("EX9055D");
@@ -33,7 +34,7 @@ class MadeLine : public testing::Test {
   std::vector<std::string> notices_;
 };
 
-TEST_F(MadeLine, TheInputProgramsOfEachModuleRun) {
+TEST_F(MadeLine, TheInputProgramOfEachModuleRuns) {
   begin();
   line_->bus().run_for(microseconds(500));
   EXPECT_EQ(line_->module(0).input_levels(), 1U << 3U);
@@ -56,7 +57,7 @@ TEST_F(MadeLine, AFaultThatRecursKeepsItsPeriod) {
   setup_.faults[0].module = 0;
   begin();
   line_->bus().run_for(milliseconds(90));
-  EXPECT_EQ(notices_.size(), 8U);  // the beginning and the end, four times
+  EXPECT_EQ(notices_.size(), 8U);  // four beginnings and four ends
 }
 
 TEST_F(MadeLine, AByteTakesTenBitTimesWithAndWithoutStrictGaps) {

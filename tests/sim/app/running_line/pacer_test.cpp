@@ -1,5 +1,5 @@
-// Tests how long a frame has to wait on a line that follows the wall clock. The line is so slow that the
-// delays of a busy host are small in comparison. All expected times are lower bounds, in line time.
+// Tests how long the pacer delays a frame of the master. Virtual time passes so slowly that the delays of a
+// busy host are short in virtual time. All expected times are lower bounds, in virtual time.
 #include "sim/app/running_line/pacer.hpp"
 
 #include <gtest/gtest.h>
@@ -23,7 +23,8 @@ using FrameBytes = std::vector<std::uint8_t>;
 const FrameBytes kInputs2 = with_crc({0x02, 0x02, 0x00, 0x00, 0x00, 0x08});
 const FrameBytes kAllFirstOn = with_crc({0x00, 0x05, 0x00, 0x00, 0xFF, 0x00});
 
-/// A port that delivers bytes immediately and discards the replies.
+/// A port that gives its `Received` function to the test, so that the test can deliver bytes immediately.
+/// Discards the bytes from the line.
 class ImmediatePort final : public Port {
  public:
   explicit ImmediatePort(Received& received) : received_(received) {}
@@ -35,8 +36,8 @@ class ImmediatePort final : public Port {
   Received& received_;
 };
 
-/// Line time passes at 0.05 times the speed of the wall clock. At 115200 baud, T3.5 is 1.75 ms of line time,
-/// which takes 35 ms on the wall clock.
+/// Virtual time passes at 0.05 times the speed of the wall clock. At 115200 baud, T3.5 is 1.75 ms of virtual
+/// time, which takes 35 ms on the wall clock.
 constexpr Pace kSlow{VirtualTime(0), VirtualTime(0), true, 0.05};
 
 class PacedLine : public testing::Test {
@@ -51,7 +52,7 @@ class PacedLine : public testing::Test {
     pacer_->start();
   }
 
-  /// Runs until nothing on the line is in progress.
+  /// Runs until nothing is pending: see Line::pending.
   void rest() {
     while (line_.pending()) {
       ASSERT_GT(io_.run_one(), 0U);

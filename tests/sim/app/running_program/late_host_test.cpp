@@ -1,5 +1,5 @@
-// Tests the messages that the program prints if the host gives it no processor time, or if the program
-// reads two requests in one piece.
+// Tests the messages that the program prints if the host gives it no processor time for a while, or if the
+// program reads two requests in one piece.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
@@ -24,11 +24,11 @@ void suspend(int pid, std::chrono::milliseconds span) {
   int status = 0;
   ASSERT_EQ(waitpid(pid, &status, WUNTRACED), pid);
   ASSERT_TRUE(WIFSTOPPED(status));
-  std::this_thread::sleep_for(span);  // the test requires this delay; it does not wait for an event
+  std::this_thread::sleep_for(span);  // the test requires this delay; the sleep does not wait for an event
   kill(pid, SIGCONT);
 }
 
-/// Returns a request with function 01 for one coil of the module at `address`.
+/// Returns a request with function 01 for coil 0 of the module at `address`.
 std::vector<std::uint8_t> request(std::uint8_t address) {
   std::vector<std::uint8_t> frame{address, 1, 0, 0, 0, 1};
   const Crc16 crc = crc16({frame.data(), frame.size()});
@@ -39,7 +39,7 @@ std::vector<std::uint8_t> request(std::uint8_t address) {
 
 std::string text_of(const std::vector<std::uint8_t>& bytes) { return {bytes.begin(), bytes.end()}; }
 
-/// Returns the longest delay that the log reports.
+/// Returns the longest delay that the log reports; 0 if the log reports none.
 hal::doubles::VirtualTime longest_delay(const std::string& log) {
   const std::string lead = "the host was late by ";
   hal::doubles::VirtualTime longest{0};
@@ -58,9 +58,9 @@ TEST(LateHost, ALateHostIsReportedWithItsDelay) {
   ASSERT_EQ(client.receive_text(8), "!019052\r");  // the line runs
   suspend(simulator.pid(), std::chrono::milliseconds(300));
   // An event is due every 5 ms, so the program is late by at least 295 ms when it continues. It reports a
-  // delay only if that delay is at least twice the longest delay that it has reported before. If a busy host
-  // has caused a report before, this delay may not be reported, but then the earlier report states a delay of
-  // more than 147 ms.
+  // delay only if that delay is at least twice the longest delay that it has reported before. If the program
+  // does not report this delay, a busy host has caused an earlier report, which states a delay of at least
+  // 147 ms.
   for (unsigned reports = 1; longest_delay(simulator.output()) < std::chrono::milliseconds(147); ++reports) {
     ASSERT_TRUE(simulator.wait_for(": modules reply later", reports)) << simulator.output();
   }

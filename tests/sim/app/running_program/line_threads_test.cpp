@@ -41,7 +41,7 @@ TEST(LineThreads, LinesAreDistributedOverTheThreads) {
   EXPECT_EQ(used.count(&main), 0U);
 }
 
-/// Increments `count` again and again on the thread of `io`.
+/// Increments `count` again and again on the thread that runs `io`.
 void keep_counting(io_context& io, std::atomic<int>& count) {
   boost::asio::post(io, [&io, &count] {
     ++count;
@@ -66,16 +66,17 @@ TEST(LineThreads, NoHandlerOfALineRunsDuringAPause) {
       EXPECT_EQ(counts[1], before[1]);
     });
     for (const int before = counts[1]; counts[1] == before;) {
-      std::this_thread::yield();  // the handlers continue after the pause
+      std::this_thread::yield();  // waits until a handler runs after the pause
     }
   }
   threads.end();
   const int after = counts[0];
-  threads.pause_for([] {});  // no thread runs, so there is nothing to wait for
+  threads.pause_for([] {});  // does not wait, because no thread runs
   EXPECT_EQ(counts[0], after);
 }
 
-/// Starts threads as a user who may have no more processes, and prints why the start fails.
+/// Starts threads as a user who may start no more processes and threads, prints why the start fails, and
+/// ends the process.
 void start_without_permission() {
   constexpr uid_t kNobody = 65534;
   const rlimit none{0, 0};
@@ -96,7 +97,7 @@ TEST(LineThreadsDeathTest, AThreadThatCannotStartIsReported) {
               "^cannot start thread 1 of 2: Resource temporarily unavailable; use fewer with --threads\n$");
 }
 
-TEST(LineThreads, AnActionThatThrowsEndsThePause) {
+TEST(LineThreads, AnExceptionOfAnActionEndsThePauseAndReachesTheCaller) {
   io_context main;
   std::atomic<int> count{0};
   LineThreads threads(main, 2);

@@ -1,5 +1,5 @@
-// Tests lines of a bus file and of the command line in the running program: ports, faults, inputs and EEPROM
-// files.
+// Tests the running program with the lines of a bus file and with a line of the command line: ports, threads,
+// faults, inputs, EEPROM files, logs and error messages.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -29,7 +29,7 @@ using std::chrono::milliseconds;
 
 bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
-/// A bus file in its own directory.
+/// A bus file in its own temporary directory.
 class BusFile {
  public:
   explicit BusFile(const std::string& text) { write_file(path(), text); }
@@ -39,7 +39,7 @@ class BusFile {
   Directory directory_;
 };
 
-/// Runs the program with a bus file.
+/// Runs the program with a bus file and a control socket.
 class Lines {
  public:
   explicit Lines(const std::string& text, const std::vector<std::string>& more = {})
@@ -78,7 +78,7 @@ constexpr const char* kHallAndYard = R"({"lines": [
   {"name": "yard", "pty": "yard.tty", "tcp": 0, "line": "instant",
    "modules": [{"model": "EX9052D", "address": "01"}]}]})";
 
-/// Debian permits 128 inotify instances for each user.
+/// By default, Debian permits 128 inotify instances for each user.
 TEST(Lines, ThePseudoTerminalsOfAThreadShareOneInotifyInstance) {
   Lines lines(kHallAndYard, {"--threads", "1"});
   int instances = 0;
@@ -89,7 +89,7 @@ TEST(Lines, ThePseudoTerminalsOfAThreadShareOneInotifyInstance) {
   EXPECT_EQ(instances, 1);
 }
 
-/// Reads `size` bytes. Returns fewer only if the program hangs.
+/// Reads until at least `size` bytes have arrived. Returns fewer only if the program hangs or ends.
 std::vector<std::uint8_t> read_exactly(Terminal& terminal, std::size_t size) {
   std::vector<std::uint8_t> bytes;
   while (bytes.size() < size) {
@@ -161,7 +161,7 @@ TEST(Lines, ModuleNumbersContinueFromLineToLine) {
   EXPECT_EQ(ask(yard, "@01"), ">8000");
 }
 
-TEST(Lines, FaultsAffectTheNamedLineOnly) {
+TEST(Lines, FaultsAffectOnlyTheirOwnLine) {
   Lines lines(kHallAndYard, {"--log"});
   Terminal hall(lines / "hall.tty", 9600);
   Terminal yard(lines / "yard.tty", 9600);
@@ -175,7 +175,8 @@ TEST(Lines, FaultsAffectTheNamedLineOnly) {
   EXPECT_EQ(ask(hall, "$01M"), "!019042D");
   yard.type("$01M\r");
   hall.type("$02M\r");
-  EXPECT_TRUE(lines.process().wait_for("  > master  $02M"));  // on the line before the faults end
+  // The requests are on the lines before the faults end.
+  EXPECT_TRUE(lines.process().wait_for("  > master  $02M"));
   EXPECT_TRUE(lines.process().wait_for("  > master  $01M", 2));
   EXPECT_TRUE(
       yard.read(milliseconds(100))
@@ -190,7 +191,7 @@ TEST(Lines, FaultsAffectTheNamedLineOnly) {
   EXPECT_EQ(ask(hall, "$02M"), "!029055");
 }
 
-TEST(Lines, RunOnAnyNumberOfThreadsWithLogCaptureAndCommands) {
+TEST(Lines, RunOnOneTwoOrEightThreadsWithLogCaptureAndCommands) {
   constexpr int kRequests = 50;
   for (const char* threads : {"1", "2", "8"}) {
     Lines lines(R"({"lines": [
@@ -227,7 +228,7 @@ TEST(Lines, RunOnAnyNumberOfThreadsWithLogCaptureAndCommands) {
   }
 }
 
-TEST(Lines, TheLinesOfTheExampleBusFileStartAndTheirModulesReply) {
+TEST(Lines, TheLinesOfTheExampleBusFileStartAndAModuleReplies) {
   std::string example = run({simulator_path(), "--example"}).output;
   const std::string port = "127.0.0.1:5020";
   ASSERT_TRUE(has(example, port));
@@ -347,13 +348,13 @@ TEST(LineOfTheCommandLine, RunsTheFaultsAndInputProgramsOfItsOptions) {
   ControlClient control(simulator.directory() + "/control");
   EXPECT_EQ(control.ask("faults"), "ok 2 faults: 1* x1 1 late-reply 20ms; 2 x0 2 gone at 1h");
   Terminal terminal(simulator.tty(), 9600);
-  EXPECT_EQ(ask(terminal, "$01M"), "!019042D");  // the square wave has ten periods in these 20 ms
+  EXPECT_EQ(ask(terminal, "$01M"), "!019042D");  // during this delay of 20 ms the square wave has ten periods
   const std::string some = ask(terminal, "#025");
   EXPECT_EQ(some.rfind("!02", 0), 0U);
   EXPECT_GT(std::stoul(some.substr(3)), 5U);
 }
 
-/// Returns how often a fault has taken effect after each of 30 commands.
+/// Sends 30 commands. Returns, as text, how often a fault has taken effect after each command.
 std::string occurrences(const std::string& seed) {
   SimulatorProcess simulator({"EX9042D@01", "--line", "instant", "--control", "control", "--fault",
                               "lost-reply with probability 0.5", "--seed", seed});
@@ -365,7 +366,7 @@ std::string occurrences(const std::string& seed) {
     while (control.ok("1 outputs") != "000" + std::string(1, digit)) {
     }
     std::string faults = control.ok("faults");
-    while (has(faults, "*")) {  // the reply has not ended
+    while (has(faults, "*")) {  // the fault is in progress until the reply ends
       faults = control.ok("faults");
     }
     counts += faults.substr(faults.find(" x"), 4) + ",";
@@ -373,14 +374,15 @@ std::string occurrences(const std::string& seed) {
   return counts;
 }
 
-TEST(LineOfTheCommandLine, WithEqualSeedsAFaultAffectsTheSameReplies) {
+TEST(LineOfTheCommandLine, TheSeedDeterminesWhichRepliesAFaultAffects) {
   const std::string of_seed = occurrences("7");
   EXPECT_EQ(occurrences("7"), of_seed);
   EXPECT_NE(occurrences("8"), of_seed);
 }
 
-// Stations of faults are attached after the modules, and the log has no names for them.
-TEST(LineOfTheCommandLine, BytesThatNoModuleHasSentAreReceivedAndLogged) {
+// Faults attach stations to the bus after the stations of the modules. The log has no names for the stations
+// of faults.
+TEST(LineOfTheCommandLine, BytesOfFaultsReachTheMasterAndForeignTrafficIsLogged) {
   SimulatorProcess simulator({"EX9042D-M@01", "--control", "control", "--log"});
   ControlClient control(simulator.directory() + "/control");
   Terminal terminal(simulator.tty(), 9600);
@@ -401,7 +403,7 @@ TEST(LineOfTheCommandLine, BytesThatNoModuleHasSentAreReceivedAndLogged) {
   EXPECT_EQ(simulator.end(SIGTERM), 0);
 }
 
-TEST(LineOfTheCommandLine, TheBeginningAndTheEndOfFaultsArePrinted) {
+TEST(LineOfTheCommandLine, TheBeginningAndTheEndOfAFaultArePrintedWithTheirTimes) {
   SimulatorProcess simulator({"EX9042D", "--fault", "gone at 300ms for 100ms"});
   EXPECT_TRUE(simulator.wait_for("fault 1 occurs: gone at 300ms for 100ms")) << simulator.output();
   EXPECT_TRUE(simulator.wait_for("fault 1 is over: gone at 300ms for 100ms")) << simulator.output();

@@ -1,4 +1,4 @@
-// Tests the program in stepped time, as the test of a master uses it.
+// Tests the program in stepped time, as a test of a master uses the program.
 #include <gtest/gtest.h>
 
 #include <csignal>
@@ -63,7 +63,7 @@ TEST(SteppedProgram, AHalfClosedMasterGetsItsReply) {
   EXPECT_EQ(master.receive_text(9), "!019042D\r");
 }
 
-TEST(SteppedProgram, AMasterThatCrashesDuringItsReplyDoesNotStopTheProgram) {
+TEST(SteppedProgram, AMasterThatResetsItsConnectionDoesNotStopTheProgram) {
   for (int round = 0; round < 5; ++round) {
     Stepped stepped({"EX9042D", "--tcp", "0"});
     SocketClient crashing(stepped.simulator.tcp_port());
@@ -73,7 +73,8 @@ TEST(SteppedProgram, AMasterThatCrashesDuringItsReplyDoesNotStopTheProgram) {
       crashing.send("$01M\r");
     }
     crashing.abort();
-    other.send("\r$01M\r");  // the abort may have discarded the requests of `crashing`
+    // The abort may have discarded the requests of `crashing`, but `advance` waits for 5 bytes.
+    other.send("\r$01M\r");
     EXPECT_EQ(stepped.control.line().rfind("ok ", 0), 0U);
     EXPECT_EQ(stepped.simulator.end(SIGTERM), 0);
   }
@@ -89,7 +90,7 @@ TEST(SteppedProgram, TheSameCommandsProduceTheSameBytesAtTheSameTimes) {
       master.type("@01\r");
       text += stepped.control.ok("advance 1s after 4 quiet") + " " + stepped.control.ok("sent") + "\n";
     }
-    EXPECT_EQ(stepped.control.ok("advance 2h"), "3600.1");  // the program ends after --for
+    EXPECT_EQ(stepped.control.ok("advance 2h"), "3600.1");  // --for ends the program at this time
     EXPECT_EQ(stepped.simulator.wait(), 0);
     const std::string& output = stepped.simulator.output();
     return text + output.substr(output.find("press Ctrl-C to end")) +
@@ -111,14 +112,15 @@ TEST(SteppedProgram, ASignalEndsTheProgramDuringALongAdvance) {
 TEST(SteppedProgram, AFullPortIsReported) {
   Stepped stepped({"EX9042D"});
   const Terminal silent(stepped.simulator.tty(), 9600);
-  // Foreign traffic reaches the port like a reply; a pseudo-terminal holds some kilobytes.
+  // Foreign traffic reaches the port like a reply. A pseudo-terminal holds only some kilobytes.
   stepped.control.ok("fault foreign-traffic 2430314D0D every 10ms");
-  // `send` does not wait for the reply, because `wait_for` has to read the log while time passes.
+  // The test does not wait for the reply to the command, because `wait_for` has to read the output of the
+  // program while time passes.
   stepped.control.send("advance 60s\n");
   EXPECT_TRUE(stepped.simulator.wait_for("a port is full: ")) << stepped.simulator.output();
 }
 
-TEST(SteppedProgram, TheBaudRateOfATcpPortIsSetOnTheControlSocket) {
+TEST(SteppedProgram, TheControlSocketSetsTheBaudRateOfALineWithATcpPort) {
   Stepped stepped({"EX9042D@01,baud=19200", "--baud", "9600", "--tcp", "0"});
   SocketClient master(stepped.simulator.tcp_port());
   master.send("$01M\r");
@@ -134,7 +136,7 @@ TEST(SteppedProgram, AWaitingAdvanceIsReplacedByALaterOne) {
   Stepped stepped({"EX9042D"});
   stepped.control.send("advance 1s after 5\n");
   ControlClient other(stepped.simulator.directory() + "/ctl");
-  other.ok("list");  // by then the first command has arrived
+  other.ok("list");  // when this reply arrives, the first command has arrived too
   EXPECT_EQ(other.ok("advance 1s"), "1.1");
   EXPECT_EQ(stepped.control.line().rfind("error: ", 0), 0U);
   EXPECT_EQ(stepped.control.ok("advance 1s"), "2.1");

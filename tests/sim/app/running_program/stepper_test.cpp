@@ -1,4 +1,4 @@
-// Tests `advance`: the events that it waits for, the time that it lets pass, and its replies.
+// Tests the command `advance`: the events that it waits for, the time that it lets pass, and its replies.
 #include "sim/app/running_program/stepper.hpp"
 
 #include <gtest/gtest.h>
@@ -16,12 +16,12 @@ namespace {
 using std::chrono::milliseconds;
 using FrameOfBytes = std::vector<std::uint8_t>;
 
-/// A port in memory. As in the kernel, the bytes of a master wait until `tell` or until the simulator reads.
+/// A port in memory. As in the kernel, the bytes that a master writes wait until the simulator reads them.
 class FakePort final : public Port {
  public:
   void start(Received received) override { received_ = std::move(received); }
   void resume() override {
-    EXPECT_TRUE(paused_ || receiving_) << "no port waits";
+    EXPECT_TRUE(paused_ || receiving_) << "resume was called, but the port does not wait";
     paused_ = false;
   }
   void read_waiting() override {
@@ -198,7 +198,7 @@ TEST_F(StepperTest, SendsAllAvailableBytesAndNotOnlyTheGivenNumber) {
   EXPECT_EQ(other_.port->take_read(), "!019052\r");
 }
 
-TEST_F(StepperTest, BytesReadTogetherFollowEachOtherWithoutAGap) {
+TEST_F(StepperTest, BytesThatArriveBeforeTheSameAdvanceFollowEachOtherWithoutAGap) {
   const std::vector<std::uint8_t> request = with_crc({2, 1, 0, 0, 0, 13});
   line_.port->write(FrameOfBytes(request.begin(), request.begin() + 3));
   line_.port->tell();
@@ -213,14 +213,15 @@ TEST_F(StepperTest, BytesOfTwoAdvancesAreSeparatedByTheAdvancedTime) {
   advance("20ms after 3");
   line_.port->write(FrameOfBytes(request.begin() + 3, request.end()));
   advance("50ms after 5");
-  EXPECT_EQ(line_.port->take_read(), "");  // a silence of more than 3.5 characters has cut the frame in two
+  EXPECT_EQ(line_.port->take_read(), "");  // a silence of more than 3.5 characters has split the frame
 }
 
 TEST_F(StepperTest, QuietEndsWhenTheReplyIsComplete) {
   other_.port->write("$01M\r");
   const std::string answer = advance("10s after 5 quiet");
   EXPECT_EQ(other_.port->take_read(), "!019052\r");
-  // 5 + 1 + 8 characters of 1.0417 ms, and the time to switch the driver. This line has no Modbus module.
+  // 5 + 1 + 8 characters of 1.0417 ms, and the time to switch the driver. No module of this line uses Modbus,
+  // so `quiet` does not wait for the silence after a Modbus frame.
   const double took = std::stod(answer.substr(3)) - 0.1;
   EXPECT_GT(took, 0.0145);
   EXPECT_LT(took, 0.0147);

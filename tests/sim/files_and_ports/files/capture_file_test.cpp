@@ -1,4 +1,5 @@
-// Tests the file of a capture: when the program creates, overwrites or keeps a file.
+// Tests the file of a capture: when the program creates, overwrites, removes or keeps a file, and when it
+// refuses a path or reports an error.
 #include "sim/files_and_ports/files/capture_file.hpp"
 
 #include <fcntl.h>
@@ -62,7 +63,7 @@ TEST(CaptureFile, AnExistingFileIsNotOverwrittenBeforeTheCaptureBegins) {
   EXPECT_EQ(bytes_of_file(directory / "a"), "one");
 }
 
-TEST(CaptureFile, IsRemovedIfTheCaptureNeverBegan) {
+TEST(CaptureFile, ANewFileIsRemovedIfTheCaptureDoesNotBegin) {
   const Directory directory;
   {
     const CaptureFile file(directory / "a", kPlace);
@@ -122,7 +123,8 @@ TEST(CaptureFile, APipeIsAcceptedIfItHasAReader) {
   close(reader);
 }
 
-/// The reader reads only when the pipe is full, so a write that does not wait for the reader fails.
+/// The reader reads only when the pipe is full or the writer has ended, so a write that does not wait for the
+/// reader fails.
 TEST(CaptureFile, WaitsForTheReaderOfAFullPipe) {
   const Directory directory;
   ASSERT_EQ(mkfifo((directory / "a").c_str(), 0600), 0);

@@ -1,4 +1,5 @@
-// Tests the file of a module's EEPROM: which files are opened, created, rejected and kept.
+// Tests the file of a module's EEPROM: which files are opened, created and refused, and how they are written
+// and locked.
 #include "sim/files_and_ports/files/eeprom_file.hpp"
 
 #include <gtest/gtest.h>
@@ -35,7 +36,7 @@ constexpr std::size_t kImageSize = 8192;
 
 using Image = std::vector<std::uint8_t>;
 
-/// Returns an image in which no two pages are equal.
+/// Returns an image in which no two pages of 32 bytes are equal.
 Image some_image() {
   Image image(kImageSize);
   for (std::size_t i = 0; i < image.size(); ++i) {
@@ -46,7 +47,7 @@ Image some_image() {
 
 std::string text_of(const Image& image) { return {image.begin(), image.end()}; }
 
-/// Returns the message of the exception that `act` throws; empty if it throws none.
+/// Returns the message of the std::invalid_argument that `act` throws; empty if `act` throws nothing.
 std::string refusal(const std::function<void()>& act) {
   try {
     act();
@@ -70,7 +71,7 @@ bool write_byte(const EepromFile& file, std::uint16_t address, std::uint8_t byte
   return file.write(address, {&byte, 1});
 }
 
-/// Limits the size of files that this process writes while the object lives.
+/// Limits the size of files, in bytes, that this process can write while the object exists.
 class FileSizeLimit {
  public:
   explicit FileSizeLimit(rlim_t limit) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
@@ -90,7 +91,7 @@ class FileSizeLimit {
   void (*handler_)(int);
 };
 
-TEST(EepromFile, AMissingFileIsReportedAndNotCreated) {
+TEST(EepromFile, AMissingFileIsNotFoundAndNotCreated) {
   const Directory directory;
   const EepromFile file(directory / "a");
   EXPECT_FALSE(file.found());
@@ -207,7 +208,7 @@ TEST(EepromFile, AFileOfTheWrongSizeIsRefusedAndNotChanged) {
   }
 }
 
-TEST(EepromFile, AReadOnlyFileIsRefusedForEveryUser) {
+TEST(EepromFile, AFileWithoutWritePermissionIsRefused) {
   const Directory directory;
   write_file(directory / "a", text_of(some_image()));
   for (const fs::perms mode : {fs::perms(0444), fs::perms(0400), fs::perms(0)}) {
@@ -231,7 +232,7 @@ TEST(EepromFile, DirectoriesPipesAndDevicesAreRefusedWithoutBlocking) {
   EXPECT_EQ(directory.contents(), before);
 }
 
-TEST(EepromFile, OnlyAMissingFileIsReadAsNoImage) {
+TEST(EepromFile, AMissingFileIsReadAsNoImageAndAPathThroughAFileIsRefused) {
   const Directory directory;
   write_file(directory / "a", text_of(some_image()));
   EXPECT_TRUE(read_eeprom_file(directory / "a"));
@@ -260,7 +261,7 @@ TEST(EepromFile, AFileThatAnotherProgramHasCreatedIsNotReplaced) {
   EXPECT_EQ(directory.contents(), before);
 }
 
-TEST(EepromFile, AFileInUseIsRefusedUnderAnyNameUntilItIsReleased) {
+TEST(EepromFile, AFileInUseIsRefusedUnderEachOfItsNamesUntilItIsReleased) {
   const Directory directory;
   write_file(directory / "a", text_of(some_image()));
   fs::create_symlink(directory / "a", directory / "symbolic");

@@ -1,4 +1,5 @@
-// Tests how bytes with wrong parity are distinguished from other bytes: POSIX.1-2017, 11.2.2, PARMRK.
+// Tests how bytes with line errors (wrong parity or a framing error) are distinguished from other bytes:
+// POSIX.1-2017, 11.2.2, PARMRK.
 #include "sim/files_and_ports/ports/parity_marks.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Tests the program's ports other than the pseudo-terminal: TCP and a real serial port.
+// Tests the program's ports other than the pseudo-terminal: TCP ports and serial ports.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <poll.h>
@@ -35,7 +35,7 @@ void expect_refused(const Finished& finished, const std::string& names, const st
 
 class Tcp : public testing::TestWithParam<const char*> {};
 
-TEST_P(Tcp, WithoutPtyThereIsNoPseudoTerminal) {
+TEST_P(Tcp, WithTcpAndWithoutPtyThereIsNoPseudoTerminal) {
   SimulatorProcess simulator({"EX9042D@05", "--tcp", "0", "--line", GetParam()});
   SocketClient client(simulator.tcp_port());
   client.send("$05M\r");
@@ -57,7 +57,7 @@ TEST_P(Tcp, ATcpPortAndAPseudoTerminalReachTheSameLine) {
   EXPECT_EQ(terminal.read_line(), ">0001\r");
 }
 
-TEST_P(Tcp, SeveralClientsShareTheLine) {
+TEST_P(Tcp, TwoClientsShareTheLine) {
   SimulatorProcess simulator({"EX9042D@05", "--tcp", "0", "--line", GetParam()});
   SocketClient first(simulator.tcp_port());
   auto second = std::make_unique<SocketClient>(simulator.tcp_port());
@@ -82,10 +82,11 @@ TEST_P(Tcp, AHalfClosedClientGetsItsReplyAndIsThenDisconnected) {
 }
 
 /// Sends the request, and reads until `reply` arrives. Sends the request again if nothing has arrived for a
-/// second, at most 60 times in total. Returns all bytes that have arrived.
+/// second, at most 60 times in total. Returns the bytes that have arrived; bytes after the reply may be
+/// missing.
 std::string heard_by_asking_again(SocketClient& client, const std::string& request,
                                   const std::string& reply) {
-  // A busy machine can only cause more requests. The number of tries only detects a program that hangs.
+  // A busy machine can only cause more requests. The limit of 60 only detects a program that hangs.
   constexpr std::chrono::seconds kPatience{1};
   std::string heard;
   for (int tries = 0; tries < 60 && heard.find(reply) == std::string::npos; ++tries) {
@@ -107,7 +108,8 @@ TEST_P(Tcp, AClientThatResetsItsConnectionDoesNotAffectOthers) {
     client.send("$05M\r");
     client.abort();
   }
-  // The replies may collide with the next request, so the master repeats the request when the line is quiet.
+  // The replies to the aborted clients may collide with the request of `other`. `other` therefore repeats its
+  // request when nothing has arrived for a second.
   EXPECT_NE(heard_by_asking_again(other, "\r$052\r", "!05400600\r").find("!05400600\r"), std::string::npos);
   EXPECT_EQ(simulator.end(SIGTERM), 0);
 }
@@ -119,7 +121,7 @@ TEST_P(Tcp, AFloodOfInvalidBytesDoesNotBlockTheLine) {
     flooder.send(std::vector<std::uint8_t>(20'000, 'x'));
   }
   SocketClient client(simulator.tcp_port());
-  // The request and the reply may collide with the flood, so the client repeats the request.
+  // The request and the reply may collide with the bytes of `flooder`, so the client repeats the request.
   EXPECT_NE(heard_by_asking_again(client, "\r$05M\r", "!059042D\r").find("!059042D\r"), std::string::npos);
 }
 
@@ -158,7 +160,7 @@ TEST(TcpPort, ListensOnTheGivenAddress) {
   EXPECT_NE(simulator.output().find("  TCP " + host + ":"), std::string::npos) << simulator.output();
 }
 
-TEST(TcpPort, ListensOnAnAddressOfIpv6) {
+TEST(TcpPort, ListensOnAnIpv6Address) {
   if (!fs::exists("/proc/net/if_inet6")) {
     GTEST_SKIP() << "this machine has no IPv6";
   }
@@ -167,7 +169,7 @@ TEST(TcpPort, ListensOnAnAddressOfIpv6) {
   EXPECT_NE(simulator.output().find("  TCP " + host + ":"), std::string::npos) << simulator.output();
 }
 
-// The program must not poll clients that have to wait for a full line.
+// The program must not poll clients that have to wait because the line is full.
 TEST(TcpPort, AWaitingClientUsesLittleProcessorTime) {
   SimulatorProcess simulator({"EX9042D@05,baud=1200", "--tcp", "0"});
   SocketClient flooder(simulator.tcp_port());
@@ -183,10 +185,11 @@ TEST(TcpPort, AWaitingClientUsesLittleProcessorTime) {
     stat >> user >> system;
     return user + system;
   };
-  // Gives the program time to read as much as it accepts. On a busy machine the measurement includes a part
-  // of this work, which takes far less processor time than a program that polls.
+  // Gives the program time to read as much as it accepts. On a busy machine the measurement can include a
+  // part of this work, which takes far less processor time than polling.
   EXPECT_TRUE(flooder.hears_nothing_for(std::chrono::milliseconds(200)));
-  // Compares processor time with the wall clock, because a program that polls uses all the time that it gets.
+  // Compares processor time with the wall clock, because a program that polls uses all the processor time
+  // that it gets.
   const auto began = std::chrono::steady_clock::now();
   const long before = ticks();
   EXPECT_TRUE(flooder.hears_nothing_for(std::chrono::milliseconds(1000)));
@@ -210,7 +213,7 @@ TEST(TcpPort, APortInUseIsRefusedAndCanBeReusedAfterItsProcessIsKilled) {
   EXPECT_EQ(heir.receive_text(9), "!059042D\r");
 }
 
-TEST(TcpPort, AnAddressOfAnotherHostIsRefused) {
+TEST(TcpPort, AnAddressOfAnotherHostAndANameOtherThanLocalhostAreRefused) {
   expect_refused(run({simulator_path(), "EX9042D", "--tcp", "192.0.2.1:5020"}), "--tcp 192.0.2.1:5020",
                  "name");
   expect_refused(run({simulator_path(), "EX9042D-M", "--modbus-tcp", "192.0.2.1:502"}),
@@ -219,7 +222,8 @@ TEST(TcpPort, AnAddressOfAnotherHostIsRefused) {
                  "--tcp: 'no.such.host.invalid:5020'", "expected a numeric address or localhost");
 }
 
-/// The far end of a serial cable. The near end is the device that the program opens.
+/// A pseudo-terminal that replaces a serial cable. This object holds the far end. The near end is the device
+/// that the program opens.
 class Cable {
  public:
   Cable() : far_(posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC)) {
@@ -237,14 +241,14 @@ class Cable {
   void write(const std::string& text) const {
     ASSERT_EQ(::write(far_, text.data(), text.size()), static_cast<ssize_t>(text.size()));
   }
-  /// Returns `count` bytes, or fewer if no byte arrives for a minute.
+  /// Returns `count` bytes, or fewer if no byte arrives for a minute or if reading fails.
   [[nodiscard]] std::string read(std::size_t count) const {
     std::string bytes;
     while (bytes.size() < count && read_one(bytes)) {
     }
     return bytes;
   }
-  /// Returns the bytes up to CR, or fewer if no byte arrives for a minute.
+  /// Returns the bytes up to CR, or fewer if no byte arrives for a minute or if reading fails.
   [[nodiscard]] std::string read_line() const {
     std::string line;
     while ((line.empty() || line.back() != '\r') && read_one(line)) {
@@ -256,8 +260,8 @@ class Cable {
     tcgetattr(far_, &settings);
     return settings;
   }
-  /// Gives the port settings that another program may have left. All of them are unsuitable for a line of
-  /// modules, except the 8 data bits that a pseudo-terminal always has.
+  /// Gives the port settings that another program may have left. Most of them are unsuitable for a line of
+  /// modules. A pseudo-terminal always has 8 data bits.
   void leave_set_for_something_else() const {
     termios settings{};
     tcgetattr(far_, &settings);
@@ -308,7 +312,8 @@ TEST(SerialPort, ConnectsTheModulesToItsLine) {
   EXPECT_EQ(simulator.end(SIGTERM), 0);
 }
 
-// Adapters have control signals that modules do not have. CTS and carrier may never become active.
+// Adapters have control signals that modules do not have. CTS and carrier detect may never become active, so
+// the program must ignore them.
 TEST(SerialPort, IsSetToTheLinesBaudRateAndRawModeWithoutFlowControl) {
   const Cable cable;
   cable.leave_set_for_something_else();
@@ -355,7 +360,7 @@ TEST(SerialPort, ALongReplyIsSentCompletely) {
   EXPECT_EQ(cable.read(echo.size()), echo);
 }
 
-// Without --echo, a module would treat its own reply as the same request again.
+// Without --echo, the module would treat the echo of its reply as the same request again.
 TEST(SerialPort, TheEchoOfAnAdapterIsIgnoredWithTheEchoOption) {
   const Cable cable;
   SimulatorProcess simulator({"EX9042D-M@01", "--serial", cable.device(), "--echo"});

@@ -1,4 +1,4 @@
-// Tests the clients of a TCP port: their limit, and their end.
+// Tests the clients of a TCP port: the limit of their number, and the linger time.
 #include "sim/files_and_ports/ports/tcp_port.hpp"
 
 #include <gtest/gtest.h>
@@ -19,8 +19,8 @@ using boost::asio::ip::tcp;
 
 constexpr std::size_t kMostMasters = 64;
 
-/// Runs one handler. Returns false if the port does nothing for 60 s, because only a port that hangs takes so
-/// long.
+/// Waits for a handler and runs it. Returns false if no handler is ready within 60 s, which only detects a
+/// port that hangs.
 bool run_one(boost::asio::io_context& io) { return io.run_one_for(std::chrono::seconds(60)) == 1; }
 
 tcp::socket connected(boost::asio::io_context& io, const TcpPort& port) {
@@ -63,7 +63,8 @@ TEST_F(TcpPortClients, AHalfClosedClientMakesRoomForTheNextIfTheLingerTimeHasNoL
   EXPECT_EQ(received_, "$01M\r");
 }
 
-/// The linger time expires before the handler that destroys the port has run, so it cannot be cancelled then.
+/// The linger time expires before the port is destroyed. The destructor can then no longer cancel the handler
+/// of the linger time.
 TEST(TcpPort, CanBeDestroyedAfterALingerTimeHasExpired) {
   boost::asio::io_context io;
   auto port = std::make_unique<TcpPort>(io, TcpAddress{"127.0.0.1", 0}, std::chrono::milliseconds(0));

@@ -1,4 +1,4 @@
-// Tests the simulator's pseudo-terminal with DCON commands that a person types in a terminal program.
+// Tests the simulator's pseudo-terminal with DCON commands that a person can type in a terminal program.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -10,7 +10,7 @@
 namespace ex9000::system {
 namespace {
 
-TEST(Dcon, TypedCommandsGetReplies) {
+TEST(Dcon, TypedCommandsGetRepliesAndAreLogged) {
   SimulatorProcess simulator({"9068d-m@0A,protocol=ascii,name=PUMP", "--log"});
   Terminal terminal(simulator.tty(), 9600);
   terminal.type("$0AM\r");
@@ -39,7 +39,7 @@ TEST(Dcon, TheNextMasterDoesNotReceiveAnUnreadReply) {
   EXPECT_EQ(terminal.read_line(), "!05400600\r");
 }
 
-TEST(Dcon, AMasterThatDisconnectsDoesNotDisconnectTheOthers) {
+TEST(Dcon, AMasterThatDisconnectsDoesNotDisconnectAnotherMaster) {
   SimulatorProcess simulator({"EX9042D@05"});
   for (int round = 0; round < 5; ++round) {
     Terminal stays(simulator.tty(), 9600);

@@ -1,4 +1,5 @@
-// Compares the conversion of rates with the C library: its cfsetspeed also accepts bits per second.
+// Compares the conversion of rates with the C library, because its cfsetspeed also accepts bits per second.
+// Also tests the flags of line formats.
 #include <gtest/gtest.h>
 #include <termios.h>
 
@@ -17,7 +18,7 @@ constexpr std::array<std::uint32_t, 30> kRates{
     2400,   4800,   9600,    19200,   38400,   57600,   115200,  230400,  460800,  500000,
     576000, 921600, 1000000, 1152000, 1500000, 2000000, 2500000, 3000000, 3500000, 4000000};
 
-/// Returns the settings of the C library for `rate`.
+/// Returns settings in which the C library has stored `rate`.
 termios settings_at(std::uint32_t rate) {
   termios settings{};
   EXPECT_EQ(cfsetspeed(&settings, rate), 0) << rate;

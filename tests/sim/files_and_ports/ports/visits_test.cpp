@@ -35,7 +35,7 @@ TEST_F(VisitsTest, ReportsOnlyTheDevicesThatWereVisited) {
   EXPECT_EQ(of_b_, 1);
 }
 
-TEST_F(VisitsTest, ReportsEachDeviceAfterTheQueueOfTheSystemWasFull) {
+TEST_F(VisitsTest, ReportsAVisitWhoseEventWasLostBecauseTheQueueWasFull) {
   long queued = 0;
   std::ifstream("/proc/sys/fs/inotify/max_queued_events") >> queued;
   ASSERT_GT(queued, 0);
@@ -44,7 +44,7 @@ TEST_F(VisitsTest, ReportsEachDeviceAfterTheQueueOfTheSystemWasFull) {
   }
   visit("b");
   visits_.take();
-  EXPECT_EQ(of_b_, 1) << "the event of this visit was lost";
+  EXPECT_EQ(of_b_, 1) << "the visit is not reported";
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// A bench with modules, a master, and the commands of the control socket.
+// Benches with modules, a master, and the commands of the control socket.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ inline bool has(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-/// Checks the form that every reply must have, and returns its text.
+/// Checks the form that every reply must have, and returns the text of `reply`.
 inline std::string checked(const Control::Reply& reply) {
   const std::string& text = reply.text;
   EXPECT_TRUE(text == "ok" || text.rfind("ok ", 0) == 0 || text.rfind("error: ", 0) == 0) << text;
@@ -44,7 +44,7 @@ class ControlBench : public ModuleBench {
 
   bool status_has(const std::string& part) { return has(tell("1 status"), part); }
 
-  /// Runs the line until the module restarts, for at most 2 s.
+  /// Runs the line until the module restarts. Gives up after 2 s.
   void run_to_reset() {
     const VirtualTime gives_up = now() + std::chrono::milliseconds(2000);
     while (!status_has("mode=starting") && now() < gives_up) {
@@ -52,7 +52,8 @@ class ControlBench : public ModuleBench {
     }
   }
 
-  /// Returns the states of the module that a rejected command could have changed, as text.
+  /// Returns a text with the status, the inputs, the outputs and the LED of the module. If the module has
+  /// power, the text also contains its reset status, its INIT* input and its counters.
   std::string snapshot() {
     std::string text = tell("1 status") + tell("1 inputs") + tell("1 outputs") + tell("1 led");
     if (module().powered()) {
