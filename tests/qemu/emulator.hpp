@@ -14,22 +14,23 @@
 
 namespace ex9000::rig {
 
-/// One microcontroller with an EEPROM, from power-on to power-off. The constructor halts it before its first
-/// instruction, so that the caller can set the pin levels. The destructor acts like a power cut.
+/// The emulated machine: a microcontroller with an EEPROM. The constructor starts the emulator, and leaves
+/// the machine halted before its first instruction, so that the caller can set the pin levels. The destructor
+/// acts like a power cut.
 ///
 /// If the image or the watchdog requests a reset, the machine halts instead, so that the caller can set the
 /// pin levels before the reset.
 ///
-/// The thread that creates an emulator stays on one processor of the host from then on, see processor.hpp.
+/// The thread that creates an emulator stays on one processor of the host from then on; see processor.hpp.
 ///
-/// An instruction takes 16 ns. While the processor sleeps, time jumps to the next event. AlarmClock runs the
-/// machine.
+/// An instruction takes 16 ns. While the processor sleeps, time jumps to the next event. AlarmClock
+/// (alarm_clock.hpp) runs the machine.
 class Emulator {
  public:
   /// The address of the instruction at which the processor waits until the host lets it continue.
   static constexpr std::uint32_t kGate = 0x2000'9048;
 
-  /// Runs the ELF file `image`. `memory` is the file with the 8192 bytes of the EEPROM. Throws
+  /// Loads the ELF file `image`. `memory` is the file with the 8192 bytes of the EEPROM. Throws
   /// std::runtime_error if the emulator does not start.
   Emulator(const std::string& image, const std::string& memory);
 
@@ -43,8 +44,8 @@ class Emulator {
   /// Returns the socket of the gate. If the processor waits at `kGate`, a byte on this socket lets it
   /// continue; see gate.cpp.
   UnixSocket& gate() { return *gate_; }
-  /// Returns the line of UART0, which carries bytes at any baud rate. The caller must read regularly: a full
-  /// socket (278 bytes) halts the machine.
+  /// Returns the socket that is the line of UART0. It carries bytes at any baud rate. The caller must read
+  /// regularly: a full socket (278 bytes) halts the machine.
   UnixSocket& uart() { return *uart_; }
   /// Makes UART0 receive a break, which is the only line error that the emulated UART supports.
   void send_break();

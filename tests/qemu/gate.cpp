@@ -1,11 +1,12 @@
-// A plugin of the emulator, which AlarmClock uses. At one specified instruction, which loads a byte, the
+// A plugin for the emulator. AlarmClock uses it. At one specified instruction, which loads a byte, the
 // processor waits until the other end of a socket lets it continue. Only the processor waits, and no emulated
 // time passes. A debugger would halt the whole machine, which takes ten times as long.
 //
 //     -plugin gate.so,address=INSTRUCTION,socket=PATH
 //
-// The plugin sends the address from which the byte is loaded, which the program uses to report its state.
-// Then it waits for a byte. This file declares the required functions of the emulator, because Debian has no
+// When the processor executes this instruction, the plugin sends the address from which the instruction loads
+// the byte. The interrupt code of AlarmClock reports its state with this address. Then the plugin waits for a
+// byte from the socket. This file declares the required functions of the emulator, because Debian has no
 // package with the header: QEMU 7.2, include/qemu/qemu-plugin.h.
 #include <sys/socket.h>
 #include <sys/un.h>
@@ -42,7 +43,7 @@ const int qemu_plugin_version = 1;
 namespace {
 
 constexpr int kNoRegisters = 0;
-constexpr int kLoads = 3;  // and stores, because QEMU 7.2 calls no plugins that register for loads alone
+constexpr int kLoads = 3;  // loads and stores: QEMU 7.2 calls no plugin that registers for loads alone
 
 int the_socket = -1;
 std::uint64_t the_instruction = 0;

@@ -8,17 +8,18 @@
 
 namespace ex9000::rig {
 
-/// The parts of GDB's remote protocol that the test bench requires. The client acknowledges no packet, which
-/// QEMU accepts. Do not send while the machine runs: it would stop immediately.
+/// The parts of GDB's remote protocol that the test bench requires. The client does not acknowledge packets;
+/// QEMU accepts this. Do not send while the machine runs: the machine would stop immediately.
 class GdbClient {
  public:
   explicit GdbClient(UnixSocket socket) : socket_(std::move(socket)) {}
 
-  /// Returns `packet` with its frame.
+  /// Returns `packet` between `$` and `#`, followed by its checksum.
   static std::string framed(const std::string& packet);
-  /// Sends packets from `framed`, concatenated, in one piece. The last one may start the machine.
+  /// Sends one or more results of `framed`, concatenated. Only the last packet may start the machine.
   void send(const std::string& packets) { socket_.send(packets); }
-  /// Returns the next packet, without its frame. Throws std::runtime_error if none arrives within `kHang`.
+  /// Returns the next packet without `$`, `#` and the checksum. Throws std::runtime_error if the emulator
+  /// sends nothing for `kHang`.
   std::string receive();
   /// Reads the received bytes without blocking. Returns whether a complete packet is there.
   bool has_packet();
@@ -26,7 +27,7 @@ class GdbClient {
 
  private:
   UnixSocket socket_;
-  std::string received_;  ///< bytes after the last packet
+  std::string received_;  ///< received bytes after the last packet that `receive` has returned
 };
 
 }  // namespace ex9000::rig

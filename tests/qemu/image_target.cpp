@@ -16,7 +16,7 @@ constexpr milliseconds kComingUp{100};
 /// The image processes a byte and updates its pins in less than this time.
 constexpr milliseconds kSettling{1};
 constexpr milliseconds kSlice{2};
-/// Longer than the longest phase of a flashing LED.
+/// Longer than each phase of an LED that flashes at 2 Hz after a timeout.
 constexpr milliseconds kFlashing{300};
 constexpr milliseconds kLook{10};
 

@@ -9,8 +9,8 @@
 
 namespace ex9000::rig {
 
-/// Can play several transcripts, one after another. Each model has its own emulator. Time is emulated, so the
-/// host does not affect the result.
+/// Can play several transcripts, one after another. Each model has its own emulator. Time is emulated.
+/// alarm_clock.hpp describes how the host can affect the result.
 class ImageTarget final : public play::Target {
  public:
   void start(const Model& model, const Settings* preset) override;
@@ -29,15 +29,14 @@ class ImageTarget final : public play::Target {
   void end() override { module_->verify_led(); }
 
  private:
-  /// Returns the module after it has processed everything that was sent to it.
+  /// Returns the module when its image has had the time to process the bytes that were sent to it.
   TimedModule& settled();
   void hear();
 
   std::map<const Model*, TimedModule> modules_;
   TimedModule* module_ = nullptr;
   hal::SerialMode mode_{9600};
-  std::chrono::nanoseconds settled_{
-      0};  ///< the time at which the image has processed everything that was sent
+  std::chrono::nanoseconds settled_{0};  ///< the time until which `settled` runs the module
   play::Bytes heard_;
 };
 

@@ -7,10 +7,10 @@
 
 namespace ex9000::rig {
 
-/// Verifies later that a lit LED is on steadily and does not flash. Waiting for the next flash would take
-/// time that the surrounding steps measure. The transcript assumes that the LED is on, and this class
-/// compares the assumption with later states. A flashing LED is never lit for longer than `kPhase`, so an LED
-/// that goes dark earlier was flashing.
+/// Verifies that a lit LED is on steadily and does not flash. To wait immediately until the LED goes dark
+/// would take time, which other steps of the transcript measure. Therefore the caller assumes that the LED is
+/// on steadily, and this class compares the assumption with later states. A flashing LED is never lit for
+/// longer than `kPhase`. This class treats an LED that goes dark earlier as a flashing one.
 class LampWatch {
  public:
   /// How long the LED is lit when it flashes at 2 Hz after a timeout. Flashes for other reasons are shorter.
@@ -18,9 +18,10 @@ class LampWatch {
 
   /// Assumes that the LED is steadily on.
   void believe(std::chrono::nanoseconds now) { until_ = now + kPhase; }
-  /// Discards the assumption after a reset or a power cut.
+  /// Discards the assumption, for example after a reset or a power cut.
   void forget() { until_.reset(); }
-  /// Compares the current state with the assumption. Throws std::runtime_error if the assumption was wrong.
+  /// Compares the state at the time `now` with the assumption. Throws std::runtime_error if the LED is dark
+  /// before `until()`.
   void look(std::chrono::nanoseconds now, bool lit) {
     if (until_ && now >= *until_) {
       until_.reset();

@@ -1,4 +1,4 @@
-// A master that uses the module's baud rate, line format and time.
+// A master in emulated time. It uses the baud rate and the line format of the module.
 #pragma once
 
 #include <chrono>
@@ -15,8 +15,9 @@ inline Settings ascii(const Model& model) {
   return settings;
 }
 
-/// Sends a request and returns the reply, which ends when the module switches its driver enable off. If the
-/// reply takes longer than 250 ms, returns what has arrived; nothing if there is no reply.
+/// Waits 5 ms, discards the bytes that have arrived, and sends a request. Returns the reply, which ends when
+/// the module switches its driver enable off. If the reply has not ended 250 ms after the request, returns
+/// the bytes that have arrived until then; none if there is no reply.
 inline TimedModule::Bytes reply_of(TimedModule& module, const TimedModule::Bytes& request) {
   constexpr std::chrono::milliseconds kSilence{5};  // longer than T3.5 at 9600 baud
   constexpr std::chrono::milliseconds kLongestReply{250};
@@ -34,7 +35,7 @@ inline TimedModule::Bytes reply_of(TimedModule& module, const TimedModule::Bytes
   return reply;
 }
 
-/// Sends a DCON command and returns the reply without its CR.
+/// Sends a DCON command with a CR. Returns the reply without its CR; an empty text if there is no reply.
 inline std::string ask(TimedModule& module, const std::string& command) {
   const std::string frame = command + "\r";
   const TimedModule::Bytes reply = reply_of(module, {frame.begin(), frame.end()});

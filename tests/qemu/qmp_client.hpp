@@ -7,16 +7,18 @@
 
 namespace ex9000::rig {
 
-/// The parts of QMP that the test bench requires.
+/// The parts of QEMU's monitor protocol (QMP) that the test bench requires.
 class QmpClient {
  public:
-  /// Reads the greeting, which the emulator sends when the machine is complete.
+  /// Reads the greeting, which the emulator sends when the machine is complete, and enables commands.
   explicit QmpClient(UnixSocket socket);
 
-  /// Returns when the emulator has accepted the command and has sent `event`, which reports its completion.
-  /// `arguments` is a JSON object. Throws std::runtime_error if the emulator rejects the command.
+  /// Executes a command. `arguments` is a JSON object. Returns when the emulator has accepted the command and
+  /// has sent `event`, which reports the completion of the command. If the reply itself reports the
+  /// completion, `event` must be `return`. Throws std::runtime_error if the emulator rejects the command or
+  /// sends nothing for `kHang`.
   void execute(const std::string& command, const std::string& event, const std::string& arguments = "{}");
-  /// Waits for this event. Throws std::runtime_error if nothing arrives within `kHang`.
+  /// Waits for this event. Throws std::runtime_error if the emulator sends nothing for `kHang`.
   void wait_for(const std::string& event);
 
  private:

@@ -73,7 +73,7 @@ void TimedModule::pulse_input(unsigned channel, std::uint32_t count) {
 void TimedModule::run_for(nanoseconds time) { run_until(now_ + time); }
 
 void TimedModule::run_until(nanoseconds when) {
-  // Short enough not to miss a phase of the LED and not to fill the socket with the module's replies.
+  // Shorter than the shortest phase of a flashing LED, so that LampWatch misses none.
   constexpr milliseconds kAtOnce{50};
   while (powered() && now_ < when) {
     const nanoseconds time = std::min<nanoseconds>(when - now_, kAtOnce);
@@ -112,7 +112,8 @@ void TimedModule::send(const Bytes& bytes, SerialMode mode) {
   constexpr milliseconds kLongestHold{2};
   constexpr microseconds kSlice{200};
   // On a real line a byte takes time, and the driver enable goes off soon after the last byte has arrived.
-  // Here the byte arrives immediately, while the driver enable is still on.
+  // Here the last byte arrives immediately, while the driver enable is still on. Therefore this function
+  // waits until the driver enable is off.
   constexpr milliseconds kLongestWait{100};
   const nanoseconds gives_up = now_ + kLongestWait;
   while (speaks() && now_ < gives_up) {

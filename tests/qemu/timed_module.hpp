@@ -1,5 +1,5 @@
-// A module in emulated time. All events take as long as on a real module, with two exceptions: the UART of
-// the emulated board sends immediately, and its EEPROM stores immediately.
+// A module in emulated time. Its timers run as on a real module, but the UART of the emulated board sends
+// bytes immediately, its EEPROM stores bytes immediately, and each instruction takes 16 ns.
 #pragma once
 
 #include <chrono>
@@ -16,18 +16,19 @@
 namespace ex9000::rig {
 
 /// The module is stopped between calls. The same calls have the same effects, independently of the host, with
-/// the exception that AlarmClock states.
+/// the exception that alarm_clock.hpp states.
 class TimedModule : public EmulatedBoard {
  public:
   using Bytes = std::vector<std::uint8_t>;
 
   explicit TimedModule(const Model& model) : EmulatedBoard(model, nullptr) {}
 
-  /// Replaces the module by a new one, see EmulatedBoard::renew. No time passes.
+  /// Replaces the module by a new one with its supply on, see EmulatedBoard::renew. Sets `now()` to 0.
   void begin_anew(const Settings* settings);
   /// Switches the supply. No time passes.
   void power(bool on);
-  /// Switches the supply off and kills the emulator. Only the EEPROM's file remains. No time passes.
+  /// Switches the supply off and kills the emulator. Of the machine, only the file of the EEPROM remains. No
+  /// time passes.
   void kill();
   /// Resets the module with the reset pin. Has no effect without power. No time passes.
   void reset();
@@ -42,29 +43,32 @@ class TimedModule : public EmulatedBoard {
   /// Returns the time that has passed since the module was created or last replaced by `begin_anew`.
   [[nodiscard]] std::chrono::nanoseconds now() const { return now_; }
 
-  /// Makes `run_to_store` stop the module before each store to these bytes of the bus. Until `kill`, no other
-  /// function may run the module.
+  /// Makes `run_to_store` stop the module before each store to one of the `size` bytes from the bus address
+  /// `address` on. Until `kill`, no other function may run the module.
   void watch_stores(std::uint32_t address, std::uint32_t size) { clock_->watch_stores(address, size); }
-  /// Runs until the next watched store, at most for the `time` of the first call. Returns whether the module
-  /// has stopped before a store.
+  /// Runs until the module is about to execute the next watched store, or until the `time` of the first call
+  /// has passed since that call. Returns whether the module has stopped before a store. Does not change
+  /// `now()`.
   bool run_to_store(std::chrono::nanoseconds time) { return clock_->run_to_store(time); }
 
-  /// Runs until the watchdog (`WATCHDOG`) or the image (`SHUTDOWN`) is about to reset the module. After this
-  /// call only `reset` is allowed. Throws std::runtime_error if this does not occur within `time`.
+  /// Runs until the watchdog (if `event` is `WATCHDOG`) or the image (if `event` is `SHUTDOWN`) is about to
+  /// reset the module. Throws std::runtime_error if this does not occur within `time`. Call `reset` before
+  /// the module runs again.
   void run_to_reset(const std::string& event, std::chrono::nanoseconds time);
 
-  /// Waits up to 100 ms until the module does not send, then sends bytes in `mode`. The module loses bytes
-  /// that arrive while it sends. The emulated UART has no parity and no framing errors. Therefore a byte in
-  /// which a receiver in the module's mode finds such an error arrives as a break, which is an error too.
+  /// Waits up to 100 ms until the driver enable is off, then sends bytes in `mode`. Returns when the last
+  /// byte has ended. The module loses bytes that arrive while its driver enable is on. The emulated UART has
+  /// no parity and no framing errors. Therefore a byte in which a receiver in the module's mode finds such an
+  /// error arrives as a break, which is an error too.
   void send(const Bytes& bytes, hal::SerialMode mode);
   /// Returns the bytes that the module has sent since the last call, as a receiver in `mode` samples them,
   /// including those with errors. No time passes.
   Bytes hear(hal::SerialMode mode);
-  /// Returns whether the driver enable was on at the last stop.
+  /// Returns whether the module is powered and its driver enable was on at the last stop.
   [[nodiscard]] bool speaks() const { return powered() && clock_->driver_on(); }
 
-  /// Assumes that the LED is steadily on. If the LED flashes, a later function that lets time pass throws
-  /// std::runtime_error.
+  /// Assumes that the LED is steadily on. If LampWatch finds that the LED flashes, the function that lets the
+  /// time pass throws std::runtime_error.
   void assume_led_on() { lamp_.believe(now_); }
   /// Lets time pass until the assumption about the LED is verified. Call this function only if the extra time
   /// does not disturb later steps.
@@ -77,7 +81,7 @@ class TimedModule : public EmulatedBoard {
   void put(const Arrival& arrival);
   void hold_memory(bool hold);
 
-  std::optional<AlarmClock> clock_;  ///< no value before the first power-on, and after `kill`
+  std::optional<AlarmClock> clock_;  ///< no value before the first power-on, and from `kill` to the next one
   std::chrono::nanoseconds now_{0};
   LampWatch lamp_;
 };

@@ -1,5 +1,5 @@
-// The registers of the reference board's UART0, for code that accesses them from outside: LM3S6965 data
-// sheet, section 12.5.
+// Registers of the reference board's UART0, for code that accesses them from outside the microcontroller.
+// Source: LM3S6965 data sheet, section 12.5.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,5 @@
-// A listening UNIX socket and its connection. The other program receives the path and connects to it.
+// A listening UNIX socket and its connection. The emulator receives the path of the socket and connects to
+// it.
 #pragma once
 
 #include <chrono>
@@ -8,8 +9,8 @@
 
 namespace ex9000::rig {
 
-/// The maximum time to wait for a reply of the emulator. The limit only detects a hang: a reply takes
-/// milliseconds, or seconds on a busy machine.
+/// The maximum time for which a function waits without receiving a byte. The limit only detects a hang: the
+/// emulator usually replies in milliseconds, or in seconds on a busy machine.
 inline constexpr std::chrono::seconds kHang{60};
 
 /// A connection. The functions that send or receive throw std::runtime_error on errors.
@@ -24,21 +25,22 @@ class UnixSocket {
   /// Sends all bytes, in one piece if the kernel accepts them. Blocks until the kernel has accepted all.
   void send(const std::uint8_t* bytes, std::size_t size);
   void send(const std::string& text);
-  /// Waits until bytes arrive and returns them. Returns nothing if none arrive within `patience`.
+  /// Waits until bytes arrive and returns them. Returns no bytes if none arrive within `patience`.
   std::vector<std::uint8_t> receive(std::chrono::nanoseconds patience);
-  /// Receives exactly `size` bytes. Throws if none arrive within `kHang`.
+  /// Receives exactly `size` bytes. Throws if no byte arrives for `kHang`.
   void receive_all(std::uint8_t* bytes, std::size_t size);
-  /// Returns whether bytes are available. Does not block.
+  /// Returns whether bytes are available or the other end has closed the connection. Does not block.
   [[nodiscard]] bool has_bytes() const;
-  /// Returns the next line without its LF. Throws if nothing arrives within `kHang`.
+  /// Returns the next line without its LF. Throws if no byte arrives for `kHang`.
   std::string receive_line();
 
  private:
   int fd_;
-  std::string received_;  ///< bytes after the last line
+  std::string received_;  ///< received bytes after the last line that `receive_line` has returned
 };
 
-/// Waits until one of the sockets has bytes. Returns false if no bytes arrive within `kHang`.
+/// Waits until one of the sockets has bytes or has been closed by the other end. Returns false if this takes
+/// longer than `kHang`.
 bool wait_for_any(const std::vector<const UnixSocket*>& sockets);
 
 /// Listens at a path for one connection. The constructor throws std::runtime_error if it cannot listen there.

@@ -13,18 +13,18 @@ namespace ex9000::rig {
 using hal::SerialMode;
 
 struct Arrival {
-  std::chrono::nanoseconds at;  ///< time since the first start bit
+  std::chrono::nanoseconds at;  ///< time from the first start bit to the end of this byte for the receiver
   std::uint8_t byte;
   ByteStatus status;
 };
 
 /// Returns the bytes that a receiver in the mode `heard_in` gets if `bytes` are sent without gaps in the mode
-/// `sent_in`. Returns nothing if one of the rates is 0. Rates that differ by at most 2 %, the tolerance of
-/// UARTs, count as equal.
+/// `sent_in`. Returns no bytes if one of the rates is 0. If the formats match (sim::hear_each_other) and the
+/// rates differ by at most 2 %, which UARTs tolerate, all bytes arrive unchanged.
 std::vector<Arrival> heard_in_mode(const std::vector<std::uint8_t>& bytes, SerialMode sent_in,
                                    SerialMode heard_in);
 
-/// Returns the duration of `bytes` characters without gaps.
+/// Returns the duration of `bytes` characters without gaps. The rate must not be 0.
 std::chrono::nanoseconds duration_in(SerialMode mode, std::size_t bytes);
 
 }  // namespace ex9000::rig

@@ -1,4 +1,4 @@
-// A module with a Pico: pins, transceiver, EEPROM, supply, and the master's end of the line.
+// A module with a Pico: pins, transceiver, flash, EEPROM, supply, and the master's end of the line.
 "use strict";
 const { ChipClock, Time } = require("./clock");
 const { Chip } = require("./chip");
@@ -18,11 +18,12 @@ class Board {
     this.flash = new FlashChip(this.time, new Uint8Array(FLASH_SIZE).fill(0xff));
     this.flash.content.set(image);
     this.eeprom = new Eeprom(this.time);
-    this.outside = new Array(PINS).fill(null); // the levels that the rest of the module drives, by pin; null: none
+    // The levels that the rest of the module drives, by pin. If it does not drive a pin, the level is null.
+    this.outside = new Array(PINS).fill(null);
     this.outside[pins.data] = true; // pull-ups
     this.outside[pins.data + 1] = true;
     this.chip = null;
-    this.trace = null; // the Trace to which each chip is attached, or null
+    this.trace = null; // the Trace that is attached to each new chip; null if there is none
     this.transmitted = true;
     this.driverOn = false;
     this.echoes = true;
@@ -66,7 +67,8 @@ class Board {
     this.startCold(CHIP_RESET.supply, REASON.timeout);
   }
 
-  // Starts after a chip-level reset.
+  // Starts the chip after the chip-level reset `chipReset`, which clears the scratch registers. `reason` is the reason
+  // of a watchdog reset that has followed, if there was one.
   startCold(chipReset, reason = REASON.none) {
     this.chipReset = chipReset;
     this.scratch = new Uint32Array(SCRATCH_REGISTERS);

@@ -1,5 +1,5 @@
-// One RP2040, from a reset to the next one: rp2040js with the models in this folder. It starts in the state in which
-// the boot ROM calls the second stage. Source: RP2040 data sheet, 2.8.1 (boot sequence).
+// One RP2040, from its start to the next reset or power-off: rp2040js with the models in this folder. It starts in the
+// state in which the boot ROM calls the second stage. Source: RP2040 data sheet, 2.8.1 (boot sequence).
 "use strict";
 const { RP2040, GPIOPinState } = require("rp2040js");
 const { Processor } = require("./core");
@@ -14,7 +14,7 @@ const RAM = 0x20000000;
 const SECOND_STAGE = 0x20041f00;
 const SECOND_STAGE_SIZE = 256;
 const RING_OSCILLATOR = 6.5e6;
-const BOOT_ATTEMPT = 4e6; // ns, with the ring oscillator
+const BOOT_ATTEMPT = 4e6; // ns, the time between two attempts of the boot ROM; the ring oscillator clocks it
 const PAD_AFTER_RESET = 0x56;
 const NO_FUNCTION = 0x1f;
 const UART_FUNCTION = 2;
@@ -98,8 +98,8 @@ class Chip {
     peripherals[0x40054] = new Guarded(peripherals[0x40054], "timer", () => this.tickProblem());
   }
 
-  // Returns what is wrong with the tick of the timer, or an empty text. The timer counts only while the tick runs, and
-  // counts microseconds only if the tick matches the crystal.
+  // Returns what is wrong with the tick of the timer, or an empty text if nothing is wrong. The timer counts only while
+  // the tick runs, and counts microseconds only if the tick matches the crystal.
   tickProblem() {
     const { tickFrequency } = this.watchdog;
     if (tickFrequency === 0) {
@@ -167,9 +167,9 @@ class Chip {
     return pin.pullupEnabled;
   }
 
-  // Acts like the boot ROM, which reads the second stage again until the checksum is correct. While the flash is
-  // busy, the checksum cannot be correct, so this function tries again later. If the flash is not busy, a wrong
-  // checksum is an error.
+  // Acts like the boot ROM, which reads the second stage again if the checksum is wrong. While the flash is busy, the
+  // checksum cannot be correct, so this function tries again later. If the flash is not busy, a wrong checksum is an
+  // error.
   boot() {
     const { board, mcu } = this;
     mcu.core.waiting = board.flash.busy;

@@ -30,7 +30,7 @@ TEST(TimeText, IsExactToTheNanosecond) {
   EXPECT_EQ(parse_time("0.001us"), 1ns);
 }
 
-TEST(TimeText, AnyOtherTextIsRefusedWithExamples) {
+TEST(TimeText, OtherTextIsRefusedWithExamplesInTheMessage) {
   for (const char* text :
        {"",    "s",   "5",    "5 s",    " 5s",   "5s ",  "5S",   "5sec",  "5m",     "5ns",
         "-1s", "+1s", "1e3s", "1.2.3s", "0x10s", "infs", "nans", "8761h", "1e999s", "99999999999999999999h",

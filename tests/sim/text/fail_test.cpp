@@ -1,4 +1,5 @@
-// Tests that `with_place` adds the place of an error to the message of the exception.
+// Tests that `with_place` adds the place of an error to the message of the exception, and returns the result
+// of the action if there is no error.
 #include "sim/text/fail.hpp"
 
 #include <gtest/gtest.h>
@@ -19,7 +20,7 @@ std::string message_with_place() {
   return "";
 }
 
-TEST(WithPlace, KeepsTheTypeOfAnExceptionAndAddsThePlaceToItsMessage) {
+TEST(WithPlace, AddsThePlaceToTheMessagesOfInvalidArgumentAndRuntimeError) {
   EXPECT_EQ(message_with_place<std::invalid_argument>(), "--pty: is in use");
   EXPECT_EQ(message_with_place<std::runtime_error>(), "--pty: is in use");
 }

@@ -25,7 +25,8 @@ std::string why_not(const std::string& text) {
   return refusal([&] { parsed(text); });
 }
 
-/// Returns a file with one line of one module. The line also has `members`.
+/// Returns a bus file with one line, which has one module and the JSON members `members`. The members begin
+/// in the second text line of the file.
 std::string line_with(const std::string& members) {
   return "{\"lines\": [{\"modules\": [{\"model\": \"EX9052D-M\"}],\n" + members + "}]}";
 }
@@ -93,7 +94,7 @@ TEST(BusFile, TheExampleGivesTheExpectedSetup) {
   EXPECT_EQ(yard.faults[1].text, "gone at 1h for 2min");
 }
 
-TEST(BusFile, PanelIsTrueFalseOrAPort) {
+TEST(BusFile, PanelAcceptsTrueFalseAndAPort) {
   const auto panel = [](const std::string& value) {
     return parsed(R"({"panel": )" + value + R"(, "lines": [{"modules": [{"model": "EX9042D"}]}]})").panel;
   };
@@ -130,7 +131,7 @@ TEST(BusFile, LinesWithoutANameAreNumbered) {
   EXPECT_EQ(setup.lines[2].name, "line3");
 }
 
-TEST(BusFile, ALineAcceptsTheOptionsOfTheCommandLine) {
+TEST(BusFile, ALineAcceptsOptionsOfTheCommandLineAsKeys) {
   EXPECT_EQ(line_of("\"tcp\": 5020").tcp.value_or(TcpAddress()).host, "127.0.0.1");
   EXPECT_EQ(line_of("\"tcp\": \"[::1]:5020\"").tcp.value_or(TcpAddress()).host, "::1");
   EXPECT_EQ(line_of("\"modbus-tcp\": 502").modbus_tcp.value_or(TcpAddress()).port, 502);
@@ -155,7 +156,8 @@ TEST(BusFile, AModuleAcceptsTheKeysOfTheCommandLine) {
   EXPECT_EQ(module_of("\"checksum\": \"on\"").settings.format, 0x40);
   EXPECT_EQ(module_of("\"checksum\": false").settings.format, 0x00);
   EXPECT_EQ(module_of("\"edge\": \"rising\"").settings.format, 0x80);
-  EXPECT_EQ(module_of("\"name\": \"a b,c\"").settings.name, Name("a b,c"));  // not possible on a command line
+  // On a command line, a comma would end the name.
+  EXPECT_EQ(module_of("\"name\": \"a b,c\"").settings.name, Name("a b,c"));
   EXPECT_TRUE(module_of("\"init\": true").init_asserted);
   EXPECT_EQ(module_of("\"eeprom\": \"a,b.bin\"").eeprom, "a,b.bin");
 }
@@ -181,7 +183,7 @@ struct Wrong {
 
 class WrongBusFile : public testing::TestWithParam<Wrong> {};
 
-TEST_P(WrongBusFile, IsRefusedWithFileLineKeyAndRemedy) {
+TEST_P(WrongBusFile, IsRefusedWithAOneLineMessageThatBeginsWithFileAndLine) {
   const std::string why = why_not(GetParam().file);
   EXPECT_EQ(why.rfind(GetParam().why, 0), 0U) << why;
   EXPECT_EQ(why.find('\n'), std::string::npos) << why;
@@ -299,7 +301,7 @@ TEST(WrongModuleOfABusFile, IsRefusedWithFileLineKeyAndRemedy) {
   }
 }
 
-TEST(WrongModuleOfABusFile, AnAddressInvalidForItsProtocolIsRefused) {
+TEST(WrongModuleOfABusFile, AnAddressInvalidForTheProtocolIsRefused) {
   EXPECT_EQ(why_not(module_with("\"address\": \"00\"")),
             "bus.json:1: lines[0].modules[0]: address 00: a Modbus address is 01 to F7; choose one of these, "
             "or the "
@@ -361,7 +363,7 @@ TEST(WrongLinesOfABusFile, TwoModulesCannotShareAnEeprom) {
   EXPECT_EQ(parsed(with("y")).lines.size(), 2U);
 }
 
-TEST(WrongLinesOfABusFile, AnEepromCannotBeThePortOfAnyLine) {
+TEST(WrongLinesOfABusFile, AnEepromFileCannotHaveThePathOfAPseudoTerminal) {
   for (const std::string port : {"a", "b"}) {
     EXPECT_EQ(why_not("{\"lines\": [{\"pty\": \"a\", \"modules\": [{\"model\": \"EX9042D\"}]},\n"
                       "{\"pty\": \"b\", \"modules\": [{\"model\": \"EX9042D\", \"eeprom\": \"" +
@@ -371,7 +373,7 @@ TEST(WrongLinesOfABusFile, AnEepromCannotBeThePortOfAnyLine) {
   }
 }
 
-// --- reading from disk ---
+// --- bus files as arguments of the program ---
 
 TEST(BusFile, IsRecognizedByTheExtensionJson) {
   EXPECT_TRUE(is_bus_file("bus.json"));
@@ -381,7 +383,7 @@ TEST(BusFile, IsRecognizedByTheExtensionJson) {
   EXPECT_FALSE(is_bus_file("EX9042D"));
 }
 
-TEST(BusFile, IsRefusedWithItsPathIfItIsNotAFile) {
+TEST(BusFile, IsRefusedWithItsPathIfItIsNotARegularFile) {
   const system::Directory directory;
   std::filesystem::create_directory(directory / "folder.json");
   std::filesystem::create_symlink("/dev/zero", directory / "endless.json");
@@ -413,7 +415,7 @@ TEST(BusFile, ALineWithoutAPortGetsAPseudoTerminalNamedAfterIt) {
   EXPECT_FALSE(with.setup->lines[2].pty);
 }
 
-TEST(BusFile, AConflictFoundAfterParsingIsRefused) {
+TEST(BusFile, AnErrorFoundAfterTheFileIsParsedIsReported) {
   const system::Directory directory;
   const std::string path = directory / "bus.json";
   system::write_file(path,
@@ -458,7 +460,7 @@ TEST(BusFile, AnErrorNamesTheConflictingKeyOrOption) {
                 ", because both write to standard output; leave out one of them\n");
 }
 
-TEST(BusFile, RejectsLineOptionsOnTheCommandLine) {
+TEST(BusFile, CanBeCombinedWithProgramOptionsButNotWithLineOptionsOrModules) {
   const system::Directory directory;
   const std::string path = directory / "bus.json";
   system::write_file(path, example_bus_file());

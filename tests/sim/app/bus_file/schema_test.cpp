@@ -1,4 +1,5 @@
-// Tests that the JSON Schema of bus files has exactly the keys of the reader, with their meanings.
+// Tests that the JSON Schema of bus files has exactly the keys of the reader, with their meanings, and which
+// keys the schema requires.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -12,7 +13,8 @@ namespace {
 
 using json = nlohmann::json;
 
-/// Expects that the schema of an object has exactly these keys, each with its schema and its meaning.
+/// Expects that `object`, the schema of a JSON object, has exactly `keys`, each with its schema and its
+/// meaning.
 template <class Keys>
 void expect_keys(const json& object, const Keys& keys) {
   EXPECT_EQ(object.at("type"), "object");
@@ -22,7 +24,8 @@ void expect_keys(const json& object, const Keys& keys) {
     SCOPED_TRACE(key.name);
     ASSERT_TRUE(object.at("properties").contains(key.name));
     EXPECT_FALSE(key.meaning.empty());
-    EXPECT_EQ(key.meaning.find('|'), std::string::npos) << "the meaning is in a table of the documentation";
+    EXPECT_EQ(key.meaning.find('|'), std::string::npos)
+        << "this character would break the table in bus-files.md";
     json property = json::parse(key.schema);
     EXPECT_TRUE(property.is_object());
     property["description"] = key.meaning;
@@ -38,7 +41,7 @@ TEST(BusFileSchema, HasExactlyTheKeysOfTheReader) {
   expect_keys(schema.at("$defs").at("module"), module_keys);
 }
 
-TEST(BusFileSchema, RequiresWhatTheReaderRequires) {
+TEST(BusFileSchema, RequiresLinesModulesAndModel) {
   const json schema = json::parse(bus_file_schema());
   EXPECT_EQ(schema.at("required"), json::array({"lines"}));
   EXPECT_EQ(schema.at("$defs").at("line").at("required"), json::array({"modules"}));

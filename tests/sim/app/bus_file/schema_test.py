@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Tests that the JSON Schema of bus files and the program accept and reject the same files."""
+"""Tests with examples that the JSON Schema of bus files and the program agree on keys and on types of values."""
 
 import copy
 import json
@@ -15,7 +15,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[3]
 PROGRAM = os.environ.get("EX9000_SIMULATOR", str(ROOT / "build/host-debug/sim/ex9000-sim"))
 FILE = "bus.json"
 
-# A valid value of each key, grouped by the object that has the key.
+# A valid value of each key, grouped by the path of the object that has the key. The whole file has the empty path.
 RIGHT = {
     "": {
         "lines": [{"tcp": 0, "modules": [{"model": "EX9052D-M"}]}],
@@ -56,7 +56,7 @@ RIGHT = {
     },
 }
 REQUIRED = {"": "lines", "lines[0]": "modules", "lines[0].modules[0]": "model"}
-# One value of each JSON type. Each key accepts only some of these values.
+# At least one value of each JSON type. The schema of each key rejects at least three of these values.
 OF_EACH_TYPE = [None, True, 5, 1.5, "?", [], {}]
 
 
@@ -105,7 +105,10 @@ def path_of(place, key):
 
 class BusFileSchema(unittest.TestCase):
     def expect_refused(self, file, path):
-        """Expects that schema and program reject the file. The program prints one line that names file and path."""
+        """Expects that the schema and the program reject the file.
+
+        The program must end with status 2 and print only one line, on stderr, in which `path` follows `bus.json:1: `.
+        """
         self.assertFalse(schema_accepts(file))
         finished = run_with(file)
         self.assertEqual(finished.returncode, 2, finished.stderr)
@@ -134,7 +137,7 @@ class BusFileSchema(unittest.TestCase):
                     finished = run_with(file)
                     self.assertEqual(finished.returncode, 0, finished.stderr)
 
-    def test_a_value_of_a_wrong_type_is_refused(self):
+    def test_the_program_rejects_values_that_the_schema_rejects(self):
         for place, key, _ in keys():
             wrong = [value for value in OF_EACH_TYPE if not schema_accepts(file_with(place, key, value))]
             self.assertGreaterEqual(len(wrong), 3, path_of(place, key))
@@ -154,7 +157,7 @@ class BusFileSchema(unittest.TestCase):
                 del object_at(file, place)[key]
                 self.expect_refused(file, path_of(place, key))
 
-    def test_a_value_that_is_not_an_object_is_refused(self):
+    def test_a_value_of_another_type_in_place_of_an_object_is_refused(self):
         for value in [None, True, 5, "EX9052D-M", []]:
             for file, place in [(value, ""), ({"lines": [value]}, "lines[0]"),
                                 ({"lines": [{"modules": [value]}]}, "lines[0].modules[0]")]:
@@ -164,7 +167,7 @@ class BusFileSchema(unittest.TestCase):
     def test_the_published_schema_is_the_schema_that_the_program_prints(self):
         published = ROOT / "sim/docs/bus-file.schema.json"
         self.assertEqual(published.read_text(encoding="utf-8"), run("--schema").stdout,
-                         "renew it with toolchain/update-documents")
+                         "renew the published schema with toolchain/update-documents")
 
 
 if __name__ == "__main__":

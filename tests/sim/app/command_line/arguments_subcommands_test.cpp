@@ -25,7 +25,7 @@ std::string printed(const std::vector<const char*>& words) {
   return parsed.output;
 }
 
-/// Expects that `words` only request a play, and returns its task.
+/// Expects that `words` request the subcommand `play` and no run, and returns the task of `play`.
 play::Task task_of(const std::vector<const char*>& words) {
   const Parsed parsed = parse(words);
   EXPECT_FALSE(parsed.setup);
@@ -33,7 +33,7 @@ play::Task task_of(const std::vector<const char*>& words) {
   return parsed.task.value_or(play::Task());
 }
 
-TEST(Arguments, PlayOptionsFollowTheSubcommand) {
+TEST(Arguments, PlayAcceptsArgumentsOnlyAfterTheSubcommand) {
   const play::Task task =
       task_of({"play", "s.txt", "EX9042D", "--capture", "c", "--log", "json", "--seed", "7"});
   EXPECT_EQ(task.path, "s.txt");
@@ -57,14 +57,14 @@ TEST(Arguments, PlayOptionsFollowTheSubcommand) {
   expect_error({"--echo", "play", "s.txt"}, "play: --echo comes before the subcommand", "leave it out");
 }
 
-TEST(Arguments, DescribeOptionsFollowTheSubcommand) {
+TEST(Arguments, DescribeRejectsArgumentsBeforeTheSubcommand) {
   expect_error({"--tcp", "5020", "describe", "EX9042D-M"}, "describe: --tcp comes before the subcommand",
                "move it after 'describe'");
   expect_error({"--log", "describe"}, "describe: --log comes before the subcommand", "leave it out");
   expect_error({"EX9042D", "describe"}, "describe: EX9042D comes before the subcommand", "leave it out");
 }
 
-TEST(Arguments, PlayAlwaysChecksSeedAndCapture) {
+TEST(Arguments, PlayRejectsAnEmptyCapturePathAndAWrongSeedEvenWithoutModules) {
   expect_error({"play", "s.txt", "--seed", "abc"}, "--seed: 'abc'", "a whole number of at least 0");
   expect_error({"play", "s.txt", "EX9042D", "--seed", "abc"}, "--seed: 'abc'",
                "a whole number of at least 0");
@@ -82,7 +82,7 @@ TEST(Arguments, HelpContainsFaultsAndControlCommands) {
   EXPECT_NE(text.find(control_commands()), std::string::npos);
 }
 
-TEST(Arguments, ModelsListsEveryModelWithItsProtocols) {
+TEST(Arguments, ModelsPrintsOneLineForEachModelAndMentionsModbusRtu) {
   const std::string text = printed({"--models"});
   for (const Model& model : kModels) {
     EXPECT_NE(("\n" + text).find("\n" + std::string(model.designation) + " "), std::string::npos)
@@ -92,7 +92,7 @@ TEST(Arguments, ModelsListsEveryModelWithItsProtocols) {
   EXPECT_NE(text.find("Modbus RTU"), std::string::npos);
 }
 
-TEST(Arguments, DescribePrintsAllModelsByDefault) {
+TEST(Arguments, DescribePrintsAllModelsInMarkdownByDefault) {
   EXPECT_EQ(printed({"describe"}), markdown_of_all());
   EXPECT_EQ(printed({"describe", "--format", "markdown"}), markdown_of_all());
 }
@@ -121,7 +121,7 @@ TEST(Arguments, WrongDescribeArgumentsAreRefused) {
   EXPECT_EQ(parse({"describe", "EX9999"}).exit_status, kWrongArguments);
 }
 
-TEST(Arguments, HelpListsEveryOptionAndKey) {
+TEST(Arguments, HelpListsOptionsAndKeys) {
   const std::string text = printed({"--help"});
   for (const char* word :
        {"MODULE",         "[text|json|off]", "--capture", "--pty",     "--baud",         "--log",

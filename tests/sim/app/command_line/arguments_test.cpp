@@ -74,7 +74,7 @@ TEST(Arguments, TheLogFormatIsTextOrJson) {
   expect_error({"EX9042D", "--log="}, "--log", "--help");
 }
 
-TEST(Arguments, ThePanelTakesAnOptionalPort) {
+TEST(Arguments, ThePanelTakesAnOptionalPortAndExcludesSpeedMax) {
   EXPECT_FALSE(all_accepted({"EX9042D"}).panel);
   for (const std::vector<const char*>& words : {std::vector<const char*>{"EX9042D", "--panel"},
                                                 {"--panel", "EX9042D"},
@@ -102,7 +102,8 @@ TEST(Arguments, WatchIsAcceptedExceptWithAJsonLog) {
                "both write to standard output; leave out one of them");
 }
 
-/// `sim/run` passes both options, so a user of `sim/run` may repeat them.
+/// `sim/run` passes --panel and --log, and then the arguments of its user, which may contain these options
+/// again.
 TEST(Arguments, OnlyTheLastPanelAndLogOptionsApply) {
   EXPECT_EQ(all_accepted({"EX9042D", "--panel", "--log", "--panel", "8080"}).panel->port, 8080);
   EXPECT_EQ(all_accepted({"EX9042D", "--panel", "--log", "--log", "json"}).log, LogFormat::Json);
@@ -127,7 +128,7 @@ TEST(Arguments, ThePseudoTerminalsLinkCanBeChosen) {
   EXPECT_EQ(accepted({"EX9042D", "--pty=line.tty"}).pty, "line.tty");
 }
 
-TEST(Arguments, ThePseudoTerminalIsTheDefaultUnlessAnotherPortIsGiven) {
+TEST(Arguments, AnotherPortReplacesTheDefaultPseudoTerminalButNotANamedOne) {
   EXPECT_FALSE(accepted({"EX9042D", "--tcp", "5020"}).pty);
   EXPECT_FALSE(accepted({"EX9042D", "--serial", "/dev/ttyUSB0"}).pty);
   EXPECT_EQ(accepted({"EX9042D", "--tcp", "5020", "--pty", "a"}).pty, "a");
@@ -152,7 +153,7 @@ TEST(Arguments, TcpTakesHostAndPortOrAPortAlone) {
   }
 }
 
-TEST(Arguments, ModbusTcpTakesTheSameAddressesAndReplacesTheDefaultPseudoTerminal) {
+TEST(Arguments, ModbusTcpTakesAnAddressAndReplacesTheDefaultPseudoTerminal) {
   const LineSetup line = accepted({"EX9042D-M", "--modbus-tcp", "502"});
   EXPECT_EQ(line.modbus_tcp.value_or(TcpAddress()).host, "127.0.0.1");
   EXPECT_EQ(line.modbus_tcp.value_or(TcpAddress()).port, 502);
@@ -199,7 +200,7 @@ TEST(Arguments, TwoModulesCannotShareAnEepromFile) {
   EXPECT_EQ(accepted({"EX9042D,eeprom=a", "EX9052D@02,eeprom=b"}).modules[1].eeprom, "b");
 }
 
-TEST(Arguments, TwoOptionsCannotUseTheSamePath) {
+TEST(Arguments, OnePathCannotServeTwoPurposes) {
   expect_error({"EX9042D,eeprom=a", "--pty", "b", "--control", "./b"},
                "--pty: ", "b: is already used for something else; name another path");
   expect_error({"EX9042D,eeprom=a", "--control", "a"},
@@ -225,7 +226,7 @@ TEST(Arguments, AWrongModuleIsRefused) {
   expect_error({""}, "empty argument", "--models");
 }
 
-TEST(Arguments, AWrongRateIsRefusedWithAListOfValidRates) {
+TEST(Arguments, AWrongRateIsRefusedWithAValidRate) {
   for (const char* rate : {"300", "9601", "9600x", "fast", "-1", "0"}) {
     expect_error({"EX9042D", "--baud", rate}, rate, "9600");
   }
@@ -255,9 +256,9 @@ TEST(Arguments, AnEmptyPathIsRefused) {
   expect_error({"EX9042D,eeprom="}, "eeprom=: is empty", "name a path");
 }
 
-// --- changing inputs and faults ---
+// --- inputs that change by themselves, faults, seed, threads and speed ---
 
-TEST(Arguments, AnInputIsAssignedToTheModuleAtItsPosition) {
+TEST(Arguments, AnInputIsAssignedToTheModuleAtTheGivenPosition) {
   const LineSetup arguments = accepted({"EX9042D", "EX9052D@02", "--input", "2 0 square 100ms", "--input",
                                         "2 7 key at 2s for 300ms", "--log"});
   EXPECT_TRUE(arguments.modules[0].inputs.empty());
@@ -283,7 +284,7 @@ TEST(Arguments, AWrongInputIsRefused) {
   expect_error({"EX9052D", "--input"}, "--input", "--help");
 }
 
-TEST(Arguments, AFaultIsAssignedToTheLineOrToTheModuleAtItsPosition) {
+TEST(Arguments, AFaultIsAssignedToTheLineOrToTheModuleAtTheGivenPosition) {
   const std::vector<Fault> faults =
       accepted({"EX9042D", "EX9052D@02", "--fault", "bit-errors 1e-4", "--fault",
                 "2 lost-reply every 10th reply", "--fault", "gone at 12.5s"})

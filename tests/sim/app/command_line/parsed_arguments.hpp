@@ -17,8 +17,8 @@ inline Parsed parse(const std::vector<const char*>& words) {
   return parse_arguments(static_cast<int>(argv.size()), argv.data());
 }
 
-/// Expects that the program rejects `words` with a one-line message that contains `wrong`, which says what is
-/// wrong, and `mend`, which says what would be right.
+/// Expects that the program rejects `words`. The error message must be one line that contains `wrong` and
+/// `mend`, and begins with the name of the program.
 inline void expect_error(const std::vector<const char*>& words, const std::string& wrong,
                          const std::string& mend) {
   const Parsed parsed = parse(words);

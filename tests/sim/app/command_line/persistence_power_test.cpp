@@ -1,5 +1,6 @@
-// Tests modules whose EEPROM is a file. The power may fail or the program may be killed at any time. If the
-// module has replied to a command that stores, its settings are stored (wire.md section 8).
+// Tests modules whose EEPROM is a file. The power fails, or the program is killed, at random times. The
+// module must execute each command that stores completely or not at all, and completely if it has replied to
+// the command (wire.md section 8).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,12 +20,13 @@ namespace {
 
 using std::chrono::microseconds;
 
-/// Commands that read everything that the stores below change, and their replies.
+/// The reply to each of the commands that read settings. Together, these commands read every setting that
+/// class Stores changes.
 using Answers = std::map<std::string, std::string>;
 
 /// A command that stores, and the command that reads the stored value.
 struct Store {
-  std::string before;  ///< the command to send first; empty: none
+  std::string before;  ///< a command to send before `command`; empty if none is necessary
   std::string command;
   std::string question;
   std::string answer;
@@ -60,7 +62,7 @@ class Stores {
     return {"", "~01O" + name, "$01M", "!01" + name};
   }
   /// Returns a store of the host watchdog's settings. An enabled watchdog has a timeout of 20 s or more, so
-  /// that it never expires in these tests.
+  /// that it does not expire during these tests.
   Store host_watchdog() {
     const bool on = below(2) == 0;
     const std::string value = (on ? "1" : "0") + reference::hex(on ? 200 + below(56) : 1 + below(255), 2);
@@ -74,15 +76,15 @@ class Stores {
   std::mt19937 random_;
 };
 
-/// Checks which settings a module has after each of many power failures.
+/// Sends commands that store, and checks the module's settings after each power failure or SIGKILL.
 class PowerFailureChecker {
  public:
   explicit PowerFailureChecker(unsigned seed) : stores_(seed) {}
 
   [[nodiscard]] std::string module() const { return "EX9042D" + image_in(directory_); }
 
-  /// Expects that the last command was executed completely or not at all, and completely if the module has
-  /// replied to it. Call this after each start of the module.
+  /// Expects that the module has executed the last command that stores completely or not at all, and
+  /// completely if `begin_cut` has received the reply. Call this after each start of the module.
   void check(Simulator& simulator) {
     Answers answers;
     for (const auto& [question, answer] : before_) {
@@ -91,8 +93,8 @@ class PowerFailureChecker {
     EXPECT_TRUE(answers == after_ || (!acknowledged_ && answers == before_))
         << testing::PrintToString(answers) << "\nbefore: " << testing::PrintToString(before_)
         << "\nafter: " << testing::PrintToString(after_);
-    // Before anything is stored, the LED may flash: if the first write to a blank memory was interrupted, the
-    // memory is neither blank nor readable (wire.md D8).
+    // Until a store has succeeded, the LED may flash: after an interrupted first write, the memory is not
+    // blank and contains no settings that the module can read (wire.md D8).
     EXPECT_TRUE(!anything_stored_ || simulator.tell("1 led") == "on");
     ++(acknowledged_ ? acknowledged_count_ : answers == after_ ? done_count_ : not_done_count_);
     before_ = after_ = answers;

@@ -1,4 +1,5 @@
-// Tests which files the program rejects as the EEPROM of a module.
+// Tests which files the program rejects as the EEPROM of a module, and that it creates no such file if it
+// rejects an argument.
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
@@ -17,8 +18,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Expects that the program does not start: exit status 2, one line that names the file, and no change in
-/// `directory`.
+/// Expects that the program ends with status 2, prints one line on standard error, which names `file`, and
+/// nothing on standard output, and changes nothing in `directory`.
 void expect_refused(const Arguments& modules, const std::string& file, const Directory& directory) {
   const auto before = directory.contents();
   Arguments command{"timeout", "60", simulator_path(), "--control", "control"};

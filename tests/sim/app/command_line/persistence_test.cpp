@@ -42,7 +42,7 @@ TEST(Persistence, AMissingFileIsCreatedFromThePresetsAndKeptAfterTheProgramEnds)
 }
 
 // Each image contains what this firmware or an earlier version of it has stored.
-TEST(Persistence, AFileOfEarlierFirmwareGivesItsAddressRateAndProtocolAndIsNotWritten) {
+TEST(Persistence, AFileOfThisOrEarlierFirmwareGivesItsAddressRateAndProtocolAndIsNotWritten) {
   for (const StoredBytes& stored : all_stored_bytes()) {
     const Directory directory;
     std::string image(kImageSize, '\xFF');
@@ -115,7 +115,7 @@ TEST(Persistence, TheInitSwitchIsNotStored) {
   EXPECT_TRUE(has(simulator.tell("1 status"), "mode=normal"));
 }
 
-TEST(Persistence, EveryModuleHasItsOwnFile) {
+TEST(Persistence, ModulesWithFilesKeepTheirNamesAndAModuleWithoutAFileDoesNot) {
   const Directory directory;
   const std::string first = "EX9042D@01,eeprom=" + directory / "first";
   const std::string second = "EX9052D@02,eeprom=" + directory / "second";
@@ -163,8 +163,8 @@ TEST(Persistence, AHostWatchdogTimeoutSurvivesARestart) {
     EXPECT_EQ(simulator.ask("@011001"), ">");
     EXPECT_EQ(simulator.ask("~015S"), "!01");
     EXPECT_EQ(simulator.ask("~013101"), "!01");
-    // Polls through the control socket, because commands on the line would be logged. This test does not read
-    // the log meanwhile, and a full pipe would stop the program.
+    // Polls through the control socket, because commands on the line would be logged. This loop does not read
+    // the log, and a full pipe would block the program.
     while (simulator.tell("1 led") != "flashing") {
     }
     EXPECT_EQ(simulator.ask("~010"), "!0184");
@@ -179,8 +179,8 @@ TEST(Persistence, AHostWatchdogTimeoutSurvivesARestart) {
 
 // --- images without valid settings (wire.md D8) ---
 
-/// Expects factory settings, a flashing LED and a remark in the greeting. The file must not change until the
-/// module stores something.
+/// Expects factory settings, a flashing LED, a remark in the greeting, and an unchanged file. Then stores a
+/// name, and expects that the LED is on, and that a restart keeps the name and gives no remark.
 void expect_factory_settings(const Directory& directory) {
   const std::string image = bytes_of_file(directory / "image");
   {

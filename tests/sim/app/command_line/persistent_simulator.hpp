@@ -1,4 +1,4 @@
-// The program with a control socket, and a master on its line. The EEPROM of its module is a file.
+// Runs ex9000-sim with a control socket and a master on its line, for tests with EEPROM files.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -34,28 +34,30 @@ class Simulator {
         terminal_(process_.tty(), 9600),
         control_(process_.directory() + "/control") {}
 
-  /// Sends a command and returns its reply, both without CR.
+  /// Sends `command` and a CR on the line. Returns the reply without its CR.
   std::string ask(const std::string& command) {
     type(command);
     const std::string reply = terminal_.read_line(kHang);
     return reply.substr(0, reply.find('\r'));
   }
+  /// Sends a command to the control socket. See ControlClient::ok.
   std::string tell(const std::string& command) { return control_.ok(command); }
 
-  /// Types a command. Returns whether a complete reply arrives within `time`.
+  /// Sends `command` and a CR on the line. Returns whether a complete reply arrives in one read within
+  /// `time`.
   bool is_acknowledged_within(std::chrono::microseconds time, const std::string& command) {
     type(command);
     const std::vector<std::uint8_t> reply = terminal_.read(time);
     return !reply.empty() && reply.back() == '\r';
   }
 
-  /// Switches the supply off. First waits until the typed commands are on the line, because a command on the
-  /// control socket could overtake them.
+  /// Switches the supply of module 1 off. First waits until the log contains all commands that this class has
+  /// sent on the line, because a command on the control socket could overtake them.
   void power_off() {
     EXPECT_TRUE(process_.wait_for("  > master  ", typed_));
     tell("1 power off");
   }
-  /// Switches the supply off and on again, and waits until the module has started.
+  /// Calls `power_off`, switches the supply on again, and waits until the module has started.
   void power_cycle() {
     power_off();
     tell("1 power on");
@@ -70,7 +72,7 @@ class Simulator {
   [[nodiscard]] const std::string& greeting() const { return process_.output(); }
 
  private:
-  /// A timeout for replies. Only a program that hangs reaches it.
+  /// The timeout for replies. It expires only if the program hangs.
   static constexpr std::chrono::seconds kHang{60};
 
   static Arguments arguments(Arguments words) {

@@ -1,4 +1,4 @@
-// Tests the program as a process: its start, its end, and its messages about wrong arguments.
+// Tests the program as a process: for example its start, its end, and its messages about wrong arguments.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/ioctl.h>
@@ -63,7 +63,7 @@ TEST(Program, ASignalIgnoredAtStartStaysIgnored) {
   }
   ASSERT_FALSE(line.empty());
   const unsigned long ignored = std::stoul(line.substr(line.find('\t') + 1), nullptr, 16);
-  EXPECT_EQ(ignored >> (SIGHUP - 1) & 1U, 1U);  // the program has not installed a handler
+  EXPECT_EQ(ignored >> (SIGHUP - 1) & 1U, 1U);  // the program has not installed a handler for SIGHUP
   EXPECT_EQ(ignored >> (SIGTERM - 1) & 1U, 0U);
   EXPECT_EQ(process.end(SIGTERM), 0);
 }
@@ -91,9 +91,9 @@ TEST(Program, AFullDiskForStandardOutputIsReported) {
   }
 }
 
-/// Waits until at least 7/8 of a pipe is in use. A page of a pipe may contain only whole lines, so the pipe
-/// may never be full. Returns false if this takes more than 60 s, which happens only if the program has ended
-/// or hangs.
+/// Waits until at least 7/8 of a pipe is in use. The kernel may begin a new page of the pipe before the
+/// previous page is full, so the number of bytes in the pipe may never reach its capacity. Returns false if
+/// the pipe has not filled within 60 s, for example because the program hangs, or if FIONREAD fails.
 bool wait_until_full(int pipe) {
   constexpr std::chrono::seconds kHang{60};
   const int capacity = fcntl(pipe, F_GETPIPE_SZ);
@@ -244,9 +244,10 @@ TEST(Program, WrongArgumentsGiveAOneLineErrorAndStatus2AndCreateNoFiles) {
   }
 }
 
-TEST(Program, WaitingForAnEventInTheFarFutureUsesNoProcessorTime) {
-  // A year at the lowest speed takes a thousand years, which is more than a clock can count. In the first
-  // run, the fault "gone" switches off the module's power, so the module causes no earlier event.
+TEST(Program, WaitingForAnEventInTheFarFutureUsesLittleProcessorTime) {
+  // At the lowest speed, a year takes a thousand years. A 64-bit count of nanoseconds covers only 292 years.
+  // In the first run, the fault "gone" switches off the module's power, so the module causes no earlier
+  // event.
   for (const std::vector<std::string>& far :
        {std::vector<std::string>{"--fault", "gone", "--fault", "gone at 8760h"}, {"--for", "8760h"}}) {
     std::vector<std::string> arguments{"EX9042D", "--speed", "0.001"};
@@ -262,15 +263,16 @@ TEST(Program, WaitingForAnEventInTheFarFutureUsesNoProcessorTime) {
       return used;
     };
     const unsigned long before = ticks();
-    // The period in which the processor time is measured. A program that polls would use most of this time.
+    // The period in which the processor time is measured. A program that waits in a busy loop would use most
+    // of this time.
     std::this_thread::sleep_for(std::chrono::milliseconds(500));
     EXPECT_LT(ticks() - before, 5U) << "processor time, in units of 10 ms, within 500 ms";
     EXPECT_EQ(process.end(SIGTERM), 0);
   }
 }
 
-/// Returns the seconds from the start to the end of a run of the program. `timeout` ends a program that hangs
-/// after ten minutes, with a status other than 0.
+/// Returns the seconds from the start to the end of a run of the program. If the program has not ended after
+/// ten minutes, the command `timeout` ends it and returns a status other than 0.
 double seconds_of_a_run(const std::string& speed, const std::string& lasts) {
   const Directory directory;
   const auto began = std::chrono::steady_clock::now();

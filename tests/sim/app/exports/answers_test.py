@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""Tests that the simulated module has each register in the maps, and works as the maps state."""
+"""Tests that a simulated module supports the reads and coil writes in the exports for Home Assistant, Node-RED and
+wb-mqtt-serial, and that these exports contain the coils that a master requires.
+"""
 
 import itertools
 import json
@@ -11,15 +13,15 @@ import yaml
 from line import Line
 from program import describe, models_with_modbus
 
-# Map the terms of each tool to the terms of Line: coil, discrete_input, holding and input.
+# Map the terms of Node-RED and wb-mqtt-serial to the terms of Line: coil, discrete_input, holding and input.
 NODE_RED = {"Coil": "coil", "Input": "discrete_input", "HoldingRegister": "holding", "InputRegister": "input"}
 WIREN_BOARD = {"coil": "coil", "discrete": "discrete_input", "holding": "holding", "input": "input"}
 
-# How the tools name the frames on each port of the program.
+# What Home Assistant and Node-RED call the frames that each option of the program selects.
 HOME_ASSISTANT = {"--tcp": "rtuovertcp", "--modbus-tcp": "tcp"}
 NODE_RED_CLIENTS = {"--tcp": "TELNET", "--modbus-tcp": "DEFAULT"}
 
-# The number of outputs and of inputs (wire.md section 1).
+# The number of outputs and the number of inputs of each model (wire.md section 1).
 CHANNELS = {
     "EX9042D-M": (13, 0),
     "EX9043D-M": (16, 0),
@@ -33,7 +35,10 @@ CHANNELS = {
 
 
 def coils_to_write(model):
-    """Returns address and value of each coil that a master must be able to write (wire.md section 7)."""
+    """Returns the address and the value of each coil write that every export must offer (wire.md section 7).
+
+    These writes switch the outputs, and clear latches, counters and the timeout status.
+    """
     outputs, inputs = CHANNELS[model]
     switched = {(address, on) for address in range(outputs) for on in [True, False]}
     cleared = {0x010D} | ({0x0107} | {0x0200 + counter for counter in range(inputs)} if inputs else set())
@@ -41,7 +46,7 @@ def coils_to_write(model):
 
 
 def ranges_to_read(model):
-    """Returns the first address and the size of each range that a master must be able to read (wire.md section 7)."""
+    """Returns the first address and the size of each range that a flow for Node-RED must read (wire.md section 7)."""
     outputs, inputs = CHANNELS[model]
     of_outputs = {(0x0000, outputs), (0x0080, outputs), (0x00A0, outputs)} if outputs else set()
     of_inputs = {(0x0000, inputs), (0x0040, inputs), (0x0060, inputs)} if inputs else set()
@@ -59,7 +64,7 @@ class EveryMap(unittest.TestCase):
             line.write_coil(write, on)
             self.assertEqual(line.read(*read), [int(on)])
 
-    def test_every_entity_of_home_assistant_reads_and_switches_its_channel(self):
+    def test_home_assistant_switches_every_output_reads_every_sensor_and_has_every_action(self):
         def play(line, model):
             text = describe(model, "--format", "home-assistant", line.option, f"127.0.0.1:{line.port}")
             hub = yaml.safe_load(text)[0]
@@ -73,7 +78,7 @@ class EveryMap(unittest.TestCase):
                 self.assertEqual(len(line.read(sensor["input_type"], sensor["address"])), 1)
             actions = re.findall(r"modbus\.write_coil .* address: (\d+), state: true", text)
             cleared = {address for address, _ in coils_to_write(model)} - set(range(CHANNELS[model][0]))
-            enable = 0x0104  # enables the host watchdog, which polls can restart
+            enable = 0x0104  # enables the host watchdog
             self.assertEqual({int(address) for address in actions}, cleared | {enable})
             self.assertEqual(re.findall(r"modbus\.write_register .* address: (\d+), value: 1", text), [str(0x0251)])
             for address in actions:
@@ -81,7 +86,7 @@ class EveryMap(unittest.TestCase):
 
         self.of_each_model(play)
 
-    def test_every_node_of_node_red_reads_or_writes_its_channel(self):
+    def test_node_red_has_every_required_read_and_write_and_each_succeeds(self):
         def play(line, model):
             text = describe(model, "--format", "node-red", line.option, f"127.0.0.1:{line.port}")
             nodes = {node["id"]: node for node in json.loads(text)}
@@ -108,7 +113,7 @@ class EveryMap(unittest.TestCase):
 
         self.of_each_model(play)
 
-    def test_every_channel_of_wiren_board_reads_and_writes_its_channel(self):
+    def test_wb_mqtt_serial_reads_its_channels_and_writes_every_required_coil(self):
         def play(line, model):
             device = json.loads(describe(model, "--format", "wb-mqtt-serial"))["device"]
             written = set()

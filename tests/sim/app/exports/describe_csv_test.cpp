@@ -1,5 +1,5 @@
-// Tests the description in CSV, for spreadsheets. A reader for RFC 4180 parses the description. The expected
-// values are from wire.md.
+// Tests the description of models in CSV, for spreadsheets. `rows_of` parses the description according to
+// RFC 4180. The expected commands, addresses and counts are from wire.md and firmware/extensions.md.
 #include "sim/app/exports/formats.hpp"
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ std::vector<Cells> rows_of(const std::string& text) {
         quoted = false;
       }
     } else if (text[i] == '"') {
-      EXPECT_EQ(cells.back(), "") << "a quote within a cell, at " << i;
+      EXPECT_EQ(cells.back(), "") << "a quote within an unquoted cell, at " << i;
       quoted = true;
     } else if (text[i] == ',') {
       cells.emplace_back();
@@ -40,7 +40,7 @@ std::vector<Cells> rows_of(const std::string& text) {
     }
   }
   EXPECT_FALSE(quoted);
-  EXPECT_EQ(cells, Cells(1)) << "the last line has no end";
+  EXPECT_EQ(cells, Cells(1)) << "the last line does not end with CR LF";
   return rows;
 }
 
@@ -69,7 +69,8 @@ TEST(DescribeCsv, HasOneRowPerCommandCoilAndRegister) {
   // 25 commands, 3 x 13 coils for outputs, 3 general coils, 5 holding registers; host OK and the extensions
   // (2 settings, 13 timed outputs, 15 others) in two tables
   EXPECT_EQ(table_of("EX9042D-M").size(), 1U + 25 + 39 + 3 + 5 + 2 * (1 + 2 + 13 + 15));
-  // 27 commands, because the model has inputs and outputs; no registers, because it does not support Modbus
+  // 27 commands, because the model has inputs and outputs; no coils or registers, because it does not
+  // support Modbus
   EXPECT_EQ(table_of("EX9055D").size(), 1U + 27);
 }
 

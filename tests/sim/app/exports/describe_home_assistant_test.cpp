@@ -1,5 +1,5 @@
-// Tests the content of the hub for Home Assistant against wire.md. home_assistant_test.py checks the form of
-// the hub.
+// Tests the content of the hub for Home Assistant. The expected addresses are from wire.md and
+// firmware/extensions.md. home_assistant_test.py checks the form of the hub.
 #include "sim/app/exports/formats.hpp"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ std::ptrdiff_t times(const std::string& text, const std::string& part) {
 
 bool has_once(const std::string& text, const std::string& part) { return times(text, part) == 1; }
 
-TEST(DescribeHomeAssistant, UsesRtuOverTcpOnTheSimulatorsPort) {
+TEST(DescribeHomeAssistant, UsesRtuOverTcpToTheGivenOrTheDefaultPort) {
   EXPECT_TRUE(has_once(configuration_of("EX9042D-M"),
                        "- name: ex9042d_m_01\n"
                        "  type: rtuovertcp\n"
@@ -81,7 +81,7 @@ TEST(DescribeHomeAssistant, InputsAndLatchesAreBinarySensors) {
                        "      input_type: coil\n"));
 }
 
-TEST(DescribeHomeAssistant, CountersAreSensorsThatWrap) {
+TEST(DescribeHomeAssistant, CountersAreTotalIncreasingSensors) {
   EXPECT_TRUE(has_once(configuration_of("EX9052D-M"),
                        "    - name: EX9052D-M 01 Counter 7\n"
                        "      unique_id: ex9052d_m_01_counters_7\n"
@@ -135,7 +135,8 @@ TEST(DescribeHomeAssistant, ExplainsHowPollsRestartTheHostWatchdogAndWhatClearsA
   const std::size_t after = text.find("#   modbus.write_coil" + to +
                                       "269, state: true\n#   modbus.write_coil" + to + "260, state: true\n");
   EXPECT_NE(text.find("the outputs keep their safe values"), std::string::npos);
-  EXPECT_EQ(configuration_of("EX9052D-M").find("the outputs"), std::string::npos);  // has no outputs
+  // The EX9052D-M has no outputs.
+  EXPECT_EQ(configuration_of("EX9052D-M").find("the outputs"), std::string::npos);
   ASSERT_NE(feed, std::string::npos) << text;
   ASSERT_NE(after, std::string::npos) << text;
   EXPECT_LT(feed, after);
@@ -144,7 +145,7 @@ TEST(DescribeHomeAssistant, ExplainsHowPollsRestartTheHostWatchdogAndWhatClearsA
 TEST(DescribeHomeAssistant, DoesNotPollHostOkCommunicationSettingsOrCoilsThatClearCounters) {
   for (const char* model : {"EX9043D-M", "EX9052D-M"}) {
     for (const char* address :
-         {"12344", "256", "484", "485", "512"}) {  // host OK, protocol, address, rate, clear counter 0
+         {"12344", "256", "484", "485", "512"}) {  // host OK, protocol, address, baud rate, clear counter 0
       EXPECT_EQ(times(configuration_of(model), "address: " + std::string(address) + "\n"), 0)
           << model << " " << address;
     }

@@ -1,4 +1,5 @@
-// Tests the description for programs. The expected values are from wire.md.
+// Tests the description of models in JSON, for programs. The expected commands, functions and addresses are
+// from wire.md.
 #include "sim/app/exports/formats.hpp"
 
 #include <gtest/gtest.h>
@@ -16,7 +17,7 @@ Json json_of_model(const char* designation) {
   return Json::parse(json_of({find_model(designation)})).at("models").at(0);
 }
 
-/// Returns the object of the array that has this value under this key; null if there is none.
+/// Returns the first of `objects` that has this value under this key; null if there is none.
 Json with(const Json& objects, const char* key, const Json& value) {
   for (const Json& object : objects) {
     if (object.at(key) == value) {
@@ -26,7 +27,7 @@ Json with(const Json& objects, const char* key, const Json& value) {
   return {};
 }
 
-/// Returns the register with this id in this table; null if there is none.
+/// Returns the first of `registers` with this id and this table; null if there is none.
 Json in_table(const Json& registers, const char* id, const char* table) {
   for (const Json& each : registers) {
     if (each.at("id") == id && each.at("table") == table) {

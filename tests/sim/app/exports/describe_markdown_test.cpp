@@ -72,10 +72,10 @@ Lines commands(const char* designation) {
   return syntaxes;
 }
 
-/// Returns table, address, PLC number, functions and access of each register.
+/// Returns table, address, PLC number, functions and access of each row of the Modbus map.
 std::vector<Lines> map_of(const char* designation) { return rows(text_of(designation), "table", 5); }
 
-/// Returns the row of the tables for all models that begins with this cell; empty if there is none.
+/// Returns the first row that begins with this cell in the description of all models; empty if there is none.
 std::string row_beginning(const std::string& first) {
   for (const std::string& line : lines_of(markdown_of_all())) {
     if (line.find("| " + first + " |") == 0) {
@@ -100,8 +100,8 @@ std::ptrdiff_t pipes_in(const std::string& line) {
   return pipes;
 }
 
-/// Expects that a row has as many cells as the head of its table, no empty cell, and an even number of
-/// backticks.
+/// Expects that a row ends with a pipe, and has `pipes` pipes that separate cells, no empty cell, and an even
+/// number of backticks.
 void expect_row(const std::string& line, std::ptrdiff_t pipes) {
   EXPECT_EQ(line.back(), '|') << line;
   EXPECT_EQ(pipes_in(line), pipes) << line;
@@ -144,8 +144,8 @@ std::string generated_section() {
              : document.substr(from + begin.size(), to - from - begin.size());
 }
 
-/// Returns the first line that differs, from both texts; empty if the texts are equal. The whole texts would
-/// be too long for a message.
+/// Returns the first line that differs, from both texts; empty if the texts are equal. If only the end of the
+/// last line differs, returns a note. The whole texts would be too long for a message.
 std::string difference(const std::string& stands, const std::string& wanted) {
   if (stands == wanted) {
     return "";
@@ -155,13 +155,13 @@ std::string difference(const std::string& stands, const std::string& wanted) {
   is.resize(std::max(is.size(), ought.size()));
   ought.resize(is.size());
   const auto line = std::mismatch(is.begin(), is.end(), ought.begin());
-  return line.first == is.end() ? "the last line's end"
-                                : "'" + *line.first + "'\nwhere the program prints\n'" + *line.second + "'";
+  return line.first == is.end() ? "another end of the last line"
+                                : "'" + *line.first + "'\nbut the program prints\n'" + *line.second + "'";
 }
 
 TEST(Registers, MatchTheOutputOfTheProgram) {
   const std::string found = difference(generated_section(), markdown_of_all());
-  EXPECT_TRUE(found.empty()) << "registers.md has\n" << found << "\nRenew it with toolchain/update-documents";
+  EXPECT_TRUE(found.empty()) << "registers.md has\n" << found << "\nUpdate the file with toolchain/update-documents";
 }
 
 // --- form ---
@@ -281,7 +281,8 @@ TEST(DescribeMarkdown, ListsEveryFunction) {
             "| 10 | Write Multiple Registers | all modules execute it without a reply | -M |");
 }
 
-// The rows that every -M model has, except kCountingEdge: only models with inputs have it.
+// Rows of the Modbus map. Every -M model has these rows, except that only models with inputs have
+// kCountingEdge.
 const Lines kProtocol{"coil", "0x0100", "00257", "01, 05", "read, write"};
 const Lines kEnable{"coil", "0x0104", "00261", "01, 05", "read, write"};
 const Lines kTimeoutStatus{"coil", "0x010D", "00270", "01, 05", "read, write"};
@@ -291,11 +292,11 @@ const Lines kAddress{"holding register", "0x01E4", "40485", "03, 06, 10", "read,
 const Lines kBaud{"holding register", "0x01E5", "40486", "03, 06, 10", "read, write"};
 const Lines kTimeout{"holding register", "0x01E8", "40489", "03, 06, 10", "read, write"};
 
-/// The extension registers of firmware/extensions.md that a model has.
+/// One row of the Modbus map with extension registers (firmware/extensions.md).
 struct Extension {
   unsigned first;
   unsigned last;
-  bool writes;
+  bool writes;  ///< the registers can be written as holding registers
 };
 
 std::vector<Extension> extensions(unsigned inputs, unsigned outputs) {

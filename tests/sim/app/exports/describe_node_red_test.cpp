@@ -56,13 +56,13 @@ TEST(DescribeNodeRed, OverModbusTcpOnlyTheTypeOfTheClientDiffers) {
   EXPECT_EQ(flow, flow_of("EX9042D-M", {{"gateway", 502}, 0x0A}));
 }
 
-TEST(DescribeNodeRed, ReadsTheCoilsAndRegistersOfAModelWithOutputs) {
+TEST(DescribeNodeRed, ReadsOutputsSafeAndPowerOnValuesAndTheHostWatchdog) {
   EXPECT_EQ(asked(flow_of("EX9042D-M"), "modbus-read"),
             (std::vector<std::string>{"Coil 0 13", "Coil 128 13", "Coil 160 13", "Coil 260 1", "Coil 269 1",
                                       "HoldingRegister 488 1"}));
 }
 
-TEST(DescribeNodeRed, ReadsTheCoilsAndRegistersOfAModelWithInputs) {
+TEST(DescribeNodeRed, ReadsInputsLatchesCountersAndTheHostWatchdog) {
   EXPECT_EQ(asked(flow_of("EX9052D-M"), "modbus-read"),
             (std::vector<std::string>{"Coil 64 8", "Coil 96 8", "Coil 260 1", "Coil 269 1", "Input 0 8",
                                       "InputRegister 0 8", "HoldingRegister 488 1"}));

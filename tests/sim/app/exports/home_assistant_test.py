@@ -29,7 +29,7 @@ def entities(hub):
 
 
 def serial_alternative(text):
-    """Returns the hub with the keys in the comment instead of type, host and port."""
+    """Returns a list with the hub in `text`. The keys in the comment about serial ports replace type, host and port."""
     lines = text.splitlines()
     first = lines.index("#   type: serial")
     last = lines.index("#   stopbits: 1")

@@ -1,4 +1,4 @@
-"""A simulated module, and a master that sends requests as the tools do."""
+"""A simulated module, and a master that sends requests as Home Assistant, Node-RED and wb-mqtt-serial do."""
 
 import re
 import socket
@@ -23,6 +23,7 @@ class Line:
     """One module at address 01, which a master reaches over TCP.
 
     The option of the program selects the frames: --tcp selects Modbus RTU, --modbus-tcp selects Modbus TCP.
+    A request raises OSError if the simulator has ended or sends nothing for 60 s.
     """
 
     def __init__(self, model, option="--tcp"):
@@ -65,7 +66,10 @@ class Line:
         return reply[:-2]
 
     def _ask_modbus_tcp(self, request):
-        """Sends a request. Returns unit, function and data of the reply. Raises ValueError if the header is wrong."""
+        """Sends a request. Returns unit, function and data of the reply.
+
+        Raises ValueError if the transaction or the protocol in the header is wrong.
+        """
         self._transaction += 1
         self._socket.sendall(struct.pack(">HHH", self._transaction, 0, len(request)) + request)
         header = self._receive(6)
@@ -75,7 +79,7 @@ class Line:
         return self._receive(length)
 
     def _ask(self, function, first, value):
-        """Sends a request and returns the data of the reply. Raises ValueError if the reply is an exception."""
+        """Sends a request. Returns the data of the reply. Raises ValueError if the reply is wrong or an exception."""
         request = struct.pack(">BBHH", 1, function, first, value)
         reply = self._ask_modbus_tcp(request) if self.option == "--modbus-tcp" else self._ask_rtu(request)
         if reply[:2] != request[:2]:
@@ -83,12 +87,12 @@ class Line:
         return reply[2:]
 
     def read(self, kind, first, count=1):
-        """Returns bits or registers as numbers. Raises ValueError if the reply is an exception."""
+        """Returns bits or registers as numbers. Raises ValueError if the reply is wrong or an exception."""
         data = self._ask(FUNCTION_OF_READING[kind], first, count)[1:]
         if kind in ["coil", "discrete_input"]:
             return [data[bit // 8] >> bit % 8 & 1 for bit in range(count)]
         return list(struct.unpack(f">{count}H", data))
 
     def write_coil(self, address, on):
-        """Writes a coil. Raises ValueError if the reply is an exception."""
+        """Writes a coil. Raises ValueError if the reply is wrong or an exception."""
         self._ask(5, address, 0xFF00 if on else 0x0000)

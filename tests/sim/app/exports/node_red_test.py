@@ -1,5 +1,8 @@
 #!/usr/bin/env python3
-"""Tests that Node-RED and node-red-contrib-modbus support every property of the flows, and checks ids and wires."""
+"""Tests that Node-RED and node-red-contrib-modbus support every property of the flows.
+
+Also checks the ids, wires and positions of the nodes.
+"""
 
 import copy
 import json
@@ -46,7 +49,7 @@ def wrong_wires(node, nodes):
 
 
 def mistakes(all_nodes):
-    """Returns a description of each error in a flow."""
+    """Returns descriptions of the errors in a flow; an empty list if the flow is valid."""
     unknown = {node["type"] for node in all_nodes} - set(KNOWN["nodes"])
     if unknown:
         return [f"there is no node {', '.join(unknown)}"]

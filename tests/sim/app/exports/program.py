@@ -1,4 +1,4 @@
-"""Runs `ex9000-sim describe`."""
+"""Runs `ex9000-sim describe` and `ex9000-sim --models`."""
 
 import os
 import pathlib
@@ -17,7 +17,7 @@ def describe(*arguments):
 
 
 def models_with_modbus():
-    """Returns the models with Modbus. Raises LookupError if a known model is missing."""
+    """Returns the models with Modbus. Raises LookupError if one of five known models is missing."""
     models = [line.split()[0] for line in run("--models").splitlines() if "Modbus RTU" in line]
     missing = {"EX9042D-M", "EX9043D-M", "EX9052D-M", "EX9068D-M", "EX9068AD-M"} - set(models)
     if missing:

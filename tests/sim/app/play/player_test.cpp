@@ -1,4 +1,5 @@
-// Tests that the player reports wrong, missing and unexpected replies, and rejects wrong files.
+// Tests that the player reports wrong, missing and unexpected replies and wrong states of the outputs and the
+// LED, and that wrong files are rejected.
 #include "sim/app/play/player.hpp"
 
 #include <gtest/gtest.h>
@@ -62,7 +63,7 @@ TEST(Player, ReportsAWrongOrMissingReplyAndAWrongStateOfOutputsOrLed) {
   EXPECT_FALSE(passes(kHeader + "led flashing\n"));
 }
 
-TEST(Player, ReportsAnUnexpectedReplyAtAnyStep) {
+TEST(Player, ReportsAnUnexpectedReply) {
   EXPECT_FALSE(passes(kHeader + "> $01M\n> $02M\nsilence\n"));
   EXPECT_FALSE(passes(kHeader + "> $01M\nsilence\n"));
   EXPECT_FALSE(passes(kHeader + "> $01M\nwait 100ms\n"));

@@ -1,4 +1,5 @@
-// Tests scenarios, whose steps run on several modules and lines, and `play` with files and folders.
+// Tests scenarios, whose steps may use several modules and lines, `play` with files and folders, and the
+// syntax of steps.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -63,7 +64,8 @@ TEST(Scenario, AllLinesHaveTheSameTime) {
             "");
 }
 
-// At 9600 baud, the first byte of the reply ends 2.1 ms after the request if the reply is not late.
+// At 9600 baud, the first byte of the reply ends 2.1 ms after the end of the request if the reply is not
+// late.
 TEST(Scenario, SilencePassesIfNoByteArrivesFor250ms) {
   EXPECT_NE(failure_of("fault late-reply 247500us\n> $01M\nsilence\n"), "");
   EXPECT_EQ(failure_of("fault late-reply 248500us\n> $01M\nsilence\n< !019042D\n"), "");
@@ -210,7 +212,7 @@ sim::Setup with_eeprom(const std::string& path) {
   return setup;
 }
 
-/// Returns an image of a module at address 07.
+/// Returns an EEPROM image of an EX9042D at address 07.
 std::string image_at_07() {
   const auto image = sim::SimulatedModule::memory_image(*find_model("EX9042D"),
                                                         sim::parse_module_spec("EX9042D@07").settings);
@@ -328,8 +330,8 @@ TEST(Play, RefusesAFileWithoutValidSteps) {
 
 // --- syntax of steps ---
 
-/// Loads a file that contains only this step. Returns the error message without its place; empty if the step
-/// is valid.
+/// Loads a file that contains only this step. Returns the error message without the file and the line number;
+/// empty if the step is valid.
 std::string refusal_of(const std::string& step) {
   const Directory directory;
   write_file(directory / "steps.txt", step + "\n");

@@ -1,4 +1,5 @@
-// Tests the control socket of the running program with well-behaved and misbehaving clients.
+// Tests the control socket of the program: commands and replies, clients that misbehave, the end of the
+// program, and the path of the socket.
 #include <gtest/gtest.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
@@ -24,10 +25,10 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kMostClients = 64;
-/// A timeout for events. Only a program that hangs reaches it.
+/// The timeout for a reply on the line. Only a program that hangs reaches it.
 constexpr std::chrono::seconds kReplyTimeout{60};
 
-/// Runs the program with a control socket.
+/// Runs the program with a control socket and an instant line.
 class Simulator : public SimulatorProcess {
  public:
   explicit Simulator(const std::vector<std::string>& modules) : SimulatorProcess(arguments(modules)) {}
@@ -43,14 +44,15 @@ class Simulator : public SimulatorProcess {
 
 bool starts_with(const std::string& text, const std::string& start) { return text.rfind(start, 0) == 0; }
 
-/// Runs the program. If the program starts unexpectedly, `timeout` ends it after 60 s with status 124.
+/// Runs the program in `directory` until it ends. If the program starts unexpectedly, the command `timeout`
+/// ends it after 60 s, and the status is 124.
 Finished finish(std::vector<std::string> arguments, const std::string& directory) {
   arguments.insert(arguments.begin(), {"timeout", "60", simulator_path()});
   return run(arguments, directory);
 }
 
-/// Expects that the program does not start: exit status 2, one line that names the path, and no change in
-/// `directory`.
+/// Expects that the program does not start: exit status 2, no standard output, one line on standard error
+/// that names `path`, and no change in `directory`.
 void expect_refused(const std::string& path, const Directory& directory) {
   const auto before = directory.contents();
   const Finished finished = finish({"EX9042D,eeprom=image", "--control", path}, directory.path());
@@ -100,7 +102,7 @@ void expect_undisturbed(const Simulator& simulator) {
 
 // --- commands and replies ---
 
-TEST(ControlSocket, CommandsTakeEffectOnTheLine) {
+TEST(ControlSocket, CommandsSetInputsAndReadOutputsOfAModule) {
   Simulator simulator({"EX9055D"});
   ControlClient client(simulator.socket());
   Terminal terminal(simulator.tty(), 9600);
@@ -115,7 +117,7 @@ TEST(ControlSocket, CommandsTakeEffectOnTheLine) {
   EXPECT_EQ(std::stoul(client.ok("1 outputs"), nullptr, 16), 0x81U);
 }
 
-TEST(ControlSocket, TheModuleWatchdogEndsAHangWithoutACommand) {
+TEST(ControlSocket, TheModuleWatchdogEndsAHang) {
   Simulator simulator({"EX9055D"});
   ControlClient client(simulator.socket());
   Terminal terminal(simulator.tty(), 9600);
@@ -163,14 +165,14 @@ TEST(ControlSocket, ACommandMayArriveInPieces) {
   ControlClient client(simulator.socket());
   for (const char character : std::string("1 input 4 on")) {
     client.send(std::string(1, character));
-    EXPECT_EQ(other.ask("1 inputs"), "ok 0000");  // the program has read the piece before it replies
+    EXPECT_EQ(other.ask("1 inputs"), "ok 0000");  // before this reply, the program reads the piece
   }
   client.send("\n");
   EXPECT_EQ(client.line(), "ok");
   EXPECT_EQ(other.ask("1 inputs"), "ok 0010");
 }
 
-TEST(ControlSocket, SeveralClientsInterleaveAndEachGetsItsOwnReplies) {
+TEST(ControlSocket, EachOfSeveralClientsGetsAReplyToEachCommand) {
   Simulator simulator({"EX9055D", "EX9052D@02"});
   const auto clients = connect(simulator.socket(), 8);
   for (int round = 0; round < 20; ++round) {
@@ -240,13 +242,14 @@ TEST(ControlSocket, CommandsOfAClientThatDisconnectsImmediatelyAreExecuted) {
   ControlClient(simulator.socket()).send("1 input 0 on\n1 input 7 on\n");
   ControlClient other(simulator.socket());
   std::string inputs;
-  for (int turn = 0; inputs != "ok 0081" && turn < 100; ++turn) {  // the program serves clients in turns
+  // The program may reply to `other` before it has carried out both commands of the first client.
+  for (int turn = 0; inputs != "ok 0081" && turn < 100; ++turn) {
     inputs = other.ask("1 inputs");
   }
   EXPECT_EQ(inputs, "ok 0081");
 }
 
-TEST(ControlSocket, AClientThatNeverReadsIsThrottledAndDoesNotDelayOthers) {
+TEST(ControlSocket, AClientThatDoesNotReadIsThrottledAndOthersGetTheirReplies) {
   Simulator simulator({"EX9055D"});
   ControlClient other(simulator.socket());
   const std::string command = "1 status\n";
@@ -254,7 +257,8 @@ TEST(ControlSocket, AClientThatNeverReadsIsThrottledAndDoesNotDelayOthers) {
   {
     ControlClient deaf(simulator.socket());
     std::size_t refusals = 0;
-    // When `other` gets its reply, the program has read as much from `deaf` as possible.
+    // While the test waits for the reply to `other`, the program has time to read from `deaf`. Therefore, 100
+    // refusals mean that the program has stopped reading from `deaf`.
     while (refusals < 100) {
       const std::size_t taken = deaf.offer(command);
       sent += taken / command.size();
@@ -273,7 +277,7 @@ TEST(ControlSocket, AClientThatNeverReadsIsThrottledAndDoesNotDelayOthers) {
   expect_undisturbed(simulator);
 }
 
-TEST(ControlSocket, AtMost64ClientsAreServedAndFurtherOnesAreDisconnected) {
+TEST(ControlSocket, AtMost64ClientsAreServedAndFurtherClientsAreDisconnected) {
   Simulator simulator({"EX9055D"});
   auto clients = connect(simulator.socket(), 100);
   EXPECT_EQ(answered(clients), kMostClients);
@@ -281,7 +285,7 @@ TEST(ControlSocket, AtMost64ClientsAreServedAndFurtherOnesAreDisconnected) {
   EXPECT_EQ(ControlClient(simulator.socket()).line(),
             "error: there are 64 clients already; close one of them");
   clients.resize(1);
-  ASSERT_TRUE(is_answered(*clients[0]));  // the program has noticed the closed connections before it replies
+  ASSERT_TRUE(is_answered(*clients[0]));  // before this reply, the program notices the closed connections
   const auto heirs = connect(simulator.socket(), 100);
   EXPECT_EQ(answered(heirs), kMostClients - 1);
   EXPECT_TRUE(is_answered(*clients[0]));
@@ -289,7 +293,7 @@ TEST(ControlSocket, AtMost64ClientsAreServedAndFurtherOnesAreDisconnected) {
 
 TEST(ControlSocket, ClosedConnectionsLeakNoFileDescriptors) {
   Simulator simulator({"EX9055D"});
-  for (int i = 0; i < 1500; ++i) {  // more than the number of files that a process may have open
+  for (int i = 0; i < 1500; ++i) {  // more than 1024, the usual limit for the open files of a process
     ControlClient client(simulator.socket());
     if (i % 2 == 0) {
       client.send("1 led");
@@ -324,7 +328,7 @@ TEST(ControlSocket, QuitWorksWhileAnotherClientDoesNotRead) {
   EXPECT_TRUE(fs::is_empty(simulator.directory()));
 }
 
-TEST(ControlSocket, ASignalRemovesLinkAndSocket) {
+TEST(ControlSocket, SigintSigtermAndSighupEndTheProgramAndRemoveLinkAndSocket) {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     Simulator simulator({"EX9055D"});
     ControlClient client(simulator.socket());
@@ -349,7 +353,7 @@ TEST(ControlSocket, TheGreetingNamesTheSocket) {
   EXPECT_NE(simulator.output().find("control socket control\n"), std::string::npos) << simulator.output();
 }
 
-TEST(ControlSocket, ASocketLeftByADeadProcessIsTakenOver) {
+TEST(ControlSocket, TheSocketOfAKilledProcessIsReplaced) {
   Simulator dead({"EX9055D"});
   EXPECT_EQ(dead.end(SIGKILL), 128 + SIGKILL);
   ASSERT_TRUE(fs::is_socket(dead.socket()));
@@ -369,7 +373,7 @@ TEST(ControlSocket, ASocketInUseIsRefusedAndContinuesToWork) {
   EXPECT_TRUE(is_answered(*clients[0]));
 }
 
-TEST(ControlSocket, AnyOtherFileAtThePathIsRefusedAndNotRemoved) {
+TEST(ControlSocket, AFileAtThePathThatIsNotASocketIsRefusedAndNotRemoved) {
   const Directory directory;
   write_file(directory / "file", "precious");
   write_file(directory / "empty", "");

@@ -1,4 +1,4 @@
-// Tests the commands for faults on the control socket.
+// Tests the control socket's commands for faults.
 #include <gtest/gtest.h>
 
 #include "tests/sim/front_ends/control/control_bench.hpp"
@@ -6,7 +6,7 @@
 namespace ex9000::sim {
 namespace {
 
-TEST(ControlFault, BeginsImmediatelyAndIsRemovedByItsNumber) {
+TEST(ControlFault, BeginsImmediatelyAndIsRemovedByItsNumberOrWithAll) {
   ControlBench bench("EX9042D");
   EXPECT_EQ(bench.tell("1 fault lost-reply"), "ok 1");
   EXPECT_EQ(bench.ask("$01M"), "");
@@ -44,7 +44,7 @@ TEST(ControlFault, GoneIsIndependentOfThePowerSwitch) {
   EXPECT_TRUE(bench.status_has("power=off"));
 }
 
-TEST(ControlFault, AWrongFaultIsRefusedAndChangesNothing) {
+TEST(ControlFault, AnInvalidFaultCommandIsRefusedAndAddsNoFault) {
   ControlBench bench("EX9055D");
   for (const char* command : {"fault",
                               "1 fault",

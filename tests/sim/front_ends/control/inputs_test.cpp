@@ -1,4 +1,4 @@
-// Tests the commands for inputs and pulses on the control socket, in virtual time.
+// Tests the control socket's commands for inputs and pulses, in virtual time.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -42,7 +42,7 @@ TEST(ControlInputs, AModuleReadsTheLevelsAndLatchesAndCountsTheirEdges) {
   EXPECT_EQ(bench.ask("#016"), "!0100001");
 }
 
-TEST(ControlInputs, LevelsSurviveAResetAndAPowerCut) {
+TEST(ControlInputs, LevelsSurviveAResetAndAPowerCycle) {
   ControlBench bench("EX9052D");
   bench.tell("1 input 1 on");
   bench.tell("1 reset");

@@ -1,4 +1,5 @@
-// Tests commands for a single line, for one of several lines, and for modules by their positions.
+// Tests the control socket's commands for a single line, for one of several lines, for modules by their
+// positions, and for the whole program.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -29,7 +30,7 @@ TEST(ControlLine, APositionSelectsOnlyThatModule) {
   EXPECT_TRUE(modules.at(3).powered());
 }
 
-TEST(ControlLine, APositionWithoutAModuleIsRefused) {
+TEST(ControlLine, AnInvalidPositionIsRefused) {
   ThreeModules modules;
   for (const char* position : {"0", "00", "4", "10", "256", "4294967297", "18446744073709551617", "-1", "+1",
                                "1.", "0x1", "1st", "A", "#1", "**"}) {
@@ -40,7 +41,7 @@ TEST(ControlLine, APositionWithoutAModuleIsRefused) {
   }
 }
 
-TEST(ControlLine, HelpNamesTheCommands) {
+TEST(ControlLine, HelpAndTheHelpOptionNameTheseCommands) {
   ControlBench bench("EX9052D");
   const std::string text = bench.tell("help");
   for (const char* command : {"power",  "reset",     "init",          "input",
@@ -53,7 +54,7 @@ TEST(ControlLine, HelpNamesTheCommands) {
   }
 }
 
-TEST(ControlLine, QuitIsAcknowledgedAndOnlyTheWholeWordQuits) {
+TEST(ControlLine, QuitIsAcknowledgedAndOnlyTheExactCommandQuits) {
   ModuleBench bench("EX9052D");
   Control control({{"", bench.line()}});
   const Control::Reply reply = control.carry_out("quit");
@@ -171,7 +172,7 @@ TEST(ControlLines, BaudAndFormatApplyOnlyToTheNamedLine) {
   EXPECT_EQ(lines.hall().master().mode().baud, 9600U);
 }
 
-TEST(ControlLines, LineCommandsRequireTheLineName) {
+TEST(ControlLines, CommandsForALineRequireItsNameIfThereAreSeveralLines) {
   TwoLines lines;
   for (const char* command : {"fault gone", "faults", "fault off all", "baud 9600", "format 8N1", "sent"}) {
     EXPECT_EQ(lines.tell(command), "error: there are several lines; put 'line NAME' before the command")

@@ -1,4 +1,5 @@
-// Tests that the control socket rejects invalid commands, and that a rejected command changes nothing.
+// Tests that the control socket rejects invalid commands, that a rejected command changes nothing, and that
+// additional blanks, tabs and a final carriage return have no effect.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -61,7 +62,7 @@ TEST(ControlRefusals, InvalidCommandsAreRefused) {
   }
 }
 
-TEST(ControlRefusals, BinaryBytesAndOverlongCommandsAreRefusedInOneLine) {
+TEST(ControlRefusals, BinaryBytesAndVeryLongCommandsAreRefusedInOneLine) {
   ControlBench bench("EX9055D");
   using namespace std::string_literals;
   for (const std::string& command :

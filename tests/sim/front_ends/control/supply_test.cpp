@@ -1,4 +1,4 @@
-// Tests the commands for power, reset, INIT* and a main loop that hangs, in virtual time.
+// Tests the control socket's commands for power, reset, INIT* and a main loop that hangs, in virtual time.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -58,7 +58,7 @@ TEST(ControlPower, OffDuringAWriteLeavesTheOldOrTheNewSettings) {
   }
 }
 
-TEST(ControlReset, ClearsOutputsAndCountersAndSetsTheResetStatus) {
+TEST(ControlReset, ClearsOutputsCountersAndLatchesAndSetsTheResetStatus) {
   ControlBench bench("EX9055D");
   bench.tell("1 input 3 on");
   bench.tell("1 pulse 0 7");
@@ -74,7 +74,7 @@ TEST(ControlReset, ClearsOutputsAndCountersAndSetsTheResetStatus) {
   EXPECT_TRUE(bench.status_has("watchdog-resets=0"));
 }
 
-TEST(ControlInit, InitModeIsEnteredAndLeftOnlyAtAReset) {
+TEST(ControlInit, InitModeIsEnteredAndLeftAtTheNextReset) {
   ControlBench bench("EX9042D-M@0A");
   EXPECT_EQ(bench.tell("1 init on"), "ok");
   bench.run(milliseconds(100));
@@ -153,7 +153,7 @@ TEST(ControlHang, ASecondHangDoesNotDelayTheWatchdogReset) {
   EXPECT_EQ(bench.ask("$01M"), "!019042D");
 }
 
-TEST(ControlHang, AResetOrAPowerCutEndsAHang) {
+TEST(ControlHang, AResetOrAPowerCycleEndsAHang) {
   for (const bool cut : {false, true}) {
     ControlBench bench("EX9042D");
     bench.tell("1 hang");

@@ -80,7 +80,7 @@ TEST(ControlStatus, FollowsTheHostWatchdog) {
   EXPECT_TRUE(bench.status_has("host-watchdog=disabled"));
 }
 
-TEST(ControlStatus, ShowsTheExtensionsThatAreSet) {
+TEST(ControlStatus, ReportsFedByResponseDelayAndInvertedInputs) {
   ControlBench bench("EX9055D");
   EXPECT_TRUE(bench.status_has("fed-by=host-ok response-delay=0ms inverted=0000"));
   ASSERT_EQ(bench.ask("~01X02510001"), "!01");
@@ -92,7 +92,7 @@ TEST(ControlStatus, ShowsTheExtensionsThatAreSet) {
 TEST(ControlView, TimersReadsTheRemainingTimeOfEachTimedOutput) {
   ControlBench bench("EX9063D");
   EXPECT_EQ(bench.tell("1 timers"), "ok 0 0 0");
-  bench.send("~01X02810003\r");  // output 1 for 0.3 s; the request takes 14 ms
+  bench.send("~01X02810003\r");  // switches on output 1 for 0.3 s
   bench.run(milliseconds(150));
   EXPECT_EQ(bench.tell("1 timers"), "ok 0 2 0");
   bench.run(milliseconds(200));

@@ -1,4 +1,4 @@
-// Tests the gateway from Modbus TCP to a line, in line time.
+// Tests the gateway from Modbus TCP to a line, in virtual time.
 #include "sim/front_ends/modbus_tcp/gateway.hpp"
 
 #include <gtest/gtest.h>
@@ -36,7 +36,7 @@ class GatewayLine {
     VirtualTime at{0};
   };
 
-  /// Sends a request to the gateway, and runs the line for two seconds. Returns the answer.
+  /// Sends a request to the gateway, runs the line for two seconds, and returns the answer and its time.
   Result ask(std::uint8_t unit, const Pdu& pdu) {
     Result result;
     gateway.ask({1, unit, pdu}, owner, [&](const std::optional<Pdu>& answer) {
@@ -62,7 +62,7 @@ class GatewayLine {
   }
 };
 
-TEST(Gateway, TheModuleAtTheAddressOfTheUnitReplies) {
+TEST(Gateway, TheModuleWhoseAddressIsTheUnitReplies) {
   GatewayLine bench({"EX9042D-M@01", "EX9052D-M@F7"});
   EXPECT_EQ(bench.reply(0x01, kReadOutputs), kOutputsOff);
   EXPECT_EQ(bench.reply(0xF7, {0x02, 0x00, 0x00, 0x00, 0x08}), (Pdu{0x02, 0x01, 0x00}));
@@ -129,7 +129,7 @@ TEST(Gateway, AModbusModuleIsReachedBesideAsciiModules) {
   EXPECT_EQ(bench.reply(0x01, kReadOutputs), (Pdu{0x81, kNoReply}));
 }
 
-TEST(Gateway, AModuleWithoutSupplyGetsException0B) {
+TEST(Gateway, ARequestToAModuleWithoutPowerGetsException0B) {
   GatewayLine bench({"EX9042D-M@01"});
   bench.line.module(0).power(false);
   EXPECT_EQ(bench.reply(0x01, kReadOutputs), (Pdu{0x81, kNoReply}));
@@ -194,13 +194,13 @@ std::vector<Pdu> answers_if_replies_are_late(GatewayLine& bench, RequestFor requ
   return answers;
 }
 
-TEST(Gateway, ALateReplyIsNotTheReplyToTheNextClient) {
+TEST(Gateway, ALateReplyToAWriteIsNotTheReplyToTheNextWrite) {
   GatewayLine bench({"EX9042D-M@01"});
   const auto write = [](std::uint8_t coil) { return Pdu{0x05, 0x00, coil, 0xFF, 0x00}; };
   EXPECT_EQ(answers_if_replies_are_late(bench, write), std::vector<Pdu>(6, Pdu{0x85, kNoReply}));
 }
 
-TEST(Gateway, ALateReplyWithOtherValuesIsNotTheReplyToTheNextClient) {
+TEST(Gateway, ALateReplyToAReadIsNotTheReplyToTheNextRead) {
   GatewayLine bench({"EX9042D-M@01"});
   bench.reply(0x01, kOutput0On);
   // All replies have the same form, but only the first one has the value 1.
@@ -217,7 +217,7 @@ TEST(Gateway, TheReplyToAnotherMasterIsNotTheReplyToTheClient) {
   std::optional<Pdu> reply;
   bench.gateway.ask({1, 0x01, read_coil_0}, bench.owner,
                     [&](const std::optional<Pdu>& answer) { reply = answer; });
-  bench.line.bus().run_for(milliseconds(100));  // the reply was lost
+  bench.line.bus().run_for(milliseconds(100));  // the reply of the module is lost
   const std::vector<std::uint8_t> other = rtu_frame(0x01, {0x01, 0x00, 0x05, 0x00, 0x01});
   bench.line.master().send(other.data(), other.size());
   bench.line.bus().run_for(seconds(2));
@@ -242,7 +242,7 @@ TEST(Gateway, AReplyAfterTheTimeoutIsNotTheReplyToTheNextRequest) {
   EXPECT_EQ(bench.reply(0x03, kReadOutputs), (Pdu{0x81, kNoReply}));
 }
 
-TEST(Gateway, AllPdusUpTo253BytesReachTheLine) {
+TEST(Gateway, PdusOf1To253BytesReachTheLine) {
   GatewayLine bench({"EX9042D-M@01"});
   for (const std::size_t size : {1U, 2U, 100U, 252U, 253U}) {
     Pdu pdu(size, 0x00);

@@ -1,4 +1,4 @@
-// Tests several clients of Modbus TCP that share a line, in line time.
+// Tests the sessions of Modbus TCP clients on one line, in virtual time.
 #include "sim/front_ends/modbus_tcp/mbap_session.hpp"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ namespace {
 using Buffer = std::vector<std::uint8_t>;
 using std::chrono::seconds;
 
-/// A client that keeps some requests in flight and checks each reply.
+/// A client that sends further requests before it has received all replies, and checks each reply.
 class PollingClient {
  public:
   PollingClient(Gateway& gateway, unsigned number)
@@ -30,12 +30,12 @@ class PollingClient {
     static constexpr std::uint8_t kUnits[] = {1, 2, 9, 250};
     const std::uint8_t unit = kUnits[random_() % 100 < 96 ? random_() % 2 : 2 + random_() % 2];
     const auto transaction = static_cast<std::uint16_t>(random_());
-    // The random quantity distinguishes the replies of a module.
+    // With a random quantity, two replies of unit 1 usually differ, because all outputs of unit 1 are on.
     const auto quantity = static_cast<std::uint8_t>(1 + random_() % 8);
     expected_.push_back({transaction, unit, quantity});
     Buffer bytes = mbap_bytes({transaction, unit, {0x01, 0x00, 0x00, 0x00, quantity}});
     pieces_.insert(pieces_.end(), bytes.begin(), bytes.end());
-    const std::size_t now = random_() % (pieces_.size() + 1);  // the rest arrives with a later piece
+    const std::size_t now = random_() % (pieces_.size() + 1);  // the rest arrives later
     session_.receive({pieces_.data(), now});
     pieces_.erase(pieces_.begin(), pieces_.begin() + static_cast<std::ptrdiff_t>(now));
   }
@@ -187,14 +187,14 @@ TEST(MbapSession, ClientsTakeTurnsAlthoughOneHasManyRequests) {
   EXPECT_EQ(order, (std::vector<std::string>{"many", "one"}));
 }
 
-TEST(MbapSession, RequestsOfAClientThatHasLeftAreNotSent) {
+TEST(MbapSession, WaitingRequestsOfADisconnectedClientAreNotSent) {
   Line line({parse_module_spec("EX9042D-M@01")}, kPaced, [](std::uint8_t /*byte*/, ByteStatus /*status*/) {});
   line.come_up();
   Gateway gateway(line);
   auto session = std::make_unique<MbapSession>(
       gateway,
       [](const Buffer& /*bytes*/) {
-        ADD_FAILURE() << "a reply after the client has left";
+        ADD_FAILURE() << "a reply after the client has disconnected";
         return true;
       },
       [] {});

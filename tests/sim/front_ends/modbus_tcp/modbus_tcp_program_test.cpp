@@ -1,4 +1,5 @@
-// Tests the option --modbus-tcp of the program. If the result depends on times, the test uses stepped time.
+// Tests Modbus TCP in the program: the option --modbus-tcp, and the key `modbus-tcp` of a bus file. A test
+// whose result depends on times uses stepped time (--speed step).
 #include <gtest/gtest.h>
 
 #include <string>
@@ -14,12 +15,12 @@ namespace {
 
 using Buffer = std::vector<std::uint8_t>;
 
-/// Transactions 1 and 2: read the outputs of unit 1.
+/// Transactions 1 and 2 read the outputs of unit 1.
 const Buffer kFirst{0x00, 0x01, 0x00, 0x00, 0x00, 0x06, 0x01, 0x01, 0x00, 0x00, 0x00, 0x0D};
 const Buffer kSecond{0x00, 0x02, 0x00, 0x00, 0x00, 0x06, 0x01, 0x01, 0x00, 0x00, 0x00, 0x0D};
 const Buffer kFirstReply{0x00, 0x01, 0x00, 0x00, 0x00, 0x05, 0x01, 0x01, 0x02, 0x00, 0x00};
 const Buffer kSecondReply{0x00, 0x02, 0x00, 0x00, 0x00, 0x05, 0x01, 0x01, 0x02, 0x00, 0x00};
-/// Transaction 3: unit 9, which does not exist.
+/// Transaction 3 reads the outputs of unit 9, which exists only in ABusFileHasOneGatewayForEachLine.
 const Buffer kToNobody{0x00, 0x03, 0x00, 0x00, 0x00, 0x06, 0x09, 0x01, 0x00, 0x00, 0x00, 0x0D};
 const Buffer kNoReply{0x00, 0x03, 0x00, 0x00, 0x00, 0x03, 0x09, 0x81, 0x0B};
 
@@ -42,7 +43,7 @@ TEST(ModbusTcpProgram, AMasterReadsAModuleInRealTime) {
   }
 }
 
-TEST(ModbusTcpProgram, TheGreetingNamesThePortAndCommandsThatReadAModule) {
+TEST(ModbusTcpProgram, TheGreetingNamesThePortAndACommandThatReadsAModule) {
   SimulatorProcess simulator({"EX9042D-M@01", "--modbus-tcp", "0"});
   const std::string port = std::to_string(simulator.tcp_port());
   EXPECT_NE(simulator.output().find("  Modbus TCP 127.0.0.1:" + port), std::string::npos)
@@ -52,14 +53,14 @@ TEST(ModbusTcpProgram, TheGreetingNamesThePortAndCommandsThatReadAModule) {
       << simulator.output();
 }
 
-TEST(ModbusTcpProgram, InSteppedTimeAnAdvanceEndsAfterTheRepliesToItsRequests) {
+TEST(ModbusTcpProgram, InSteppedTimeAQuietAdvanceEndsAfterTheRepliesToTheArrivedRequests) {
   SimulatorProcess simulator({"EX9042D-M@01", "--modbus-tcp", "0", "--speed", "step", "--control", "ctl"});
   ControlClient control(simulator.directory() + "/ctl");
   SocketClient master(simulator.tcp_port());
   master.send(kFirst);
   master.send(kToNobody);
   master.send(kSecond);
-  // 100 ms of start-up, and 500 ms without reply
+  // The module starts up in 100 ms. The request to unit 9 waits 500 ms for a reply.
   EXPECT_EQ(control.ok("advance 10s after 36 quiet").rfind("0.6", 0), 0U);
   EXPECT_EQ(master.receive(31), kFirstReply + kNoReply + kSecondReply);
 }
@@ -85,7 +86,7 @@ TEST(ModbusTcpProgram, InSteppedTimeAnAdvanceCountsBytesThatArriveAfterWaitingRe
   EXPECT_EQ(master.receive(11 * (kMany + 1)), replies + kSecondReply);
 }
 
-TEST(ModbusTcpProgram, TheSameCommandsGiveTheSameTimes) {
+TEST(ModbusTcpProgram, InSteppedTimeTheSameCommandsGiveTheSameLog) {
   std::vector<std::string> runs;
   for (int run = 0; run < 2; ++run) {
     SimulatorProcess simulator(

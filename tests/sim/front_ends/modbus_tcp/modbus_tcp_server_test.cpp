@@ -23,7 +23,7 @@ const Buffer kOutputsOff{0x01, 0x02, 0x00, 0x00};
 Buffer request(std::uint16_t transaction) { return mbap_bytes({transaction, 1, kReadOutputs}); }
 Buffer reply(std::uint16_t transaction) { return mbap_bytes({transaction, 1, kOutputsOff}); }
 
-/// A server on an instant line whose time passes only with `pass`.
+/// A server on an instant line. After the constructor, the time of the line passes only in `pass`.
 class ModbusTcpServerTest : public testing::Test {
  protected:
   ModbusTcpServerTest() {
@@ -59,7 +59,7 @@ class ModbusTcpServerTest : public testing::Test {
       ASSERT_EQ(io_.run_one_for(std::chrono::seconds(60)), 1U) << arrived_;
     }
   }
-  /// Puts the arrived bytes on the line and lets time pass.
+  /// Lets the server process what has arrived, and runs the line for `time`.
   void pass(VirtualTime time = std::chrono::seconds(1)) {
     for (const auto& process : std::exchange(arrivals_, {})) {
       process();
@@ -72,7 +72,8 @@ class ModbusTcpServerTest : public testing::Test {
     bytes.resize(boost::asio::read(client, boost::asio::buffer(bytes), error));
     return bytes;
   }
-  /// Returns whether the server has closed the connection, without further bytes.
+  /// Returns whether the server has closed the connection and no byte is left to read. Blocks while the
+  /// connection is open and no byte arrives.
   bool closed(tcp::socket& client) {
     io_.poll();
     std::uint8_t byte = 0;
@@ -113,7 +114,7 @@ TEST_F(ModbusTcpServerTest, EachClientGetsItsOwnReplies) {
   EXPECT_EQ(receive(first, 11), reply(1));
 }
 
-TEST_F(ModbusTcpServerTest, AWrongHeaderEndsTheConnectionAfterTheRepliesBeforeIt) {
+TEST_F(ModbusTcpServerTest, AWrongHeaderEndsTheConnectionAfterTheRepliesToEarlierRequests) {
   tcp::socket client = connect();
   Buffer bytes = request(1);
   const Buffer wrong_protocol{0x00, 0x02, 0x00, 0x01, 0x00, 0x06, 0x01};
@@ -158,7 +159,7 @@ TEST_F(ModbusTcpServerTest, AClientThatDisappearsDoesNotAffectAnotherClient) {
     send(client, request(1));
     send(client, request(2));
     wait_for_arrival(24);
-    client.set_option(tcp::socket::linger(true, 0));  // closes with a reset
+    client.set_option(tcp::socket::linger(true, 0));  // the destructor sends a TCP reset
   }
   send(other, request(3));
   wait_for_arrival(36);
@@ -206,7 +207,7 @@ TEST_F(ModbusTcpServerTest, TheServerDoesNotReadWhileTheLineAcceptsNoMoreBytes) 
 TEST_F(ModbusTcpServerTest, WaitingBytesAreReadWithoutTheIoContext) {
   tcp::socket client = connect();
   send(client, request(1));
-  while (arrived_ < 12) {  // TCP may deliver later
+  while (arrived_ < 12) {  // TCP may deliver the bytes later
     server_.read_waiting();
   }
   pass();

@@ -7,7 +7,7 @@
 namespace ex9000::sim {
 namespace {
 
-TEST(Loopback, AcceptsItsNamesWithThePort) {
+TEST(Loopback, AcceptsItsNamesOnlyWithThePort) {
   const Loopback here(9042);
   for (const std::string name : {"127.0.0.1", "localhost"}) {
     EXPECT_TRUE(here.is_host(name + ":9042"));
@@ -19,7 +19,7 @@ TEST(Loopback, AcceptsItsNamesWithThePort) {
   EXPECT_FALSE(here.is_host("example.org:9042"));
 }
 
-TEST(Loopback, AcceptsItsNamesWithoutThePortIfItIs80) {
+TEST(Loopback, AcceptsItsNamesWithOrWithoutThePortAtPort80) {
   const Loopback here(80);
   for (const std::string name : {"127.0.0.1", "localhost"}) {
     for (const std::string port : {"", ":80"}) {

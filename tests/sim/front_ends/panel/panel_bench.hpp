@@ -12,7 +12,7 @@
 
 namespace ex9000::sim {
 
-/// A line with one module, and a page of the panel that shows it.
+/// A line with one module, and a panel with one page that shows this line.
 class PanelBench : public ModuleBench {
  public:
   explicit PanelBench(const std::string& spec)
@@ -32,7 +32,7 @@ class PanelBench : public ModuleBench {
     viewer_ = panel_.viewer();
   }
 
-  /// Returns the next message to the page; null if there is none.
+  /// Updates the panel and returns the next message to the page; null if there is none.
   Message look() { return look(*viewer_); }
   Message look(PanelViewer& viewer) {
     panel_.look();

@@ -101,7 +101,7 @@ TEST(PanelConsole, ABroadcastThatWasNotSentIsReported) {
   EXPECT_EQ(answer["text"], "not sent: other masters did not stop sending within 500 ms");
 }
 
-TEST(PanelConsole, ALongPduMayHaveBlanks) {
+TEST(PanelConsole, TheLongestPduMayHaveBlanksAnd1001CharactersAreRefused) {
   PanelBench bench("EX9052D-M@01");
   std::string longest = "65";
   for (int i = 1; i < 253; ++i) {
@@ -124,7 +124,7 @@ TEST(PanelConsole, OnePageMayHaveSixteenRequestsInTheQueue) {
   EXPECT_EQ(bench.look()["answers"].size(), 16U);
 }
 
-TEST(PanelConsole, ARequestWithAnInvalidLineAddressOrKeyIsRejected) {
+TEST(PanelConsole, ARequestWithAnInvalidLineAddressTextOrKeyIsRejected) {
   PanelBench bench("EX9052D-M@01");
   EXPECT_FALSE(bench.viewer().ask(R"({"id": 1, "line": 1, "address": 1, "ask": "07"})"));
   EXPECT_FALSE(bench.viewer().ask(R"({"id": 1, "line": 0, "address": 248, "ask": "07"})"));

@@ -79,7 +79,7 @@ TEST(PanelMessages, APageGetsTheTimeAfterOneSecondWithoutAMessage) {
   bench.module().set_input(0, true);
   EXPECT_FALSE(bench.look().is_null());
   bench.pass_wall_time(milliseconds(999));
-  EXPECT_TRUE(bench.look().is_null()) << "the second begins at the last message";
+  EXPECT_TRUE(bench.look().is_null()) << "the wait of one second begins at the last message";
 }
 
 /// Two lines with two modules each. The modules of both lines are numbered consecutively.
@@ -210,7 +210,7 @@ TEST(PanelMessages, AMessageIsOneLineOfText) {
   EXPECT_EQ(text_of(bench.look()).find('\n'), std::string::npos);
 }
 
-TEST(PanelMessages, FramesComeWithTimeDirectionBytesAndMeaning) {
+TEST(PanelMessages, FramesComeWithTimeStationBytesAndMeaning) {
   PanelBench bench("EX9055D");
   static_cast<void>(bench.look());
   ASSERT_EQ(bench.ask("$01M"), "!019055");
@@ -255,7 +255,7 @@ TEST(PanelMessages, APageGetsOnlyTheLast250Entries) {
   EXPECT_TRUE(bench.look().is_null());
 }
 
-TEST(PanelMessages, FaultsAreReportedWhenTheyBeginAndEnd) {
+TEST(PanelMessages, FaultsAreReportedWhenTheyAreAddedAndRemoved) {
   PanelBench bench("EX9042D");
   EXPECT_EQ(bench.look()["state"]["lines"][0]["faults"], Message::array());
   ASSERT_TRUE(bench.viewer().ask(R"({"id": 5, "do": "1 fault late-reply 50ms"})"));
@@ -309,7 +309,7 @@ TEST(PanelMessages, ClosingAPageDoesNotUndoARefusedCommand) {
   EXPECT_EQ(bench.module().input_levels(), 0U);
 }
 
-TEST(PanelMessages, APageWithTooManyUndoCommandsIsRejected) {
+TEST(PanelMessages, ARequestBeyondTheLimitOfUndoCommandsIsRejected) {
   PanelBench bench("EX9055D");
   auto page = bench.panel().viewer();
   bool taken = true;

@@ -1,4 +1,4 @@
-// Tests the text of each part of a module's face, and the lines about its changes.
+// Tests the text of a module's face, and the texts about changes of the face.
 #include "sim/front_ends/terminal_view/face_text.hpp"
 
 #include <gtest/gtest.h>

@@ -26,7 +26,7 @@ class TerminalOutputTest : public ::testing::Test {
     close(window_);
   }
 
-  /// Waits for text in the window and returns it.
+  /// Waits for text in the window and returns up to 4096 bytes of it.
   std::string shown() {
     std::array<char, 4096> text{};
     const ssize_t size = read(window_, text.data(), text.size());
@@ -47,7 +47,7 @@ TEST_F(TerminalOutputTest, WritesToTheTerminal) {
 
 TEST_F(TerminalOutputTest, ReturnsTheSizeOfTheWindow) {
   const TerminalOutput output(program_);
-  EXPECT_EQ(output.screen().rows, 24U);  // a terminal without a size
+  EXPECT_EQ(output.screen().rows, 24U);  // the default for a terminal without a size
   EXPECT_EQ(output.screen().columns, 80U);
   const winsize size{50, 132, 0, 0};
   ioctl(window_, TIOCSWINSZ, &size);
@@ -55,7 +55,7 @@ TEST_F(TerminalOutputTest, ReturnsTheSizeOfTheWindow) {
   EXPECT_EQ(output.screen().columns, 132U);
 }
 
-TEST_F(TerminalOutputTest, KeepsWhatAStoppedTerminalDoesNotAccept) {
+TEST_F(TerminalOutputTest, KeepsWhatAnUnreadTerminalDoesNotAccept) {
   TerminalOutput output(program_);
   const std::string text(100'000, 'x');
   output.write(text);
@@ -69,7 +69,7 @@ TEST_F(TerminalOutputTest, KeepsWhatAStoppedTerminalDoesNotAccept) {
   EXPECT_EQ(received, text);
 }
 
-TEST_F(TerminalOutputTest, IsNotOpenWithoutATerminalThatMovesItsCursor) {
+TEST_F(TerminalOutputTest, IsNotOpenOnADumbTerminalOrAPipe) {
   setenv("TERM", "dumb", 1);
   EXPECT_FALSE(TerminalOutput(program_).is_open());
   setenv("TERM", "xterm", 1);
@@ -80,7 +80,7 @@ TEST_F(TerminalOutputTest, IsNotOpenWithoutATerminalThatMovesItsCursor) {
   close(pipe_ends[1]);
 }
 
-TEST(LocaleNames, RecognizesUtf8InAnySpelling) {
+TEST(LocaleNames, RecognizesUtf8InSeveralSpellings) {
   for (const char* name : {"C.UTF-8", "en_US.utf8", "de_DE.UTF8", "en_GB.utf-8", "nl_NL.UTF-8@euro"}) {
     EXPECT_TRUE(names_utf8(name)) << name;
   }

@@ -73,7 +73,8 @@ TEST_F(WatchTest, PaintsModulesAndRepaintsThemInPlaceAfterAChange) {
   EXPECT_EQ(looked(), Prints{relays(kAllOff)});
   EXPECT_EQ(looked(), Prints{});
   module().power(false);
-  // The sequence moves the cursor five lines up to the first column and erases everything below.
+  // The control sequences move the cursor to the first column of the fifth line above it, and erase the
+  // screen from there to the end.
   EXPECT_EQ(
       looked(),
       (Prints{"\x1b[5F\x1b[J1  EX9067D     9067                              LED - off      power off\n" +
@@ -82,7 +83,7 @@ TEST_F(WatchTest, PaintsModulesAndRepaintsThemInPlaceAfterAChange) {
   EXPECT_EQ(looked()[0].substr(0, 7), "\x1b[4F\x1b[J");
 }
 
-TEST_F(WatchTest, PrintsOtherTextAboveTheFaces) {
+TEST_F(WatchTest, PrintsOtherTextAboveTheModules) {
   watch({"EX9067D"});
   EXPECT_EQ(printed("a greeting"), Prints{"a greeting\n"});
   looked();
@@ -131,7 +132,7 @@ TEST_F(WatchTest, RepaintsEverythingAfterAChangeOfTheTerminalSize) {
   EXPECT_EQ(looked(), Prints{"\x1b[H\x1b[J" + relays(kAllOff)});
 }
 
-TEST_F(WatchTest, PrintsNothingOnATerminalThatIsNotReady) {
+TEST_F(WatchTest, DoesNotRepaintUntilTheTerminalHasAcceptedEarlierOutput) {
   watch({"EX9067D"});
   looked();
   terminal_.takes = false;

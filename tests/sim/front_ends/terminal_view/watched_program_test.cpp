@@ -17,7 +17,8 @@
 namespace ex9000::system {
 namespace {
 
-/// Runs the program in a terminal with UTF-8, which `script` provides. `settings` are arguments of stty.
+/// Runs the program with `arguments` in a terminal with UTF-8, and returns the text that it prints. The
+/// command `script` provides the terminal. `settings` are arguments of stty. Expects the exit status 0.
 std::string in_a_terminal(const std::string& settings, const std::string& arguments) {
   const Finished finished = run(
       {"script", "-qec",
@@ -63,7 +64,7 @@ TEST(WatchedProgram, ReportsChangesIfTheOutputIsNotATerminal) {
       << finished.output;
 }
 
-/// Both ends of a terminal window with 400 rows.
+/// Both ends of a pseudo-terminal with 400 rows: the end of the terminal window, and the end for programs.
 class Window {
  public:
   Window() : window_(posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC)) {
@@ -101,7 +102,7 @@ class Window {
   std::string device_;
 };
 
-TEST(WatchedProgram, AnUnreadTerminalDoesNotDelayReplies) {
+TEST(WatchedProgram, AModuleRepliesWhileTheTerminalIsNotRead) {
   const Directory directory;
   Window window;
   std::string command = "exec env TERM=xterm " + simulator_path() + " EX9052D@01,baud=115200";

@@ -1,4 +1,4 @@
-// Tests captures as Wireshark shows them, and the JSON log.
+// Tests captures and the JSON log. Most tests decode the capture with tshark.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -23,10 +23,12 @@ namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
-const std::string kSent = "0";  // frame.p2p_dir
+// The values of frame.p2p_dir for frames that the master sends and receives.
+const std::string kSent = "0";
 const std::string kReceived = "1";
 
-/// A simulator in stepped time. `decoded` kills the simulator, and then reads the capture.
+/// A simulator with `--speed step`, so that the test decides when time passes on the line. `decoded` kills
+/// the simulator, and then reads the capture.
 class Captured {
  public:
   explicit Captured(std::vector<std::string> arguments) : simulator_(with_capture(std::move(arguments))) {}
@@ -71,8 +73,8 @@ class Captured {
   bool killed_ = false;
 };
 
-/// A request, the length of its reply, the unit and the function of both frames, and the other fields that
-/// Wireshark shows for each frame.
+/// A request without its CRC, the number of bytes of its reply, the unit and the function that Wireshark
+/// shows for both frames, and some other fields of the request and of the reply.
 struct Exchange {
   Bytes request;
   std::size_t answer;
@@ -251,7 +253,7 @@ TEST(Capture, ForeignTrafficIsNotShownAsAReply) {
   EXPECT_EQ(packets[0].at("_ws.col.Info"), "   Query: Unit:   5, Func:   1: Read Coils");
 }
 
-TEST(Capture, ARunInVirtualTimeGivesAReproducibleCapture) {
+TEST(Capture, TwoRunsAtTheSpeedMaxGiveTheSameCapture) {
   const Directory directory;
   for (const char* name : {"a", "b"}) {
     const Finished finished =
@@ -266,8 +268,8 @@ TEST(Capture, ARunInVirtualTimeGivesAReproducibleCapture) {
   EXPECT_EQ(packets[0].at("frame.time_epoch").substr(0, 4), "1.10");
 }
 
-/// Returns the log without the notes about delays of the host. A delay of the host does not change the events
-/// on the line.
+/// Returns the log without the notes about delays of the host, the computer that runs the simulator. Such a
+/// delay does not change the events on the line.
 std::string without_delays_of_the_host(const std::string& log) {
   std::string kept;
   std::istringstream lines(log);
@@ -277,7 +279,7 @@ std::string without_delays_of_the_host(const std::string& log) {
   return kept;
 }
 
-TEST(Capture, IsTheSameAtEverySpeed) {
+TEST(Capture, TheFramesAndTheLogAreTheSameAtThreeSpeeds) {
   const Directory directory;
   // A foreign frame begins every second. The end of the run cuts off the last one.
   write_file(directory / "bus.json", R"({"log": "json", "lines": [{"name": "hall",
@@ -329,7 +331,7 @@ TEST(Capture, APlayGivesOneInterfacePerRun) {
   }
 }
 
-TEST(Capture, TheLimitsOfWiresharksDecodingMatchTheDocumentation) {
+TEST(Capture, WiresharkDoesNotNameFunction46AndDoesNotDecodeFourByteRequestsOrBroadcasts) {
   Captured line({"EX9042D-M@01"});
   line.tell(with_crc({1, 0x46, 0}));
   line.tell(with_crc({1, 0x11}));
@@ -339,7 +341,7 @@ TEST(Capture, TheLimitsOfWiresharksDecodingMatchTheDocumentation) {
       line.decoded({"_ws.col.Info", "_ws.col.Protocol", "exported_pdu.exported_pdu", "mbrtu.unit_id",
                     "modbus.func_code", "modbus.data", "modbus.diagnostic_code", "data.data"});
   ASSERT_EQ(packets.size(), 7U);
-  // Wireshark has no name for function 46.
+  // Wireshark has no name for function 0x46.
   EXPECT_NE(packets[0].at("_ws.col.Info").find("Query"), std::string::npos);
   EXPECT_NE(packets[0].at("_ws.col.Info").find("Unknown function (70)"), std::string::npos);
   EXPECT_EQ(packets[0].at("modbus.func_code"), "70");
@@ -355,7 +357,7 @@ TEST(Capture, TheLimitsOfWiresharksDecodingMatchTheDocumentation) {
   }
 }
 
-TEST(Capture, TimestampsAreTheStartTimePlusTheLineTime) {
+TEST(Capture, TimestampsLieWithinTheRunAndDifferByLineTime) {
   const auto wall = [] {
     return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
   };
@@ -373,8 +375,9 @@ TEST(Capture, TimestampsAreTheStartTimePlusTheLineTime) {
   const double answered = std::stod(packets[1].at("frame.time_epoch"));
   EXPECT_GT(asked, before);
   EXPECT_LT(answered, after);
-  // The reply begins after the eight characters of the request, a silence of 3.5 characters and the module's
-  // delay.
+  // The reply begins after the eight characters of the request and a silence of 3.5 characters of 11 bits
+  // (wire.md section 7). The formula counts 10 bits for each of them. The tolerance covers the difference of
+  // 0.36 ms.
   EXPECT_NEAR(answered - asked, (8 + 3.5) * 10 / 9600, 0.001);
   EXPECT_EQ(packets[0].at("frame.interface_name").find("127.0.0.1:"), 0U);
 }
@@ -421,7 +424,7 @@ TEST(Capture, AWriteErrorLeavesNoCreatedFilesBehind) {
   }
 }
 
-TEST(Capture, NeverOverwritesAFileThatTheRunUses) {
+TEST(Capture, RejectsTheBusFileTheControlSocketThePseudoTerminalAndTheEepromFile) {
   const Directory directory;
   const std::string bus = R"({"capture": "link", "control": "ctl", "lines": [
     {"pty": "tty", "modules": [{"model": "EX9042D", "eeprom": "n.bin"}]}]})";
@@ -438,7 +441,7 @@ TEST(Capture, NeverOverwritesAFileThatTheRunUses) {
       const Finished finished = run(command, directory.path());
       EXPECT_EQ(finished.status, 2) << finished.error;
       // While the target of the link does not exist, the program cannot detect that the link leads to the
-      // EEPROM file.
+      // EEPROM file. It then rejects the link with another message.
       if (path != "n.bin" || !named.empty()) {
         EXPECT_NE(finished.error.find(": is " + what + ", "), std::string::npos) << finished.error;
       }

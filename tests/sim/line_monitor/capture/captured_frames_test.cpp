@@ -51,7 +51,7 @@ TEST(Capture, EachLineIsAnInterfaceWithItsOwnRequests) {
                             {"modbus.bitnum", "8"}});
 }
 
-/// Changes one of the bytes that are sent.
+/// Inverts the levels in `mask` of one byte that is sent. `byte` is its position, counted from 0.
 class OneHit final : public sim::Disturbance {
  public:
   OneHit(unsigned byte, sim::Levels mask) : byte_(byte), mask_(mask) {}
@@ -85,7 +85,7 @@ Packet of_a_spoiled(const Bytes& request, OneHit hit) {
   return packets.empty() ? Packet() : packets[0];
 }
 
-TEST(Capture, ADamagedByteIsShownAsReceivedWithTheSentByteInAComment) {
+TEST(Capture, ADamagedByteIsShownAsReceivedAndDescribedInAComment) {
   const Bytes request = with_crc({1, 5, 0, 2, 0xFF, 0});
   expect_shown(of_a_spoiled(request, OneHit(3, 1U << 3U)),
                {{"frame.comment", "noise: byte 4: 06 instead of 02; wrong CRC"},

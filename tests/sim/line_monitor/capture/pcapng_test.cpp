@@ -1,5 +1,5 @@
-// Compares each byte in the blocks of a capture with the draft of the pcapng format. Tests the header of a
-// frame in Wireshark's own link type, Upper PDU.
+// Tests the blocks of a capture against the draft of the pcapng format. Tests the header of a frame in
+// Wireshark's own link type, Upper PDU.
 #include "sim/line_monitor/capture/pcapng.hpp"
 
 #include <gtest/gtest.h>
@@ -22,9 +22,11 @@ std::string hex(const std::vector<std::uint8_t>& bytes) {
   return text;
 }
 
-TEST(Pcapng, ASectionBeginsWithItsHeader) {
+TEST(Pcapng, ASectionHeaderContainsTheVersionAndTheNameOfTheProgram) {
+  // The first line of hex digits: block type, block length, byte-order magic, version 1.0, unknown length of
+  // the section.
   EXPECT_EQ(hex(pcapng::section_header("abcde")),
-            "0A0D0D0A 2C000000 4D3C2B1A 01000000 FFFFFFFF FFFFFFFF "  // magic, version 1.0, unknown length
+            "0A0D0D0A 2C000000 4D3C2B1A 01000000 FFFFFFFF FFFFFFFF "
             "04000500 61626364 65000000 00000000 2C000000");
 }
 

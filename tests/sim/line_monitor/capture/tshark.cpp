@@ -34,8 +34,9 @@ std::vector<Packet> decoded(const std::string& path, const std::vector<std::stri
   }
   const Finished finished = run(command);
   EXPECT_EQ(finished.status, 0) << finished.error;
-  EXPECT_EQ(finished.error.find("appears to"), std::string::npos)
-      << finished.error;  // tshark prints "appears to be cut short" or "appears to be damaged"
+  // If the file is incomplete or damaged, tshark prints "appears to have been cut short" or "appears to be
+  // damaged".
+  EXPECT_EQ(finished.error.find("appears to"), std::string::npos) << finished.error;
   std::vector<Packet> packets;
   std::string line;
   for (std::istringstream lines(finished.output); std::getline(lines, line);) {

@@ -7,14 +7,15 @@
 
 namespace ex9000::system {
 
-/// The values of the requested fields of a packet. Several values of one field are separated by commas.
+/// The values of the requested fields of a packet, by the name of the field. Several values of one field are
+/// separated by commas.
 using Packet = std::map<std::string, std::string>;
 
-/// Decodes all packets of a capture with the options that sim/docs/capture.md recommends. Fails the test if
-/// tshark reports an error in the file.
+/// Decodes all packets of a capture with the preferences (`-o`) of the example in sim/docs/capture.md. Fails
+/// the test if tshark fails or reports that the file is incomplete or damaged.
 std::vector<Packet> decoded(const std::string& path, const std::vector<std::string>& fields);
 
-/// Expects that the packet has these values. The packet may also have values of other fields.
+/// Expects that `packet` has the values of `wanted`. The packet may also have values of other fields.
 void expect_shown(const Packet& packet, const Packet& wanted);
 
 }  // namespace ex9000::system

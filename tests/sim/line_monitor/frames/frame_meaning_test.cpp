@@ -1,4 +1,5 @@
-// Tests the protocol, the text and the meaning that the simulator's log shows for a frame.
+// Tests how the simulator detects that a frame is DCON, and the text, the meaning and the error that its log
+// shows for a frame.
 #include "sim/line_monitor/frames/frame_meaning.hpp"
 
 #include <gtest/gtest.h>
@@ -31,7 +32,7 @@ TEST(LooksLikeDcon, IsTrueForADelimiterOrReplyCharacterBeforePrintableText) {
   }
 }
 
-TEST(LooksLikeDcon, CharactersThatModulesSkipBeforeADelimiterAreIgnored) {
+TEST(LooksLikeDcon, IgnoresZeroBytesAndALineFeedBeforeADelimiter) {
   const FrameBytes behind_line_feed = dcon("\n$01M\r");
   EXPECT_TRUE(looks_like_dcon(behind_line_feed));
   EXPECT_EQ(shown(behind_line_feed), "\\n$01M\\r");
@@ -51,7 +52,7 @@ TEST(LooksLikeDcon, IsTrueForAnIncompleteFrame) {
   EXPECT_TRUE(looks_like_dcon(dcon("$01")));
 }
 
-TEST(WasDcon, IsTrueForADamagedFrameThatBeginsAndEndsAsDcon) {
+TEST(WasDcon, IsTrueForADconFrameEvenIfItIsIncompleteOrDamagedInTheMiddle) {
   EXPECT_TRUE(was_dcon(dcon("$01M\r")));
   EXPECT_TRUE(was_dcon(dcon("$01")));
   EXPECT_TRUE(was_dcon(dcon("$0\xB1M\r")));
@@ -59,7 +60,7 @@ TEST(WasDcon, IsTrueForADamagedFrameThatBeginsAndEndsAsDcon) {
   EXPECT_EQ(meaning(dcon("$0\xB1M\r"), Speaker::Master), "contains characters that are not printable");
 }
 
-TEST(WasDcon, IsFalseForAllOtherFrames) {
+TEST(WasDcon, IsFalseForOtherFrames) {
   EXPECT_FALSE(was_dcon({}));
   EXPECT_FALSE(was_dcon(dcon("$0\xB1M")));
   EXPECT_FALSE(was_dcon(dcon("\x01\x05\r")));
@@ -68,7 +69,7 @@ TEST(WasDcon, IsFalseForAllOtherFrames) {
   EXPECT_FALSE(was_dcon(modbus));
 }
 
-TEST(LooksLikeDcon, IsFalseForAllOtherFrames) {
+TEST(LooksLikeDcon, IsFalseForOtherFrames) {
   EXPECT_FALSE(looks_like_dcon({}));
   EXPECT_FALSE(looks_like_dcon(dcon("01M\r")));
   EXPECT_FALSE(looks_like_dcon(dcon("\r")));
@@ -84,7 +85,7 @@ TEST(Shown, DconFramesAreShownAsText) { EXPECT_EQ(shown(dcon("$01M\r")), "$01M\\
 
 TEST(Shown, DconFramesWithoutACarriageReturnAreShownAsText) { EXPECT_EQ(shown(dcon("$01M")), "$01M"); }
 
-TEST(Shown, AllOtherFramesAreShownInHex) {
+TEST(Shown, OtherFramesAreShownInHex) {
   EXPECT_EQ(shown({0x01, 0x05, 0x00, 0x00, 0xFF, 0x00, 0x8C, 0x3A}), "01 05 00 00 FF 00 8C 3A");
   EXPECT_EQ(shown({0x00}), "00");
   EXPECT_EQ(shown({}), "");
@@ -111,7 +112,7 @@ TEST(DconMeaning, ABroadcastIsNamed) {
   EXPECT_TRUE(has(of_request("~**\r"), "host"));
 }
 
-TEST(DconMeaning, ACommandWithAChecksumIsNamedToo) {
+TEST(DconMeaning, ACommandWithAChecksumIsNamed) {
   EXPECT_EQ(of_request("$012B7\r").find("$AA2: "), 0U);
   EXPECT_EQ(of_request("~**D2\r").find("~**: "), 0U);
   EXPECT_EQ(of_request("#**77\r").find("#**: "), 0U);
@@ -124,7 +125,7 @@ TEST(DconMeaning, AWrongChecksumIsReported) {
   EXPECT_EQ(check_error(dcon("~**D3\r"), Speaker::Master), "wrong checksum");
 }
 
-TEST(DconMeaning, NoWrongChecksumIsReportedIfTheFrameMayHaveNone) {
+TEST(DconMeaning, NoWrongChecksumIsReportedIfTheFrameMayHaveNoChecksum) {
   EXPECT_EQ(check_error(dcon("@01FF\r"), Speaker::Master), "");
   EXPECT_EQ(check_error(dcon("$01Z\r"), Speaker::Master), "");
   EXPECT_EQ(check_error(dcon("$\r"), Speaker::Master), "");
@@ -142,7 +143,7 @@ TEST(DconMeaning, AFrameTooShortForAnAddressHasNoMeaning) {
   EXPECT_EQ(of_request("$0\r"), "");
 }
 
-TEST(DconMeaning, RefusalsIgnoredCommandsAndRepliesAreDistinguished) {
+TEST(DconMeaning, RefusalsIgnoredCommandsAndOtherRepliesAreDistinguished) {
   EXPECT_EQ(of_reply("?01\r"), "rejected");
   EXPECT_EQ(of_reply("?\r"), "rejected");
   EXPECT_TRUE(has(of_reply("!\r"), "ignored"));
@@ -153,7 +154,7 @@ TEST(DconMeaning, RefusalsIgnoredCommandsAndRepliesAreDistinguished) {
 
 // --- Modbus RTU ---
 
-TEST(ModbusMeaning, ARequestIsNamedWithItsAddressAndTheDataItAccesses) {
+TEST(ModbusMeaning, ARequestIsShownWithItsFunctionAddressValueAndMeaning) {
   const std::string text = of_request(FrameBytes{0x01, 0x05, 0x00, 0x00, 0xFF, 0x00});
   EXPECT_EQ(text.find("01: Write Single Coil"), 0U) << text;
   EXPECT_TRUE(has(text, "0000 = FF00")) << text;
@@ -167,7 +168,7 @@ TEST(ModbusMeaning, ARangeIsShownWithItsQuantity) {
   EXPECT_TRUE(has(text, "safe value")) << text;
 }
 
-TEST(ModbusMeaning, ARequestNamesTheRowOfTheMap) {
+TEST(ModbusMeaning, TheMeaningNamesTheDataAtTheAddress) {
   EXPECT_TRUE(has(of_request(FrameBytes{1, 0x02, 0, 0, 0, 8}), "inputs"));
   EXPECT_TRUE(has(of_request(FrameBytes{1, 0x01, 0, 0x40, 0, 8}), "latch high"));
   EXPECT_TRUE(has(of_request(FrameBytes{1, 0x01, 0, 0x60, 0, 8}), "latch low"));
@@ -198,12 +199,12 @@ TEST(ModbusMeaning, AnAddressOutsideTheMapIsReportedAsUnknown) {
   EXPECT_TRUE(has(of_request(FrameBytes{0x01, 0x03, 0x00, 0x10, 0x00, 0x01}), "unknown address"));
 }
 
-TEST(ModbusMeaning, AddressesOfMoreThan16InputsAreUnknown) {
+TEST(ModbusMeaning, CoilsOfA17thInputAreUnknown) {
   EXPECT_TRUE(has(of_request(FrameBytes{0x01, 0x01, 0x00, 0x30, 0x00, 0x01}), "unknown address"));
   EXPECT_TRUE(has(of_request(FrameBytes{0x01, 0x05, 0x02, 0x10, 0xFF, 0x00}), "unknown address"));
 }
 
-TEST(ModbusMeaning, OtherFunctionsAreNamed) {
+TEST(ModbusMeaning, Functions08And11And46AreNamed) {
   EXPECT_EQ(of_request(FrameBytes{0x01, 0x46, 0x00}), "01: Module code and address");
   EXPECT_EQ(of_request(FrameBytes{0x01, 0x11}), "01: Report Server ID");
   EXPECT_EQ(of_request(FrameBytes{0x01, 0x08, 0x00, 0x0B, 0x00, 0x00}), "01: Diagnostics");
@@ -219,11 +220,11 @@ TEST(ModbusMeaning, AnExceptionReplyIsShownWithItsCode) {
   EXPECT_TRUE(has(text, "exception 04")) << text;
 }
 
-TEST(ModbusMeaning, AnyOtherReplyIsNamedAsAReply) {
+TEST(ModbusMeaning, ANormalReplyIsNamedAsAReply) {
   EXPECT_EQ(of_reply(FrameBytes{0x01, 0x01, 0x02, 0x07, 0x00}), "01: Read Coils, reply");
 }
 
-TEST(ModbusMeaning, AShortFrameAndAWrongCrcAreNamed) {
+TEST(ModbusMeaning, AShortFrameAndAWrongCrcAreReported) {
   EXPECT_EQ(meaning({0x01, 0x05, 0x00}, Speaker::Master), "too short for a frame");
   EXPECT_EQ(meaning({0x01, 0x05, 0x00, 0x00, 0xFF, 0x00, 0x8C, 0x3B}, Speaker::Master), "wrong CRC");
   EXPECT_EQ(meaning({}, Speaker::Master), "too short for a frame");

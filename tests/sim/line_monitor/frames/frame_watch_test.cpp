@@ -76,7 +76,7 @@ TEST_F(FrameWatchTest, AModulesFrameEndsWhenItsDriverIsDisabled) {
   EXPECT_EQ(frames[0].ended, 3 * kCharacter);
 }
 
-TEST_F(FrameWatchTest, PiecesFromTheMasterAreOneFrame) {
+TEST_F(FrameWatchTest, PiecesFromTheMasterWithAShortGapAreOneFrame) {
   send(kMaster, {1, 5});
   watch.driver(kMaster, false, now);
   pass(milliseconds(4));
@@ -116,7 +116,7 @@ TEST_F(FrameWatchTest, AnUnansweredRequestOfFourBytesIsAFrame) {
   EXPECT_EQ(frames.size(), 1U);
 }
 
-TEST_F(FrameWatchTest, ACorrectCrcWithoutAGapDoesNotEndAFrame) {
+TEST_F(FrameWatchTest, ACorrectCrcBeforeAShortGapDoesNotEndAFrame) {
   const FrameBytes request = with_crc({0, 5, 0, 2, 0xFF, 0});
   send(kMaster, request);
   pass(microseconds(1500));
@@ -150,7 +150,7 @@ TEST_F(FrameWatchTest, AnIncompleteDconCommandWaitsFiveSecondsForMore) {
   EXPECT_EQ(watch.next(), hal::doubles::kNever);
 }
 
-TEST_F(FrameWatchTest, AnEndlessFrameIsReportedInPieces) {
+TEST_F(FrameWatchTest, AFrameOfMoreThan300BytesIsReportedInPieces) {
   send(kMaster, FrameBytes(700, 0x55));
   ASSERT_EQ(frames.size(), 2U);
   EXPECT_EQ(frames[0].bytes.size(), 300U);
@@ -259,7 +259,7 @@ TEST_F(FrameWatchTest, AStationAddedLaterIsWatched) {
   EXPECT_EQ(frames[0].station, kNoise);
 }
 
-TEST_F(FrameWatchTest, EveryReceiverGetsTheFrame) {
+TEST_F(FrameWatchTest, BothReceiversGetTheFrame) {
   int others = 0;
   watch.add_receiver([&others](const Frame& /*frame*/) { ++others; });
   send(kMaster, dcon("$01M\r"));

@@ -1,4 +1,4 @@
-// Tests the lines that the text log and the JSON log write for frames.
+// Tests the lines that the text log and the JSON log write for frames and notes, and the text of errors.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -78,7 +78,7 @@ TEST(TextLog, ACollidedFrameHasNoMeaning) {
             "time|");
 }
 
-TEST(TextLog, ChangesByNoiseAreReportedWithTheMeaning) {
+TEST(TextLog, ChangesByNoiseAreReportedBeforeAWrongCrc) {
   Frame frame = frame_of(1, {1, 2, 3, 4});
   frame.changes.push_back({2, 0x07, levels_of(0x03)});
   EXPECT_EQ(text_of(frame),
@@ -150,7 +150,7 @@ TEST(LineError, ListsEachChangedByteWithItsPosition) {
             "byte 10: framing error, 61 instead of 41; byte 11: break instead of 41");
 }
 
-TEST(LineError, AValidFrameHasNoError) {
+TEST(LineError, ValidFramesAndASingleLineFeedHaveNoError) {
   EXPECT_EQ(errors(frame_of(0, with_crc({1, 5, 0, 2, 0xFF, 0}))), "");
   EXPECT_EQ(errors(dcon(0, "$012B7\r")), "");
   EXPECT_EQ(errors(frame_of(0, {0x0A})), "");

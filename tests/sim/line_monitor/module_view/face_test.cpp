@@ -1,4 +1,5 @@
-// Tests that a face shows the visible state of a module, and that reading it changes nothing.
+// Tests that a Face contains the state of a module that viewers show, and that reading a Face does not change
+// the module. Tests the names of terminals.
 #include "sim/line_monitor/module_view/face.hpp"
 
 #include <gtest/gtest.h>
@@ -107,7 +108,7 @@ TEST(Face, ShowsWhenTheHostWatchdogExpiresAndThatItHasExpired) {
   ASSERT_TRUE(runs.expires);
   EXPECT_GT(*runs.expires, bench.now());
   bench.run(milliseconds(100));
-  EXPECT_EQ(face_of(bench).guard, runs);  // does not change until a restart of the watchdog
+  EXPECT_EQ(face_of(bench).guard, runs);  // `expires` is the time of expiry, not the remaining time
   bench.line().bus().run_until(*runs.expires - milliseconds(1));
   EXPECT_FALSE(face_of(bench).guard.timed_out);
   bench.run(milliseconds(2));

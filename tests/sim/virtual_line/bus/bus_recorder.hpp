@@ -1,4 +1,4 @@
-// Records the events on a virtual line.
+// Records the bytes on a virtual line, and when stations enable or disable their drivers.
 #pragma once
 
 #include <cstdint>
@@ -32,7 +32,7 @@ class BusRecorder final : public BusObserver {
     bytes.push_back({station, byte, collided, start, end});
   }
 
-  /// Returns the bytes that `station` has sent, in order.
+  /// Returns the bytes that `station` has sent since the last `clear`, in order.
   [[nodiscard]] std::vector<std::uint8_t> sent_by(std::size_t station) const {
     std::vector<std::uint8_t> sent;
     for (const Byte& each : bytes) {

@@ -66,7 +66,7 @@ class BusTest : public testing::Test {
   Bus bus_{clock_};
 };
 
-TEST_F(BusTest, AByteTakesTenBitsAtItsSendersRate) {
+TEST_F(BusTest, AByteIn8N1TakesTenBitsAtItsSendersRate) {
   for (const std::uint32_t baud : kBaudRates) {
     VirtualClock clock;
     Bus bus(clock);
@@ -135,7 +135,7 @@ TEST_F(BusTest, AByteTakesElevenBitsInTheFormatsOtherThan8N1) {
   }
 }
 
-TEST_F(BusTest, OnlyReceiversWithTheSendersParityGetGoodBytes) {
+TEST_F(BusTest, OnlyReceiversWithTheSendersParityReceiveAllBytesWithoutError) {
   for (const LineFormat sent : kFormats) {
     for (const LineFormat heard : kFormats) {
       VirtualClock clock;
@@ -168,7 +168,7 @@ TEST_F(BusTest, AReceiverWithTheOtherParityReportsTheByteWithAParityError) {
   }
 }
 
-TEST_F(BusTest, ADamagedByteOfTheMasterArrivesWithAParityErrorAndTheOthersAreGood) {
+TEST_F(BusTest, DamagedBytesOfTheMasterArriveWithParityErrorsAndTheOthersAreGood) {
   for (const LineFormat format : {LineFormat::k8E1, LineFormat::k8O1}) {
     VirtualClock clock;
     Bus bus(clock);
@@ -185,8 +185,8 @@ TEST_F(BusTest, ADamagedByteOfTheMasterArrivesWithAParityErrorAndTheOthersAreGoo
   }
 }
 
-// The parity bit of 0x30 is 0, so the receiver reads no stop bit there. The parity bit of 0x31 is 1, so the
-// receiver reads a stop bit.
+// The parity bit of 0x30 is 0, so the receiver reports a framing error. The parity bit of 0x31 is 1, like a
+// stop bit.
 TEST_F(BusTest, AReceiverWithoutParityReadsTheParityBitAsTheStopBit) {
   const auto sender = master(9600, LineFormat::k8E1);
   Listener plain(bus_, 9600);

@@ -1,4 +1,4 @@
-// Tests the queue of due times against a search through all stations.
+// Tests DueTimes. One test compares its results with those of a search through all stations.
 #include "sim/virtual_line/bus/due_times.hpp"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ std::vector<std::size_t> due(DueTimes& times, VirtualTime now) {
 
 using Stations = std::vector<std::size_t>;
 
-TEST(DueTimes, WithoutStationsNothingIsEverDue) {
+TEST(DueTimes, WithoutStationsNothingIsDue) {
   DueTimes times;
   EXPECT_EQ(times.next(), kNever);
   EXPECT_EQ(due(times, VirtualTime(1)), Stations());
@@ -63,7 +63,7 @@ TEST(DueTimes, ResultsEqualThoseOfASearchThroughAllStations) {
       ASSERT_NE(first, expected.end());
       ASSERT_EQ(station, static_cast<std::size_t>(first - expected.begin()));
       *first = kNever;
-      // A station may set no time, its own time, times of other stations, and times that are already due.
+      // A station may set its own time, times of other stations, or no time. A time may be due already.
       for (std::uint64_t changes = random() % 3; changes != 0; --changes) {
         set(random() % 2 == 0 ? station : random() % expected.size(), now + VirtualTime(random() % 4));
       }

@@ -31,7 +31,7 @@ struct Wires final : Wire {
   Happened happened;
 };
 
-/// Simulates a UART that sends replies of one byte. A reply takes one millisecond.
+/// `reply` simulates a UART that sends a reply of one byte. A reply takes one millisecond.
 class ModuleWireTest : public testing::Test {
  protected:
   void run_until(VirtualTime time) {
@@ -194,7 +194,7 @@ TEST_F(ModuleWireTest, AbortStopsALateReplyAndDropsAWaitingOne) {
   EXPECT_EQ(wires.happened.size(), 3U);
 }
 
-TEST_F(ModuleWireTest, AForcedRateAppliesToEveryByteAndItsDuration) {
+TEST_F(ModuleWireTest, AForcedRateAppliesToAByteAndToDurations) {
   wire.force_rate(1200);
   reply(5ms, 'a');
   EXPECT_EQ(wires.happened[1], "5 a 1200");

@@ -1,5 +1,5 @@
 // Compares the bytes that stations receive with the bytes of receivers that sample every bit of the whole
-// traffic. The bus itself samples only the bits that it must sample.
+// traffic. The bus itself samples for a station only if the station cannot get a byte unchanged.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -34,12 +34,12 @@ struct Received {
 /// The disturbances in the traffic of a test. Each `double` is a probability.
 struct Trouble {
   const char* name;
-  double noise = 0;                ///< that a byte arrives with other levels
-  double collision = 0;            ///< that a station begins although another one sends
-  double cut_off = 0;              ///< that a driver is disabled in the middle of a byte
-  double other_rate = 0;           ///< that a station sends, or a receiver listens, at another rate
-  double stray = 0;                ///< that noise adds a byte, whose station does not enable its driver
-  double other_format = 0;         ///< that a station sends, or a receiver listens, in another line format
+  double noise = 0;                ///< that a byte arrives with random levels
+  double collision = 0;            ///< that a station begins to send although the bus is busy
+  double cut_off = 0;              ///< that a driver is disabled during a byte
+  double other_rate = 0;           ///< that a station sends, or a receiver listens, at a random rate
+  double stray = 0;                ///< that a station sends a byte without enabling its driver
+  double other_format = 0;         ///< that a station sends, or a receiver listens, in a random format
   std::uint32_t times_faster = 1;  ///< the factor of all rates of the line
 
   friend std::ostream& operator<<(std::ostream& out, const Trouble& trouble) { return out << trouble.name; }
@@ -149,7 +149,7 @@ class Talker final : public Station {
   std::size_t wave_ = 0;
 };
 
-/// Puts bytes on the wire without enabling its driver. The effect is that of noise.
+/// Puts bytes on the wires without enabling its driver, like a source of noise.
 class Stray final : public Station {
  public:
   Stray(Bus& bus, Random& random, const Trouble& trouble)
@@ -200,8 +200,8 @@ class RetunedListener final : public Station {
   std::vector<Period> periods;
 
  private:
-  /// Returns whether the change begins a new period. A change between 8N1 and 8N2 does not, because a
-  /// receiver ignores a second stop bit.
+  /// Returns whether the change begins a new period. A change between 8N1 and 8N2 does not begin
+  /// one, because a receiver ignores a second stop bit.
   static bool begins_anew(hal::SerialMode from, hal::SerialMode to) {
     const bool parity = has_parity(from.format) || has_parity(to.format);
     return from.baud != to.baud || (parity && from.format != to.format);
@@ -213,8 +213,9 @@ class RetunedListener final : public Station {
   const Trouble& trouble_;
 };
 
-/// A receiver that samples every bit of the recorded traffic: it waits for a falling edge, reads the middle
-/// of ten or eleven bits, and has received the byte when the first stop bit is over.
+/// A receiver that samples every bit of the recorded traffic: it waits for the level 0, reads the middle of
+/// ten or eleven bits, and has received the byte when the first stop bit is over. If the stop bit is missing,
+/// the receiver then waits for the idle level.
 class SamplingReceiver {
  public:
   SamplingReceiver(const Waves& waves, hal::SerialMode mode) : waves_(waves), mode_(mode) {}
@@ -226,7 +227,7 @@ class SamplingReceiver {
     while (const auto start = find(false, now, ends)) {
       now = *start + bits(1);
       if (level(now)) {
-        continue;  // a spike
+        continue;  // not a start bit
       }
       unsigned byte = 0;
       unsigned ones = 0;
@@ -273,8 +274,8 @@ class SamplingReceiver {
     return true;
   }
 
-  /// Returns the first time with this level, from `from` on and before `until`; nullopt if there is none.
-  /// Forgets the waves that end at `from` or earlier.
+  /// Returns the first time with the level `wanted`, from `from` on and before `until`; nullopt if there is
+  /// none. Advances `first_` to the first wave that ends after `from`.
   std::optional<VirtualTime> find(bool wanted, VirtualTime from, VirtualTime until) {
     while (first_ < waves_.size() && waves_[first_].end() <= from) {
       ++first_;
@@ -319,8 +320,8 @@ std::vector<Received> sampled(const Recorder& recorder, const Trouble& trouble, 
 
 class Reception : public testing::TestWithParam<Trouble> {};
 
-/// Compares the bytes that all stations receive in random traffic with those of sampling receivers. Returns
-/// the number of compared bytes.
+/// Compares the bytes that the talkers and the listeners receive in random traffic with those of sampling
+/// receivers. Returns the number of compared bytes.
 std::size_t compare(const Trouble& trouble, std::uint64_t seed) {
   Random random(seed);
   VirtualClock clock;

@@ -63,7 +63,9 @@ TEST(Disturbance, OfTheStartBitMakesTheFirstZeroBitTheStartBit) {
   TwoOnALine line;
   Flips flips(1U << 0U);
   line.bus.disturb(flips);
-  line.send({0x2D});  // data bits on the wires: 1 0 1 1 0 1 0 0; after the first 0: 1 1 0 1 0 0 1 1
+  // The data bits on the wires are 1 0 1 1 0 1 0 0. After the first 0, the receiver reads 1 1 0 1 0 0, the
+  // stop bit, and the level 1 of the idle line.
+  line.send({0x2D});
   EXPECT_EQ(line.heard, (Heard{{0xCB, ByteStatus::Good}}));
 }
 
@@ -77,7 +79,7 @@ TEST(Noise, ThatLosesEveryCharacterLeavesTheLineIdle) {
   EXPECT_EQ(noise.changes(), 3U);
 }
 
-TEST(Noise, AddsAStrayZeroAfterTheLastCharacter) {
+TEST(Noise, AddsAStrayZeroAfterACharacter) {
   TwoOnALine line;
   NoiseRates rates;
   rates.stray_zero = 1;
@@ -115,7 +117,7 @@ TEST(Noise, IsReproducibleFromItsSeed) {
   EXPECT_NE(what_is_heard(1), what_is_heard(2));
 }
 
-TEST(Echo, RepeatsTheReceivedBytesAfterTheDelay) {
+TEST(Echo, RepeatsTheBytesThatItReceivesWhileItIsOn) {
   TwoOnALine line;
   Echo echo(line.bus, {9600});
   echo.switch_on(milliseconds(5));

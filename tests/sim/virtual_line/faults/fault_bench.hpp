@@ -1,4 +1,5 @@
-// A line with faults and a master that records the bytes that it receives.
+// A line with faults. Records the bytes that the master receives, the events on the bus, and the notices of
+// the faults.
 #pragma once
 
 #include <chrono>
@@ -15,7 +16,8 @@ namespace ex9000::sim {
 
 class FaultBench {
  public:
-  /// `modules` have the form of the simulator's command line. The line's time is 100 ms after power-on.
+  /// Each of `modules` has the form that the simulator's command line requires. When the constructor returns,
+  /// the modules have started and the line's time is 100 ms.
   explicit FaultBench(const std::vector<std::string>& modules = {"EX9042D@01"}, std::uint64_t seed = 1)
       : line_(specs(modules), kPaced, [this](std::uint8_t byte, ByteStatus status) {
           heard_.push_back(static_cast<char>(byte));
@@ -26,7 +28,8 @@ class FaultBench {
     line_.configure_faults(seed, [this](const std::string& text) { notices_.push_back(text); });
   }
 
-  /// Adds a fault of the line, or of the module at `position`, counted from 1. Returns its number.
+  /// Adds a fault and returns its number. `position` is the module of the fault, counted from 1; nullopt: the
+  /// fault applies to the whole line and all modules.
   std::size_t add(const std::string& text, std::optional<std::size_t> position = std::nullopt) {
     Fault fault = parse_fault(text);
     if (position) {
@@ -58,9 +61,9 @@ class FaultBench {
     return heard_.empty() || heard_.back() != '\r' ? heard_ : heard_.substr(0, heard_.size() - 1);
   }
 
-  /// Returns everything that the master has received since the last `forget` or `ask`.
+  /// Returns everything that the master has received since the last `forget` or the start of the last `ask`.
   [[nodiscard]] const std::string& heard() const { return heard_; }
-  /// Returns whether at least one byte since the last `forget` or `ask` had an error.
+  /// Returns whether at least one byte had an error since the last `forget` or the start of the last `ask`.
   [[nodiscard]] bool garbled() const { return garbled_; }
   void forget() {
     heard_.clear();
@@ -110,8 +113,8 @@ inline std::vector<VirtualTime> answers_of(FaultBench& bench, std::size_t positi
   return begun;
 }
 
-/// Sends `requests` requests and returns one character for each: `x` for a reply, `.` for none, `?` for a
-/// damaged reply.
+/// Sends `requests` requests to the module at `address`. Returns one character for each request: `x` for a
+/// good reply, `.` for no reply, `?` for a damaged reply.
 inline std::string answered(FaultBench& bench, unsigned requests, const std::string& address = "01") {
   std::string which;
   for (unsigned i = 0; i < requests; ++i) {

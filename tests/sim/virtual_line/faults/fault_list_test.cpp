@@ -26,7 +26,7 @@ TEST(FaultsList, ARemovedFaultHasNoFurtherEffect) {
       }
       EXPECT_TRUE(bench.faults().list().empty());
       bench.run(2s);
-      bench.send("\r");  // ends a frame that has begun
+      bench.send("\r");  // ends a frame, if one has begun
       EXPECT_EQ(bench.ask("$01M"), kName) << trouble;
     }
   }
@@ -64,7 +64,7 @@ TEST(FaultsList, ReportsTheOccurrencesInProgressAndAllOccurrencesSoFar) {
   EXPECT_EQ(bench.faults().list()[0].in_progress, 0U);
 }
 
-TEST(FaultsNotice, IsGivenOnlyForTimedFaults) {
+TEST(FaultsNotice, IsGivenForTimedFaultsButNotForPermanentOrReplyFaults) {
   FaultBench bench;
   bench.add("lost-reply every reply");
   bench.add("lost-bytes 1e-9");

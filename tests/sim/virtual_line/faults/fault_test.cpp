@@ -1,4 +1,4 @@
-// Tests the syntax of faults.
+// Tests the syntax of faults and the texts about them.
 #include "sim/virtual_line/faults/fault.hpp"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ std::string why_not(const std::string& text) {
 
 // --- kinds of faults ---
 
-TEST(Fault, EveryKindHasANameAndAtMostOneValue) {
+TEST(Fault, EachKindIsParsedWithItsValueIfItHasOne) {
   EXPECT_EQ(parse_fault("bit-errors 1e-4").trouble, Trouble::BitErrors);
   EXPECT_EQ(parse_fault("bit-errors 1e-4").probability, 1e-4);
   EXPECT_EQ(parse_fault("lost-bytes 0.01").trouble, Trouble::LostBytes);
@@ -56,7 +56,7 @@ TEST(Fault, EveryKindAffectsEitherTheLineOrAModule) {
   }
 }
 
-TEST(Fault, AffectsAllModulesPermanentlyByDefault) {
+TEST(Fault, LostReplyAffectsAllModulesPermanentlyByDefault) {
   const Fault fault = parse_fault("lost-reply");
   EXPECT_FALSE(fault.module);
   EXPECT_EQ(fault.schedule.when, When::Always);
@@ -124,7 +124,7 @@ TEST(FaultSchedule, AScheduleWithAfterWritesHasACount) {
   EXPECT_EQ(parse_fault("power-cut after 1 write").schedule.count, 1U);
 }
 
-TEST(FaultSchedule, TheDurationMayComeAnywhereAfterTheFault) {
+TEST(FaultSchedule, TheDurationMayComeBeforeOrAfterTheRestOfTheSchedule) {
   for (const char* text : {"gone at 1s for 2s", "gone for 2s at 1s"}) {
     const Schedule schedule = parse_fault(text).schedule;
     EXPECT_EQ(schedule.when, When::At);

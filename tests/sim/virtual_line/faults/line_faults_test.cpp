@@ -13,13 +13,13 @@ namespace {
 using namespace std::chrono_literals;
 using namespace std::string_literals;
 
-TEST(BitErrors, InAllBitsMakeTheLineUnreadable) {
+TEST(BitErrors, InAllBitsPreventTheExecutionOfARequest) {
   FaultBench bench;
   const std::size_t fault = bench.add("bit-errors 1");
   EXPECT_NE(bench.ask("@010001"), ">");
   EXPECT_EQ(bench.at(1).outputs(), 0);
   EXPECT_TRUE(bench.faults().remove(fault));
-  bench.send("\r");  // ends a frame that has begun
+  bench.send("\r");  // ends a frame, if one has begun
   EXPECT_EQ(bench.ask("@010001"), ">");
 }
 
@@ -31,7 +31,7 @@ TEST(BitErrors, OccurWithTheGivenProbability) {
   int whole = 0;
   for (int i = 0; i < kRequests; ++i) {
     whole += bench.ask("$01M") == kName && !bench.garbled() ? 1 : 0;
-    bench.send("\r");  // ends a frame that has begun
+    bench.send("\r");  // ends a frame, if one has begun
   }
   // Each request is "$01M\r", and each reply is "!019042D\r". A character has ten bits.
   const double expected = std::pow(1 - probability, 10 * (5 + 9));
@@ -39,7 +39,7 @@ TEST(BitErrors, OccurWithTheGivenProbability) {
   EXPECT_NEAR(whole / double{kRequests}, expected, 4 * deviation);
 }
 
-TEST(LostBytes, AreReceivedByNoStation) {
+TEST(LostBytes, OfARequestAreNotReceivedByTheModule) {
   FaultBench bench;
   bench.add("lost-bytes 1");
   EXPECT_EQ(bench.ask("@010001"), "");
@@ -54,7 +54,7 @@ TEST(LostBytes, OccurWithTheGivenProbability) {
   int unheard = 0;
   for (int i = 0; i < kRequests; ++i) {
     unheard += bench.ask("$01M").empty() ? 1 : 0;
-    bench.send("\r");  // ends a frame that has begun
+    bench.send("\r");  // ends a frame, if one has begun
   }
   const double expected = 1 - std::pow(0.99, 5);  // the five characters of "$01M\r"
   const double deviation = std::sqrt(expected * (1 - expected) / kRequests);
@@ -73,7 +73,7 @@ TEST(InsertedBytes, FollowAByteImmediately) {
   EXPECT_FALSE(bench.garbled());
 }
 
-TEST(StrayZeros, FollowAByteImmediately) {
+TEST(StrayZeros, AddTheByte00AfterAByte) {
   FaultBench bench;
   bench.add("stray-zeros 1");
   bench.ask("");
@@ -88,7 +88,7 @@ TEST(InsertedBytes, FollowEveryByteAtProbability1) {
   EXPECT_EQ(of_others(bench).size(), 16U);
 }
 
-TEST(StrayZeros, AtALowProbabilityLeaveMostRepliesIntact) {
+TEST(StrayZeros, AtALowProbabilityLeaveMostButNotAllRepliesIntact) {
   FaultBench bench;
   bench.add("stray-zeros 0.01");
   const std::string which = answered(bench, 200);
@@ -111,7 +111,7 @@ TEST(EchoFault, WaitsForTheEndOfTheRequestEvenIfTheDelayIsShort) {
   EXPECT_GT(of_others(bench)[0].first, bench.recorder().bytes[4].end);
 }
 
-TEST(EchoFault, TheLineIsUnsettledFromTheRequestToTheEndOfTheEcho) {
+TEST(EchoFault, TheLineIsUnsettledBeforeTheEchoAndSettledAfterIt) {
   FaultBench bench;
   bench.add("echo 5ms");
   EXPECT_FALSE(bench.line().unsettled());
@@ -155,7 +155,7 @@ TEST(ForeignTraffic, CollidesWithOtherTraffic) {
   EXPECT_NE(bench.ask("$01M"), kName);
 }
 
-TEST(ForeignTraffic, DoesNotQueueUpIfItExceedsTheLinesCapacity) {
+TEST(ForeignTraffic, EndsWithin3sOfItsRemovalEvenIfItExceedsTheLinesCapacity) {
   FaultBench bench;
   const std::size_t fault = bench.add("foreign-traffic 00112233445566778899 every 1ms");
   bench.run(30s);

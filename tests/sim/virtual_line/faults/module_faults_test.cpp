@@ -1,4 +1,5 @@
-// Tests the effect and the end of each fault of a module, in virtual time.
+// Tests faults of a module, in virtual time: a wrong rate, an interrupted supply and a hang. Also tests that
+// faults survive a reset of the module.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -73,7 +74,7 @@ TEST(Gone, LastsEvenIfTheModuleIsSwitchedOn) {
   EXPECT_TRUE(bench.at(1).powered());
 }
 
-TEST(PowerCut, LastsOneSecondByDefault) {
+TEST(PowerCut, LastsOneSecondOrTheGivenTime) {
   for (const auto& [text, lasts] : {std::pair("power-cut", 1000ms), std::pair("power-cut for 30ms", 30ms)}) {
     FaultBench bench;
     bench.add(text);
@@ -128,7 +129,7 @@ const std::pair<const char*, std::function<void(FaultBench&)>> kResets[] = {
      }},
 };
 
-// Each function returns whether the master observes the fault that the name of the function describes.
+// Each of these functions returns whether the module shows the fault that the name of the function describes.
 bool replies_are_lost(FaultBench& bench) { return bench.ask("$01M", 100ms).empty(); }
 bool replies_are_late(FaultBench& bench) {
   return bench.ask("$01M", 50ms).empty() && bench.ask("", 100ms) == kName;

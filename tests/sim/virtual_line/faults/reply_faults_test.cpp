@@ -1,4 +1,4 @@
-// Tests what a master receives during each fault that affects replies, in virtual time.
+// Tests lost replies, late replies, noise during replies, and a late driver, in virtual time.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -66,7 +66,7 @@ TEST(LateReply, IsSentImmediatelyIfItsFaultIsRemovedAndDoesNotDelayTheNextReply)
   }
 }
 
-TEST(LateReply, IsNeverSentAfterTheSupplyHasFailed) {
+TEST(LateReply, IsNotSentAfterTheSupplyHasFailed) {
   FaultBench bench;
   bench.add("late-reply 200ms");
   EXPECT_EQ(bench.ask("$01M"), "");
@@ -85,7 +85,7 @@ TEST(NoiseWithEachReply, DamagesRepliesEvenIfTheModuleHasRepliedBeforeTheFirstFa
   EXPECT_TRUE(bench.garbled());
 }
 
-TEST(LateReply, NoiseDamagesOnlyTheLateReply) {
+TEST(LateReply, NoiseDamagesTheLateReplyButNotTheNextRequest) {
   FaultBench bench;
   bench.add("late-reply 50ms every 2nd reply");
   bench.add("bit-errors 1 every 2nd reply");

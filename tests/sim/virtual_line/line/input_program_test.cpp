@@ -1,4 +1,4 @@
-// Tests inputs that change by themselves.
+// Tests the programs that change the level of a module's input.
 #include "sim/virtual_line/line/input_program.hpp"
 
 #include <gtest/gtest.h>
@@ -18,10 +18,10 @@ using Kind = InputProgram::Kind;
 
 InputProgram parsed(const std::string& text) { return parse_input_program(text, model_called("EX9052D")); }
 
-/// The times at which an input has changed, and its new levels.
+/// The times at which the level of an input changes, and the new levels.
 using Moves = std::vector<std::pair<VirtualTime, bool>>;
 
-/// A module with a changing input. The line's time is 100 ms at first.
+/// A module whose input `program` changes. The program starts when the line's time is 100 ms.
 class InputBench {
  public:
   explicit InputBench(const std::string& program, const std::string& edge = "falling", std::uint64_t seed = 1)
@@ -39,7 +39,7 @@ class InputBench {
     return module().module().state().inputs.counter(program_.channel);
   }
   SimulatedModule& module() { return line_.module(0); }
-  /// Runs the line up to and including `time`, and returns the changes of the level.
+  /// Processes all events up to and including `time`, and returns the changes of the level.
   Moves moves_until(VirtualTime time) {
     Moves moves;
     bool was = level();
@@ -146,7 +146,7 @@ TEST(MovedInput, ASquareWaveHasAnExactPeriodAndEachPulseIsCounted) {
   }
 }
 
-TEST(MovedInput, AKeyPressedOnceChangesTheInputAtItsTimeAndNeverAgain) {
+TEST(MovedInput, AKeyThatIsPressedOnceTurnsTheInputOnOnlyOnce) {
   InputBench bench("0 key at 2s for 300ms");
   EXPECT_EQ(bench.moves_until(1h), (Moves{{2s, true}, {2300ms, false}}));
   EXPECT_EQ(bench.counter(), 1U);

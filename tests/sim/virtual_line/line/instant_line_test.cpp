@@ -17,7 +17,7 @@ using std::chrono::milliseconds;
 const Frame kReadOutputs = with_crc({0x01, 0x01, 0x00, 0x00, 0x00, 0x0D});
 const Frame kOutputsOff = with_crc({0x01, 0x01, 0x02, 0x00, 0x00});
 
-/// The maximum time from the first byte of a request to the last byte of its reply, at any rate.
+/// The maximum time from the first byte of a request to the last byte of its reply, at any baud rate.
 constexpr microseconds kAtOnce{100};
 
 class InstantLine : public testing::TestWithParam<std::uint32_t> {
@@ -67,7 +67,7 @@ TEST_P(InstantLine, TwoPiecesLessThanTwoMillisecondsApartAreOneFrame) {
   }
 }
 
-TEST_P(InstantLine, TwoMillisecondsOfSilenceEndAFrameWithAWrongCrc) {
+TEST_P(InstantLine, ThreeMillisecondsOfSilenceEndAFrameWithAWrongCrc) {
   send(Frame(kReadOutputs.begin(), kReadOutputs.end() - 1));
   EXPECT_EQ(heard_within(milliseconds(3)), Frame());
   send(kReadOutputs);
@@ -89,7 +89,7 @@ TEST_P(InstantLine, ARequestAtAnotherBaudRateGetsNoReply) {
   EXPECT_EQ(heard_within(milliseconds(10)), Frame());
 }
 
-TEST_P(InstantLine, TheHostWatchdogExpiresAfterItsNormalTimeout) {
+TEST_P(InstantLine, TheHostWatchdogExpiresAfterItsTimeout) {
   send(with_crc({0x01, 0x06, 0x01, 0xE8, 0x00, 0x05}));  // 0.5 s
   line_.bus().run_for(milliseconds(50));
   send(with_crc({0x01, 0x05, 0x01, 0x04, 0xFF, 0x00}));  // enabled

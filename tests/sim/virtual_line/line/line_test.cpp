@@ -20,7 +20,7 @@ TEST(LineOfOneModule, IsPendingFromTheCallOfSendToTheEndOfTheReply) {
 
   constexpr std::array<std::uint8_t, 5> kReadName{'$', '0', '1', 'M', '\r'};
   line.master().send(kReadName.data(), kReadName.size(), line.clock().virtual_now() + milliseconds(5));
-  EXPECT_TRUE(line.pending()) << "no byte is on the wires, but five wait";
+  EXPECT_TRUE(line.pending()) << "no byte is on the wires yet, but five bytes wait";
 
   for (int passed = 0; line.pending() && passed < 100; ++passed) {
     EXPECT_FALSE(replied);

@@ -205,7 +205,7 @@ TEST_P(Queue, ARequestThatCannotBeSentInTimeIsNotSentLater) {
   const bool paced = !GetParam();
   if (paced) {
     run(std::chrono::seconds(10));
-    EXPECT_EQ(watch_.began.size(), 1U);  // only the other master's bytes
+    EXPECT_EQ(watch_.began.size(), 1U);  // the test's own bytes, but not the request
   }
 }
 
@@ -221,7 +221,7 @@ TEST_P(Queue, ARequestThatIsAddedByDoneFollowsTheWaitingRequests) {
   EXPECT_EQ(results_, (Results{{"a", {}}, {"b", kOff2}, {"c", kOff1}}));
 }
 
-TEST_P(Queue, ARequestWaitsForARequestOfAnotherMasterAndItsReply) {
+TEST_P(Queue, ARequestWaitsForARequestOfAnotherProgramAndItsReply) {
   for (int i = 0; i < 3; ++i) {
     line_.master().send(kRead2.data(), kRead2.size());
     ask(kRead1, "a");
@@ -230,7 +230,7 @@ TEST_P(Queue, ARequestWaitsForARequestOfAnotherMasterAndItsReply) {
   EXPECT_EQ(results_, (Results{{"a", kOff1}, {"a", kOff1}, {"a", kOff1}}));
 }
 
-TEST_P(Queue, ALineThatIsNeverSilentDoesNotBlockARequestForEver) {
+TEST_P(Queue, ALongTransmissionDoesNotBlockARequestForEver) {
   const Frame endless(60000, 0x55);
   line_.master().send(endless.data(), endless.size());
   ask(kRead1, "a");
@@ -255,7 +255,8 @@ class Babbler final : public Station {
   VirtualTime period_;
 };
 
-/// Runs only on a paced line: on an instant line, a station that never stops sends millions of bytes.
+/// A queue on a paced line. On an instant line, the test below would be slow, because the babbler would send
+/// hundreds of thousands of bytes.
 using PacedQueue = Queue;
 
 TEST_P(PacedQueue, AStationThatNeverStopsSendingDoesNotBlockARequestForEver) {
@@ -263,7 +264,7 @@ TEST_P(PacedQueue, AStationThatNeverStopsSendingDoesNotBlockARequestForEver) {
   checked.is_reply = [](Bytes /*frame*/) { return true; };
   line_.requests().ask(std::move(checked));
   ask(kToNobody, "raw");
-  run(milliseconds(20));  // the first request is on the line
+  run(milliseconds(20));  // the first request has been sent
   const Babbler babbler(line_.bus(), line_.rtu_silence() / 2);
   run(RequestQueue::kReplyTimeout + milliseconds(80));
   EXPECT_EQ(results_, (Results{{"checked", {}}}));
