@@ -67,8 +67,8 @@ class TimedModule : public EmulatedBoard {
   /// Returns whether the module is powered and its driver enable was on at the last stop.
   [[nodiscard]] bool speaks() const { return powered() && clock_->driver_on(); }
 
-  /// Assumes that the LED is steadily on. If LampWatch finds that the LED flashes, the function that lets the
-  /// time pass throws std::runtime_error.
+  /// Assumes that the LED is steadily on. If LampWatch finds later that the LED flashes, the call during
+  /// which it does so throws std::runtime_error.
   void assume_led_on() { lamp_.believe(now_); }
   /// Lets time pass until the assumption about the LED is verified. Call this function only if the extra time
   /// does not disturb later steps.

@@ -1,5 +1,4 @@
-// A listening UNIX socket and its connection. The emulator receives the path of the socket and connects to
-// it.
+// A listening UNIX socket and its connection. The emulator is started with its path and connects to it.
 #pragma once
 
 #include <chrono>

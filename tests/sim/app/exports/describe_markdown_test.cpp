@@ -161,7 +161,7 @@ std::string difference(const std::string& stands, const std::string& wanted) {
 
 TEST(Registers, MatchTheOutputOfTheProgram) {
   const std::string found = difference(generated_section(), markdown_of_all());
-  EXPECT_TRUE(found.empty()) << "registers.md has\n" << found << "\nUpdate the file with toolchain/update-documents";
+  EXPECT_TRUE(found.empty()) << "registers.md has\n" << found << "\nRun toolchain/update-documents";
 }
 
 // --- form ---

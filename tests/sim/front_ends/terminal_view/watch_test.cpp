@@ -73,8 +73,8 @@ TEST_F(WatchTest, PaintsModulesAndRepaintsThemInPlaceAfterAChange) {
   EXPECT_EQ(looked(), Prints{relays(kAllOff)});
   EXPECT_EQ(looked(), Prints{});
   module().power(false);
-  // The control sequences move the cursor to the first column of the fifth line above it, and erase the
-  // screen from there to the end.
+  // The control sequences move the cursor up five lines and to the first column, and erase the screen from
+  // there to the end.
   EXPECT_EQ(
       looked(),
       (Prints{"\x1b[5F\x1b[J1  EX9067D     9067                              LED - off      power off\n" +

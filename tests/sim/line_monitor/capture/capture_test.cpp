@@ -376,8 +376,8 @@ TEST(Capture, TimestampsLieWithinTheRunAndDifferByLineTime) {
   EXPECT_GT(asked, before);
   EXPECT_LT(answered, after);
   // The reply begins after the eight characters of the request and a silence of 3.5 characters of 11 bits
-  // (wire.md section 7). The formula counts 10 bits for each of them. The tolerance covers the difference of
-  // 0.36 ms.
+  // (wire.md section 7). The formula uses 10 bits for the 3.5 characters too. The tolerance covers the
+  // difference of 0.36 ms.
   EXPECT_NEAR(answered - asked, (8 + 3.5) * 10 / 9600, 0.001);
   EXPECT_EQ(packets[0].at("frame.interface_name").find("127.0.0.1:"), 0U);
 }
@@ -441,7 +441,7 @@ TEST(Capture, RejectsTheBusFileTheControlSocketThePseudoTerminalAndTheEepromFile
       const Finished finished = run(command, directory.path());
       EXPECT_EQ(finished.status, 2) << finished.error;
       // While the target of the link does not exist, the program cannot detect that the link leads to the
-      // EEPROM file. It then rejects the link with another message.
+      // EEPROM file. The program then rejects the link with another message.
       if (path != "n.bin" || !named.empty()) {
         EXPECT_NE(finished.error.find(": is " + what + ", "), std::string::npos) << finished.error;
       }

@@ -1,4 +1,4 @@
-// Tests how the simulator detects that a frame is DCON, and the text, the meaning and the error that its log
+// Tests how the simulator detects that a frame is DCON, and the text, the meaning and the error that the log
 // shows for a frame.
 #include "sim/line_monitor/frames/frame_meaning.hpp"
 

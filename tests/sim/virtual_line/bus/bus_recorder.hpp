@@ -32,7 +32,7 @@ class BusRecorder final : public BusObserver {
     bytes.push_back({station, byte, collided, start, end});
   }
 
-  /// Returns the bytes that `station` has sent since the last `clear`, in order.
+  /// Returns the recorded bytes that `station` has sent, in order.
   [[nodiscard]] std::vector<std::uint8_t> sent_by(std::size_t station) const {
     std::vector<std::uint8_t> sent;
     for (const Byte& each : bytes) {

@@ -1,7 +1,7 @@
 // Feeds an hour of noise to a module, once for each protocol and, in ASCII, also with checksums. The module
-// must reply only to valid frames. Its outputs may change only because of a valid frame, an expiry of the host
-// watchdog, or the end of an output's timer. The test decides without the firmware's code which frames are
-// valid.
+// must reply only to valid frames. Its outputs may change only because of a valid frame, an expiry of the
+// host watchdog, or the end of an output's timer. The test decides without the firmware's code which frames
+// are valid.
 #include <gtest/gtest.h>
 
 #include <cstdio>

@@ -255,8 +255,8 @@ class Babbler final : public Station {
   VirtualTime period_;
 };
 
-/// A queue on a paced line. On an instant line, the test below would be slow, because the babbler would send
-/// hundreds of thousands of bytes.
+/// Tests of this suite run only on a paced line. On an instant line, the babbler would send hundreds of
+/// thousands of bytes.
 using PacedQueue = Queue;
 
 TEST_P(PacedQueue, AStationThatNeverStopsSendingDoesNotBlockARequestForEver) {
