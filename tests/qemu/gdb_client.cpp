@@ -1,9 +1,33 @@
 #include "tests/qemu/gdb_client.hpp"
 
 #include <array>
+#include <cstddef>
+#include <optional>
 #include <stdexcept>
+#include <string_view>
 
 namespace ex9000::rig {
+
+namespace {
+
+constexpr std::size_t kChecksum = 2;  ///< characters of the checksum after `#`
+
+struct Packet {
+  std::size_t begin;  ///< position of `$`
+  std::size_t end;    ///< position of `#`
+};
+
+/// Returns the first packet if it is complete, with its checksum.
+std::optional<Packet> find_packet(std::string_view received) {
+  const std::size_t begin = received.find('$');
+  const std::size_t end = begin == std::string_view::npos ? begin : received.find('#', begin);
+  if (end == std::string_view::npos || end + kChecksum >= received.size()) {
+    return std::nullopt;
+  }
+  return Packet{begin, end};
+}
+
+}  // namespace
 
 std::string GdbClient::framed(const std::string& packet) {
   constexpr std::array<char, 17> kDigits{"0123456789abcdef"};
@@ -17,20 +41,15 @@ std::string GdbClient::framed(const std::string& packet) {
 bool GdbClient::has_packet() {
   const std::vector<std::uint8_t> bytes = socket_.receive(std::chrono::nanoseconds(0));
   received_.append(bytes.begin(), bytes.end());
-  const std::size_t begin = received_.find('$');
-  constexpr std::size_t kChecksum = 2;
-  return begin != std::string::npos && received_.find('#', begin) + kChecksum < received_.size();
+  return find_packet(received_).has_value();
 }
 
 std::string GdbClient::receive() {
-  constexpr std::size_t kChecksum = 2;
   for (;;) {
-    const std::size_t begin = received_.find('$');
-    const std::size_t end = received_.find('#', begin == std::string::npos ? 0 : begin);
-    if (begin != std::string::npos && end != std::string::npos && end + kChecksum < received_.size()) {
-      std::string packet = received_.substr(begin + 1, end - begin - 1);
-      received_.erase(0, end + kChecksum + 1);
-      return packet;
+    if (const std::optional<Packet> packet = find_packet(received_)) {
+      std::string content = received_.substr(packet->begin + 1, packet->end - packet->begin - 1);
+      received_.erase(0, packet->end + kChecksum + 1);
+      return content;
     }
     const std::vector<std::uint8_t> bytes = socket_.receive(kHang);
     if (bytes.empty()) {

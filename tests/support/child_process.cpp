@@ -29,8 +29,9 @@ Pipe make_pipe() {
   return {ends[0], ends[1]};
 }
 
-/// Starts a command with posix_spawn, because tests with several threads start many commands. Returns its
-/// process id. If `error` is negative, the command inherits standard error.
+/// Starts a command. Its standard output goes to the file descriptor `out`, and its standard error to
+/// `error`. If `error` is negative, the command inherits standard error. Returns the process id. Uses
+/// posix_spawn instead of fork, because a test can have several threads.
 int spawn(const std::vector<std::string>& command, const std::string& directory, int out, int error) {
   std::vector<char*> words;
   for (const std::string& word : command) {

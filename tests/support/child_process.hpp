@@ -11,9 +11,10 @@ class ChildProcess {
  public:
   enum class Errors { Apart, WithOutput };
 
-  /// Starts the program. The first word of `command` is a path, or a name that is searched in PATH. Throws
-  /// std::runtime_error if the program does not start. With `Apart`, its standard error is that of the test;
-  /// with `WithOutput`, `output()` includes it.
+  /// Starts the program in the working directory `directory`. The first word of `command` is a path, or a
+  /// name that is searched in PATH. Throws std::runtime_error if the program does not start. With `Apart`,
+  /// the program writes to the standard error of the test; with `WithOutput`, `output()` includes its
+  /// standard error.
   ChildProcess(const std::vector<std::string>& command, const std::string& directory,
                Errors errors = Errors::Apart);
   ~ChildProcess();
@@ -48,8 +49,8 @@ struct Finished {
   std::string error;   ///< standard error
 };
 
-/// Runs a command and waits until it ends. The first word is a path, or a name that is searched in PATH.
-/// Throws std::runtime_error if the command does not start.
+/// Runs a command in the working directory `directory` and waits until it ends. The first word is a path, or
+/// a name that is searched in PATH. Throws std::runtime_error if the command does not start.
 Finished run(const std::vector<std::string>& command, const std::string& directory = "/");
 
 }  // namespace ex9000::system

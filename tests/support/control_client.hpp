@@ -15,14 +15,15 @@ class ControlClient {
   ControlClient& operator=(const ControlClient&) = delete;
 
   /// Sends a command and returns its reply without the newline. Throws std::runtime_error if the connection
-  /// ends, or if no reply arrives within 60 s.
+  /// ends, or if nothing arrives for 60 s.
   std::string ask(const std::string& command);
-  /// Sends a command and returns the text after `ok `. Throws std::runtime_error if the reply is an error.
+  /// Sends a command and returns the text after `ok `. Throws std::runtime_error if the reply does not begin
+  /// with `ok`, and in the same cases as `ask`.
   std::string ok(const std::string& command);
   /// Sends `bytes` unchanged; adds no newline. Throws std::runtime_error if the simulator has closed the
   /// connection.
   void send(const std::string& bytes);
-  /// Sends as many bytes as possible without blocking. Returns their number.
+  /// Sends as many bytes as possible without blocking. Returns the number of bytes sent.
   std::size_t offer(const std::string& bytes);
   /// Closes the sending direction. The client can still receive.
   void close_writing();

@@ -1,4 +1,5 @@
-// A transcript target: the core in virtual time. It records the table rows that transcripts reach.
+// A transcript target: the core in virtual time. It can record which rows of the core's tables, refusals and
+// verdicts the transcripts reach.
 #pragma once
 
 #include "sim/app/play/bus_target.hpp"
@@ -11,11 +12,11 @@ using play::Bytes;
 /// A module and a master on a virtual bus.
 class CoreTarget final : public play::BusTarget {
  public:
-  /// Records in `coverage` what the transcripts reach. Records nothing if the pointer is null.
+  /// Records in `coverage` what the transcripts reach. Records nothing if `coverage` is null.
   explicit CoreTarget(Coverage* coverage = nullptr) : coverage_(coverage) {}
 
-  /// Returns the module with its terminals. It also has terminals for inputs that the model does not have. A
-  /// transcript cannot change these.
+  /// Returns the module with its terminals. The module also has terminals for inputs that the model does not
+  /// have. A transcript cannot set these inputs.
   using play::BusTarget::module;
 
   void send(const Bytes& bytes) override;
@@ -26,7 +27,7 @@ class CoreTarget final : public play::BusTarget {
   void note_coverage(const Bytes& heard);
 
   Coverage* coverage_;
-  Bytes sent_;  ///< bytes sent since the last record
+  Bytes sent_;  ///< bytes sent since the last call of `receive` or `listen`
 };
 
 }  // namespace ex9000::runner

@@ -39,8 +39,9 @@ constexpr std::array<std::pair<Verdict, const char*>, 6> kVerdicts{{
     {Verdict::BadCheck, "BadCheck"},
     {Verdict::TooShort, "TooShort"},
     {Verdict::TooLong, "TooLong"},
-    // Open and Ignored are not required. LineError, Overrun and NoRoom require a faulty line or a faulty
-    // master. See tests/firmware/line/*_assembler_test.cpp.
+    // Open, Ignored and NoRoom are not required. `note` never records LineError or Overrun, because it passes
+    // each byte to the assembler without an error. See tests/firmware/line/*_assembler_test.cpp for these
+    // verdicts.
 }};
 
 std::string hex_code(unsigned code) {
@@ -80,7 +81,7 @@ std::vector<unsigned> functions_of(modbus::Functions functions) {
 }  // namespace
 
 void Coverage::note(const Module& module, const play::Bytes& sent, const play::Bytes& heard) {
-  // A second instance of the module's assembler repeats the verdict that the module has reached.
+  // Passes the bytes to a new assembler, which gives the same verdict as the assembler of the module.
   const InForce& in_force = module.state().in_force;
   FrameQueue queue;
   Verdict verdict = Verdict::Open;

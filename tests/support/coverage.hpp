@@ -9,16 +9,17 @@
 
 namespace ex9000::runner {
 
-/// Each row, refusal and verdict has an id, for example `dcon/read-latches`, `modbus/08`, `coil/outputs/05`,
-/// `register/address/06`, `refusal/OutOfRange` or `verdict/Foreign`.
+/// Each refusal, verdict, ASCII command and Modbus function has an id, for example `refusal/OutOfRange`,
+/// `verdict/Foreign`, `dcon/read-latches` or `modbus/08`. A row of the register map has an id for each
+/// function that can access it, for example `coil/outputs/05` or `register/address/06`.
 class Coverage {
  public:
-  /// Records the verdict on the bytes `sent`, and the row or the refusal that they reach. `module` must have
-  /// received and processed them. `heard` is its reply. Without a reply, only the rows of host OK and `#**`
-  /// count as reached.
+  /// Records the verdict on the bytes `sent`, and the rows or the refusal that they reach. `module` must have
+  /// received and processed these bytes. `heard` is its reply. Without a reply, only the rows of host OK and
+  /// `#**` count as reached.
   void note(const Module& module, const play::Bytes& sent, const play::Bytes& heard);
 
-  /// Returns the ids that a master can reach, but that no transcript has reached.
+  /// Returns the ids that the transcripts must reach, but have not reached.
   [[nodiscard]] std::set<std::string> missing() const;
   [[nodiscard]] std::size_t reached() const { return reached_.size(); }
 

@@ -11,7 +11,7 @@ namespace {
 
 constexpr unsigned kFirst = 10'000;
 constexpr unsigned kCount = 22'000;
-constexpr unsigned kPerProcess = 50;  // more than any test uses
+constexpr unsigned kPerProcess = 50;  // more ports than any test uses
 
 bool is_free(unsigned port) {
   const int fd = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);

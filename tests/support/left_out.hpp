@@ -7,7 +7,8 @@
 
 namespace ex9000::system {
 
-/// Returns whether the environment variable EX9000_WITHOUT contains the name. Spaces separate its names.
+/// Returns whether the environment variable EX9000_WITHOUT contains `name`. The variable is a list of names,
+/// separated by spaces.
 inline bool without(const std::string& name) {
   const char* const names = std::getenv("EX9000_WITHOUT");
   std::istringstream left_out(names == nullptr ? "" : names);

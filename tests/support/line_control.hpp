@@ -1,5 +1,5 @@
-// The line control register of a PL011 (UARTLCR_H), for models and for code that reads it from outside: Arm
-// PrimeCell UART (PL011) TRM, 3.3.7.
+// The line control register of a PL011 (UARTLCR_H), for models of the register and for tests that read the
+// register of an emulated UART. Source: Arm PrimeCell UART (PL011) TRM, 3.3.7.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 namespace ex9000 {
 
 /// Returns the line format that `line_control` selects; nullopt for a format that modules do not have, for
-/// example 7 data bits. Ignores FEN, the bit of the FIFOs.
+/// example 7 data bits. Ignores FEN, the bit that enables the FIFOs.
 constexpr std::optional<LineFormat> line_format_of(std::uint32_t line_control) {
   constexpr std::uint32_t kFifosOn = 1U << 4U;
   switch (line_control & ~kFifosOn) {

@@ -1,4 +1,4 @@
-// The master's end of a port of the simulator, which is a pseudo-terminal or a TCP connection.
+// The master's end of a port of the simulator. The port is a pseudo-terminal or a TCP connection.
 #pragma once
 
 #include <cstdint>
@@ -20,8 +20,8 @@ class MasterPort {
   /// Sends `bytes`. Blocks until the kernel has accepted all of them. Throws std::runtime_error if that
   /// fails.
   virtual void write(const std::vector<std::uint8_t>& bytes) = 0;
-  /// Blocks until bytes arrive and returns them. Throws std::runtime_error if none arrive within 60 s, which
-  /// only detects a simulator that hangs.
+  /// Blocks until bytes arrive and returns them. Throws std::runtime_error if the simulator closes the port,
+  /// or if no bytes arrive within 60 s. This timeout only detects a simulator that hangs.
   virtual std::vector<std::uint8_t> read() = 0;
   /// Sets the baud rate. Returns false if the port has no baud rate.
   virtual bool set_baud(std::uint32_t rate) = 0;

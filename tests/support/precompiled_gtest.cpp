@@ -1,1 +1,2 @@
-// CMake builds the precompiled header of all tests with this file, which has no other content.
+// CMake builds the precompiled header of the GoogleTest programs together with this file. It contains no
+// code.

@@ -10,7 +10,7 @@ namespace ex9000 {
 
 namespace {
 
-// The extension registers that contain settings: wire.md section 12.
+// The extension registers that contain settings: firmware/extensions.md.
 constexpr unsigned kFilters = 0x0240;
 constexpr unsigned kInversion = 0x0250;
 constexpr unsigned kFeed = 0x0251;
@@ -80,7 +80,7 @@ std::optional<Settings> SettingsReader::read_ascii() {
   if (model_.outputs != 0) {
     const auto value = [&](const char* command) {
       const std::string reply = ask(std::string(command));
-      const unsigned first = hex_byte(reply, 3);  // outputs 0 to 7, or 8 to 15 if the model has them
+      const unsigned first = hex_byte(reply, 3);  // the outputs from 8 on if the model has them, else 0 to 7
       const bool has_two_groups = model_.outputs > 8;
       return static_cast<std::uint16_t>(has_two_groups ? first << 8U | hex_byte(reply, 5) : first);
     };

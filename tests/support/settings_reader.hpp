@@ -1,4 +1,4 @@
-// A master that reads all settings of a module in either protocol and checks the frames of its replies.
+// A master that reads the settings of a module in ASCII or Modbus RTU and checks the frames of the replies.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,7 @@ struct FrameFormat {
   std::uint8_t address;
   bool checksum;
 
-  /// Returns the values of a module that has started with these settings.
+  /// Returns the values of a module that has started with these settings and is not in INIT mode.
   static FrameFormat of(const Settings& settings) {
     return {settings.protocol, settings.address, (settings.format & kFormatChecksum) != 0};
   }
@@ -38,9 +38,9 @@ class SettingsReader {
   SettingsReader(const Model& model, FrameFormat frame_format, Exchange exchange)
       : model_(model), frame_format_(frame_format), exchange_(std::move(exchange)) {}
 
-  /// Reads all settings. Returns nullopt if the first reply is missing or has a wrong length. Throws
-  /// std::out_of_range or std::invalid_argument if a later reply is missing or too short. Modbus has no
-  /// register for the data format, so the result of a Modbus module contains the argument `format` instead.
+  /// Reads the settings. Returns nullopt if the first reply is missing or has a wrong length. Throws
+  /// std::out_of_range or std::invalid_argument if a later reply is missing or too short. No Modbus register
+  /// contains the whole data format, so with Modbus the result contains the argument `format` instead.
   std::optional<Settings> read(std::uint8_t format);
 
   /// Sends a DCON command, given without its address: the delimiter and the text after the address. Returns
@@ -60,7 +60,7 @@ class SettingsReader {
 };
 
 /// Returns the value of the two hex digits at position `at`. Throws std::out_of_range or
-/// std::invalid_argument if there is no digit.
+/// std::invalid_argument if there is no hex digit at this position.
 std::uint8_t hex_byte(const std::string& text, std::size_t at);
 
 }  // namespace ex9000

@@ -10,9 +10,9 @@
 
 namespace ex9000::system {
 
-/// Returns the path of the program under test. It has sanitizers if this build has them.
+/// Returns the path of the program under test. The program has sanitizers if this build has them.
 std::string simulator_path();
-/// Returns the path of the optimised program, as it is shipped. Another preset builds it.
+/// Returns the path of the optimised program, as users get it. The preset `host` builds it.
 std::string shipped_simulator_path();
 
 class SimulatorProcess {
@@ -22,8 +22,8 @@ class SimulatorProcess {
   explicit SimulatorProcess(const std::vector<std::string>& arguments,
                             const std::string& program = simulator_path());
 
-  /// Returns the working directory. It contains the link `ex9000.tty` unless the arguments specify another
-  /// path or another port.
+  /// Returns the working directory. It contains the link `ex9000.tty` if the arguments specify no port, no
+  /// bus file and not `--speed max`.
   [[nodiscard]] const std::string& directory() const { return directory_.path(); }
   [[nodiscard]] std::string tty() const { return directory() + "/ex9000.tty"; }
   /// Returns a TCP port of the simulator. `position` counts the ports for TCP and Modbus TCP in the greeting,

@@ -1,5 +1,5 @@
 // Converts the settings that StoredCopy reads from an EEPROM to the types of the core, for comparisons with
-// the core.
+// the core. Also writes copies of the settings as older and newer firmware does.
 #pragma once
 
 #include <algorithm>
@@ -48,7 +48,8 @@ inline Settings settings_from(const Model& model, const std::uint8_t* memory) {
                                 : settings_of(StoredCopy(storing, memory, place).settings());
 }
 
-/// Stores a copy of `settings` at `place` in the format of firmware with layout 2.
+/// Stores a copy of `settings` at `place` as firmware with layout 2 does. This layout does not contain the
+/// settings of the extensions. `place` must be one of the addresses for the older layouts.
 inline void put_layout_2(const Model& model, const Settings& settings, std::uint16_t sequence,
                          std::uint8_t* memory, std::size_t place) {
   std::uint8_t* bytes = memory + place;
@@ -73,7 +74,8 @@ inline void put_layout_2(const Model& model, const Settings& settings, std::uint
   StoredCopy::seal(storing, memory, place);
 }
 
-/// Returns a byte that newer firmware has stored after the settings that this firmware supports.
+/// Returns the byte at position `index` of a record's settings, for settings of newer firmware that this
+/// firmware does not support. The value is arbitrary.
 inline std::uint8_t unknown_byte(std::size_t index) { return static_cast<std::uint8_t>(0xC1U ^ index); }
 
 /// Returns the number of bytes that a record without unknown settings uses for `settings`. The record ends

@@ -1,4 +1,5 @@
-// A model of the microcontroller: a UART with its RS-485 driver, three timers, a memory and a clock.
+// A model of the microcontroller (a UART with its RS-485 driver, three timers, a clock and a watchdog) and of
+// the other hardware of a module, for example its memory.
 #pragma once
 
 #include <algorithm>
@@ -17,23 +18,24 @@ namespace ex9000::interleaving {
 
 inline constexpr hal::stellaris::Pin kDriverEnable{hal::stellaris::Port::A, 6};
 
-/// The bytes that were sent between switching the driver on and switching it off. They are usually a reply.
+/// The bytes that were sent while the driver was on.
 struct Sent {
   std::uint32_t started;  ///< when the driver was switched on, in microseconds
   std::uint32_t ended;    ///< when the last stop bit ended
   std::string bytes;
 };
 
-/// Simulates only the hardware. For each source of interrupts except received bytes, stores the time of the
-/// next interrupt. The owner must call the interrupt handlers at these times.
+/// Simulates only the hardware. Stores the times of the next events; `kNever` if none is due. At `sent_due`,
+/// the owner must call `shift`. At each other time, it must call the interrupt handler. While `interrupts()`
+/// is true, it must call the interrupt handler of the UART.
 class Chip final : public hal::bus::Peripherals {
  public:
   static constexpr std::uint32_t kNever = 0xFFFF'FFFF;
-  static constexpr std::uint32_t kCharacter = 87;  ///< at 115200 baud, microseconds
+  static constexpr std::uint32_t kCharacter = 87;  ///< microseconds for each character at 115200 baud
   static constexpr std::uint32_t kMemoryJob = 3000;
 
-  /// The clock begins at 50 minutes, in the second half of its range. An unset time of 0 is then not in the
-  /// past.
+  /// The clock begins at 50 minutes, in the second half of its 32-bit range. A time of 0 that was never set
+  /// is therefore in the future, not in the past.
   std::uint32_t now = 3'000'000'000;
   std::uint32_t tick_due = now + 1000;
   std::uint32_t silence_due = kNever;
@@ -51,7 +53,7 @@ class Chip final : public hal::bus::Peripherals {
     return std::min({tick_due, silence_due, line_end_due, wake_due, memory_due, sent_due});
   }
 
-  // --- the UART; see hal/stellaris/uart.hpp for its properties ---
+  // --- the UART; see hal/pl011/uart.hpp for its driver ---
 
   [[nodiscard]] bool driving() const { return driving_; }
   /// Returns whether a received byte causes an interrupt.
@@ -147,7 +149,7 @@ class Chip final : public hal::bus::Peripherals {
   bool driving_ = false;
 };
 
-/// The chip that the drivers use.
+/// The chip that the following drivers use.
 inline Chip* chip = nullptr;
 
 struct Clock {
@@ -167,7 +169,7 @@ struct LineEndTimer {
   static void restart(Duration after) { chip->line_end_due = chip->now + after.microseconds(); }
 };
 
-/// Only the main loop uses this timer, so interrupts can occur between its accesses.
+/// Only the main loop restarts this timer, so an interrupt can occur before and after a restart.
 struct WakeTimer {
   static void restart(Duration after) {
     Points::pass();
@@ -202,7 +204,7 @@ struct Watchdog {
   }
 };
 
-/// A memory whose jobs end after `kMemoryJob`, with an interrupt.
+/// A memory. A read or a write ends after `kMemoryJob` microseconds, with an interrupt.
 class Memory {
  public:
   static constexpr std::size_t kSize = 0x180;

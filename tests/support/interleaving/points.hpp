@@ -10,7 +10,7 @@ namespace ex9000::interleaving {
 /// interrupt passes no points, because interrupts do not interrupt each other.
 class Points {
  public:
-  /// Marks a point at which an interrupt can occur. Has no effect in an interrupt.
+  /// Marks a point at which an interrupt can occur. Has no effect in an interrupt or outside `watch`.
   static void pass() {
     Points& points = instance();
     if (!points.in_interrupt_ && points.visit_) {

@@ -1,6 +1,7 @@
-// Replaces firmware/line/crossing.hpp and has the same interface. A 32-bit counter starts shortly before it
-// wraps, as after months of operation. The core only compares counters with earlier values, so it works with
-// any start value.
+// Replaces firmware/line/crossing.hpp and has the same interface. Each shared std::uint32_t starts 100 counts
+// before it wraps to 0, as a counter can after months of operation. The core works with these start values,
+// because it compares counters only with each other and with their earlier values. Exception: the diagnostic
+// counters (firmware/line/line_tallies.hpp) do not start at 0, so a test must clear them first.
 #pragma once
 
 #include <cstdint>
