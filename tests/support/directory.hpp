@@ -22,7 +22,7 @@ inline void write_file(const std::string& path, const std::string& bytes) {
   std::ofstream(path, std::ios::binary) << bytes;
 }
 
-/// An empty temporary directory. The destructor removes it with its content.
+/// A temporary directory, which is empty at first. The destructor removes it with its content.
 class Directory {
  public:
   Directory() {
@@ -36,8 +36,9 @@ class Directory {
   /// Returns the path of the entry `name` in this directory.
   [[nodiscard]] std::string operator/(const std::string& name) const { return path_ + "/" + name; }
 
-  /// Returns the mode, the number of links, and the link target or the size and hash of each entry, also in
-  /// subdirectories. The key is the path in this directory. A test can compare two results to detect changes.
+  /// Returns a description of each entry, also in subdirectories: the mode, the number of links, the target
+  /// of a link, and the size and the hash of a file. The key is the path in this directory. A test can
+  /// compare two results to detect changes.
   [[nodiscard]] std::map<std::string, std::string> contents() const {
     std::map<std::string, std::string> contents;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(path_)) {

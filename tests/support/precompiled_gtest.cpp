@@ -1,2 +1,2 @@
-// CMake builds the precompiled header of the GoogleTest programs together with this file. It contains no
+// CMake needs a source file to build the precompiled header of the GoogleTest programs. This file contains no
 // code.

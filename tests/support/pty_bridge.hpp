@@ -10,10 +10,10 @@
 
 namespace ex9000::system {
 
-/// A gateway for Modbus RTU masters. It reads a whole request from the terminal, sends it to the module in
-/// the module's time, and returns the whole reply in one piece. The module receives the same bytes even if
-/// the host interrupts the master while it writes. A request ends with the first byte at which its CRC is
-/// correct.
+/// A gateway for Modbus RTU masters. It reads a whole request from the terminal, sends the request to the
+/// module, and returns the whole reply in one piece. Gaps between the bytes of a request, for example because
+/// the host interrupts the master, therefore have no effect on the module. A request ends with the first byte
+/// at which its CRC is correct.
 ///
 /// No other thread may use the module between a request and its reply. The baud rate of the terminal has no
 /// effect.

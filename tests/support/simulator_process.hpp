@@ -22,8 +22,8 @@ class SimulatorProcess {
   explicit SimulatorProcess(const std::vector<std::string>& arguments,
                             const std::string& program = simulator_path());
 
-  /// Returns the working directory. It contains the link `ex9000.tty` if the arguments specify no port, no
-  /// bus file and not `--speed max`.
+  /// Returns the working directory. It contains the link `ex9000.tty` if the arguments contain neither a port
+  /// nor a bus file nor `--speed max`.
   [[nodiscard]] const std::string& directory() const { return directory_.path(); }
   [[nodiscard]] std::string tty() const { return directory() + "/ex9000.tty"; }
   /// Returns a TCP port of the simulator. `position` counts the ports for TCP and Modbus TCP in the greeting,

@@ -8,12 +8,12 @@ namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// Returns two hex digits.
+/// Returns the last two hex digits of `value`.
 std::string hex(unsigned value) { return reference::hex(value, 2); }
 
 Bytes text(const std::string& characters) { return {characters.begin(), characters.end()}; }
 
-/// Returns the arguments of the `%` command after AA.
+/// Returns the part NNTTCCFF of the command `%AANNTTCCFF`.
 std::string configuration(unsigned address, unsigned baud_code, unsigned format) {
   return hex(address) + "40" + hex(baud_code) + hex(format);
 }
@@ -23,7 +23,8 @@ std::uint8_t other_baud_code(std::uint8_t code) { return code == kFactoryBaudCod
 
 constexpr std::uint8_t kNewAddress = 0x2B;
 constexpr std::uint8_t kNewTimeout = 0x64;
-constexpr std::uint8_t kShortTimeout = 0x05;  // long enough to read all settings with the new response delay
+// 0.5 s. A master can read all settings in this time, even with a response delay of kNewDelay.
+constexpr std::uint8_t kShortTimeout = 0x05;
 constexpr std::uint8_t kNewDelay = 2;
 constexpr std::uint16_t kNewValue = 0x3C96;
 constexpr std::uint16_t kOneBit = 1U << 0U;
@@ -46,7 +47,7 @@ std::vector<StoringCommand> ascii_commands(const Model& model) {
   std::vector<StoringCommand> commands;
   const auto add = [&](const std::string& name, Init init, std::function<void(Settings&)> prepare,
                        std::function<std::string(const Settings&)> rest, Change change) {
-    // In INIT mode the address is 00.
+    // In INIT mode, the module has the address 00.
     auto frame = [name, rest = std::move(rest), init](const Settings& settings) {
       return text(name.substr(0, 1) + hex(init == Init::SinceReset ? 0 : settings.address) + rest(settings));
     };
@@ -125,7 +126,8 @@ std::vector<StoringCommand> modbus_commands(const Model& model) {
   const Change take_address = [](Settings& settings, std::uint16_t) { settings.address = kNewAddress; };
   add("05 protocol", needs_nothing, {0x05, 0x01, 0x00, 0x00, 0x00},
       [](Settings& settings, std::uint16_t) { settings.protocol = Protocol::Ascii; });
-  // These requests are also allowed as broadcasts, because they do not change the configuration (wire.md 7).
+  // The module also executes these requests as broadcasts, because they do not change the protocol, the
+  // counting edge, the address or the baud rate (wire.md section 7).
   for (const std::string to : {"", "broadcast "}) {
     add(to + "05 watchdog on", needs_disabled, {0x05, 0x01, 0x04, 0xFF, 0x00},
         [](Settings& settings, std::uint16_t) { settings.watchdog_enabled = true; });

@@ -1,5 +1,7 @@
-// All commands and events that make a module store settings (wire.md section 8), and the expected settings.
-// The expected settings are calculated without the code of the core, except for its types.
+// Commands that make a module store settings (wire.md section 8), timeouts of the host watchdog, which also
+// make it store settings, and the expected settings. The extended settings are stored only with ~AARDVV and
+// with Modbus requests, not with ~AAXRRRRVVVV. The expected settings are calculated without the code of the
+// core, except for its types and constants.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +18,7 @@ namespace ex9000 {
 /// The state of INIT* when the command arrives.
 enum class Init : std::uint8_t {
   Released,
-  Tied,       ///< connected to GND after the module has started, which permits configuration
+  Tied,       ///< connected to GND after the reset: configuration permission, but no INIT mode
   SinceReset  ///< connected to GND since the reset, so the module runs in INIT mode
 };
 
@@ -24,15 +26,16 @@ struct StoringCommand {
   std::string name;
   Protocol protocol;  ///< the protocol that the module must use; always ASCII in INIT mode
   Init init = Init::Released;
-  /// Changes the settings to a state in which the command can store something.
+  /// Changes the settings on which the command depends, if there are any. Example: sets the timeout status
+  /// for a command that clears it.
   std::function<void(Settings&)> prepare;
   /// Returns the frame to send: ASCII without checksum and CR, or Modbus without CRC. If this function is
   /// empty, the test sends no frame, and the timeout of the host watchdog stores the settings.
   std::function<std::vector<std::uint8_t>(const Settings&)> frame;
-  /// Applies the expected change to the settings. `outputs` are the outputs at that time.
+  /// Applies the expected change to the settings. `outputs`: the outputs before the command.
   std::function<void(Settings&, std::uint16_t outputs)> change;
-  /// Returns the outputs after the command. This function is empty if the command does not change the
-  /// outputs.
+  /// Returns the outputs after the command or the timeout. `done`: the settings after it. `outputs`: the
+  /// outputs before it. This function is empty if the outputs do not change.
   std::function<std::uint16_t(const Settings& done, std::uint16_t outputs)> drive;
   bool answered = true;  ///< false for a broadcast and for a timeout of the host watchdog
 
@@ -45,10 +48,11 @@ struct StoringCommand {
   }
 };
 
-/// Returns all commands of a model that supports both protocols.
+/// Returns the commands for `model`, which must support both protocols, and one timeout of the host watchdog
+/// for each protocol.
 std::vector<StoringCommand> storing_commands(const Model& model);
 
-/// Returns `text` with CR, and with the checksum before it if `checksum` is set.
+/// Returns `text`, then the checksum of `text` if `checksum` is true, then CR.
 std::vector<std::uint8_t> ascii_frame(const std::string& text, bool checksum);
 
 }  // namespace ex9000

@@ -14,13 +14,13 @@
 namespace ex9000::system {
 
 /// One process serves all transcripts, because the start of a process takes longer than most transcripts. All
-/// its lines share one line time, so a test must play the transcripts one after another.
+/// lines of the process share one line time, so a test must play the transcripts one after another.
 class TranscriptLines {
  public:
   enum class Over { PseudoTerminal, Tcp };
 
   /// Each line has one module, with the model and the settings of the transcript at the same position. The
-  /// supplies of all modules are off. With TCP, the program is the shipped one; with pseudo-terminals, it is
+  /// constructor switches the supplies of all modules off. With TCP, the program is the shipped one; with pseudo-terminals, it is
   /// the program under test, which can have sanitizers.
   TranscriptLines(const std::vector<const play::Transcript*>& transcripts, Over over);
 

@@ -11,7 +11,8 @@
 
 namespace ex9000::runner {
 
-/// Returns all runs of a file that must not be a scenario. Throws like play::load.
+/// Returns the transcripts of a file, one for each of its models. Throws like play::load. Also throws
+/// std::invalid_argument if the file is a scenario.
 inline std::vector<play::Transcript> load_transcripts(const std::string& path) {
   std::vector<play::Transcript> transcripts = play::load(path);
   if (transcripts[0].model == nullptr) {
@@ -20,7 +21,7 @@ inline std::vector<play::Transcript> load_transcripts(const std::string& path) {
   return transcripts;
 }
 
-/// Returns the total time of all `wait` and `silence` steps, rounded up.
+/// Returns the total time of all `wait` and `silence` steps, rounded up to whole milliseconds.
 inline std::chrono::milliseconds waits_of(const play::Transcript& transcript) {
   std::chrono::nanoseconds total{0};
   for (const play::Step& step : transcript.steps) {

@@ -17,7 +17,7 @@ struct Way {
   enum Port {
     Pty,
     Tcp,        ///< over socat, which connects a pseudo-terminal to a TCP port
-    ModbusTcp,  ///< over the gateway; there is no serial port
+    ModbusTcp,  ///< over the simulator's Modbus TCP gateway, without a serial port
   };
 
   Port port;

@@ -1,4 +1,4 @@
-"""Tests the parts of check-image separately, with texts as input."""
+"""Tests the parts of check-image separately, without a compiled image."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ class CallGraph(unittest.TestCase):
     def test_a_frame_has_the_size_that_the_compiler_states(self) -> None:
         self.assertEqual([record.frame for record in self.records.values()], [8, 24, 40, 16, 16, 0])
 
-    def test_only_frames_without_a_bound_are_unbounded(self) -> None:
+    def test_a_dynamic_frame_is_unbounded_unless_the_compiler_states_a_bound(self) -> None:
         self.assertEqual([name for name, r in self.records.items() if not r.is_bounded], ["_Z4growj"])
 
     def test_a_function_calls_the_targets_of_its_edges(self) -> None:
@@ -56,7 +56,7 @@ class CallGraph(unittest.TestCase):
         self.assertEqual({title.name for title in self.records["_Z4readv"].calls}, {"memcpy"})
         self.assertEqual(self.records["_Z4readv"].indirect_calls, ["core.cpp:4:20"])
 
-    def test_any_other_text_is_rejected(self) -> None:
+    def test_an_unexpected_line_is_rejected(self) -> None:
         for line in ("node: { }", 'edge: { sourcename: "unknown" targetname: "other" }', "region: {"):
             with self.assertRaises(call_graph.NotACallGraph):
                 call_graph.parse(line)
@@ -65,13 +65,14 @@ class CallGraph(unittest.TestCase):
         chain = DeepestChains(self.graph(4)).below(0)
         self.assertEqual(str(chain), "reset 8 -> _ZL4turnv 24 -> _Z5writev 40")
         self.assertEqual(chain.size, 72)
-        # 16 and 32 bytes add up to more than 40.
+        # The frames of _Z4readv and memcpy, 16 + 32 bytes, are larger than that of _Z5writev, 40 bytes.
         self.assertEqual(
             str(DeepestChains(self.graph(32)).below(0)), "reset 8 -> _ZL4turnv 24 -> _Z4readv 16 -> memcpy 32"
         )
 
     def graph(self, memcpy: int) -> Graph:
-        """Returns the call graph. The position of a function is its address."""
+        """Returns a graph of the recorded functions and of memcpy. `memcpy` is the size of the frame of memcpy. The address
+        of a function is its index in `names`."""
         names = [*self.records, "memcpy"]
         nodes = {
             names.index(name): Node(name, r.frame, frozenset(names.index(title.name) for title in r.calls))
@@ -96,7 +97,7 @@ class WorstCase(unittest.TestCase):
     }
 
     def test_only_the_deepest_handler_of_a_level_counts(self) -> None:
-        # 8 + 100 + 4; then 36 for the exception and 24 for its handler.
+        # reset, turn and leaf use 8 + 100 + 4 bytes. The exception uses 36, and its deepest handler, timer, uses 24.
         self.assertEqual(worst_case(self.GRAPH, 0, [Level("interrupts", [10, 11, 12])]).size, 112 + 36 + 24)
 
     def test_levels_add_up(self) -> None:
@@ -115,7 +116,7 @@ class WorstCase(unittest.TestCase):
 
 
 class UnsuitableFiles(unittest.TestCase):
-    def test_an_unsuitable_file_is_named_with_the_error_and_the_remedy(self) -> None:
+    def test_a_missing_file_and_a_file_that_is_not_an_image_are_reported(self) -> None:
         with tempfile.TemporaryDirectory() as folder:
             image, missing = Path(folder, "image.elf"), Path(folder, "missing.elf")
             image.write_text("text", encoding="utf-8")
@@ -161,8 +162,8 @@ Refusal answer (const struct State & state, struct Bytes args)
     def test_the_parameters_decide_which_functions_a_call_can_reach(self) -> None:
         for readable, expected in {
             "ex::read(ex::State const&, ex::Bytes, unsigned short, ex::Kind)": True,
-            "ex::read(ex::State const&, ex::Bytes, unsigned short, char)": True,  # Kind can be a char
-            "read": True,  # a C function: it can have any parameters
+            "ex::read(ex::State const&, ex::Bytes, unsigned short, char)": True,  # Kind can be an alias of char
+            "read": True,  # a C function: its name does not contain its parameters
             "ex::read(ex::State const&, ex::Bytes, unsigned int, ex::Kind)": False,
             "ex::read(ex::State*, ex::Bytes, unsigned short, ex::Kind)": False,
             "ex::read(ex::Other const&, ex::Bytes, unsigned short, ex::Kind)": False,
@@ -176,7 +177,7 @@ Refusal answer (const struct State & state, struct Bytes args)
         self.assertTrue(self.reaches(10, 5, "Thing::turn()"))
         self.assertFalse(self.reaches(10, 5, "Thing::turn(int)"))
 
-    def test_slot_parameters_and_constness_decide_which_virtual_functions_a_call_can_reach(self) -> None:
+    def test_a_virtual_call_has_a_slot_and_reaches_functions_with_its_constness_and_parameter_count(self) -> None:
         (site,) = call_sites.parse(self.DUMP)["_Z6answerRK5State", "dcon.cpp:12:7"]
         self.assertEqual(site, call_sites.VirtualCall(3, True, 1))
         self.assertTrue(self.reaches(12, 7, "Eeprom::busy(int) const"))
@@ -193,8 +194,8 @@ Refusal answer (const struct State & state, struct Bytes args)
 
 class MachineCode(unittest.TestCase):
     def stack(self, text: str) -> int:
-        """Returns the stack of the code in `text`: one `mnemonic operands` on each line, 2 bytes for each line.
-        The target of a branch is `@` and the number of a line, counted from 0."""
+        """Returns the number of bytes that the code in `text` uses on the stack. Each line is an instruction of 2 bytes:
+        the mnemonic, a space and the operands. In the operands, `@N` is the address of line N, counted from 0."""
         code = []
         for number, line in enumerate(text.strip().splitlines()):
             mnemonic, _, operands = line.strip().partition(" ")
@@ -229,12 +230,12 @@ class MachineCode(unittest.TestCase):
     def test_a_conditional_branch_is_not_a_call(self) -> None:
         self.assertEqual(self.stack("bls.n @2\nbx lr\npush {r4, lr}\npop {r4, pc}"), 8)
 
-    def test_a_computed_stack_pointer_is_unknown(self) -> None:
+    def test_the_stack_is_unknown_if_the_stack_pointer_is_computed_or_a_loop_pushes(self) -> None:
         for text in ("sub sp, r0", "mov sp, r7", "add.w sp, sp, r3", "push {r0}\nb.n @0"):
             with self.subTest(text), self.assertRaises(StackPointerUnknown):
                 self.stack(text)
 
-    def test_calls_and_jumps_through_registers_are_indirect(self) -> None:
+    def test_calls_and_jumps_through_pointers_are_indirect_unlike_returns_direct_calls_and_table_jumps(self) -> None:
         for mnemonic, operands, expected in (
             ("blx", "r3", True),
             ("bx", "r3", True),
@@ -251,7 +252,7 @@ class MachineCode(unittest.TestCase):
 
 
 class Names(unittest.TestCase):
-    def test_names_have_no_parameters(self) -> None:
+    def test_names_have_no_parameters_return_types_or_anonymous_namespaces(self) -> None:
         for mangled, expected in {
             "_ZN6ex90006Module5beginEtNS_4TimeEPFNS_10LineTimingEmE": "ex9000::Module::begin",
             "_ZNK12_GLOBAL__N_11AclEi.isra.0": "A::operator()",

@@ -63,7 +63,7 @@ class Refuses(unittest.TestCase):
                 compile_options="-w",
             )
 
-    def test_a_reachable_assembler_function_is_refused(self) -> None:
+    def test_a_reachable_assembler_function_that_foreign_does_not_list_is_refused(self) -> None:
         self.refused(
             "foreign, reached by reset -> foreign: the compiler recorded no stack; add it to FOREIGN",
             """
@@ -74,7 +74,7 @@ class Refuses(unittest.TestCase):
             """,
         )
 
-    def test_a_copy_function_that_uses_more_stack_than_the_table_states_is_refused(self) -> None:
+    def test_a_memset_that_uses_more_stack_than_foreign_permits_is_refused(self) -> None:
         self.refused(
             "memset, reached by reset -> memset: uses 64 bytes of stack; FOREIGN in linked_graph.py permits 16",
             """
@@ -86,7 +86,7 @@ class Refuses(unittest.TestCase):
             """,
         )
 
-    def test_a_call_that_the_compiler_has_not_seen_is_refused(self) -> None:
+    def test_a_call_that_the_compiler_has_not_recorded_is_refused(self) -> None:
         self.refused(
             "reset: branches to hidden, but the compiler recorded no such call; call it from C",
             """
@@ -95,7 +95,7 @@ class Refuses(unittest.TestCase):
             """,
         )
 
-    def test_a_jump_that_the_compiler_has_not_seen_is_refused(self) -> None:
+    def test_a_jump_that_the_compiler_has_not_recorded_is_refused(self) -> None:
         self.refused(
             "interrupt: branches to hidden, but the compiler recorded no such call; call it from C",
             """
@@ -105,7 +105,7 @@ class Refuses(unittest.TestCase):
             """,
         )
 
-    def test_a_call_through_a_register_that_the_compiler_has_not_seen_is_refused(self) -> None:
+    def test_a_call_through_a_register_that_the_compiler_has_not_recorded_is_refused(self) -> None:
         self.refused(
             "reset: branches through a register, but the compiler recorded no indirect call; call through a pointer",
             """
@@ -113,7 +113,7 @@ class Refuses(unittest.TestCase):
             """,
         )
 
-    def test_a_push_that_the_compiler_has_not_seen_is_refused(self) -> None:
+    def test_a_push_that_the_compiler_has_not_recorded_is_refused(self) -> None:
         self.refused(
             "reset: uses 8 bytes of stack, but the compiler recorded only 0; do not push in assembler code",
             """
@@ -181,7 +181,7 @@ class Refuses(unittest.TestCase):
             """,
         )
 
-    def test_interrupts_disabled_by_other_means_are_refused(self) -> None:
+    def test_interrupts_disabled_by_a_write_to_primask_are_refused(self) -> None:
         self.refused(
             "0x[0-9a-f]+: interrupts are disabled by PRIMASK, r0; use cpsid i",
             'extern "C" void reset() { for (;;) asm volatile("msr primask, r0" ::: "memory"); }',
@@ -189,7 +189,7 @@ class Refuses(unittest.TestCase):
 
     # --- symbols and sections ---
 
-    def test_heap_is_refused(self) -> None:
+    def test_operator_new_and_malloc_are_refused(self) -> None:
         for source in (
             """
             FAR void* operator new(size_t) { return &stack_top; }
@@ -217,7 +217,7 @@ class Refuses(unittest.TestCase):
             link_options="-lgcc",
         )
 
-    def test_a_floating_point_unit_is_refused(self) -> None:
+    def test_instructions_of_a_floating_point_unit_are_refused(self) -> None:
         self.refused(
             "instructions of a floating-point unit: floating point; compile with -mfloat-abi=soft",
             'volatile float f; extern "C" void reset() { for (;;) f = f * f; }',
@@ -293,7 +293,7 @@ class Refuses(unittest.TestCase):
 
     def test_an_image_that_requires_too_much_ram_is_refused(self) -> None:
         source = 'volatile char a[20372]; extern "C" void reset() { for (;;) a[0] = 1; }'
-        self.assertTrue(check(source).accepted)  # the rest of RAM is for three exceptions
+        self.assertTrue(check(source).accepted)  # the rest of the RAM is for the frames of three exceptions
         verdict = check(source.replace("20372", "20376"))
         self.assertFalse(verdict.accepted)
         self.assertEqual(verdict.problems, "image: requires 20484 bytes of RAM; the board has 20480\n")

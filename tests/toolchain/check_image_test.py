@@ -1,4 +1,4 @@
-"""Tests check-image on images that it accepts: the exact sizes that it prints."""
+"""Tests check-image on images that it accepts, and the records of sizes."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ EXCEPTION = 36
 
 class Accepts(unittest.TestCase):
     def stack(self, verdict: Verdict) -> int:
-        """Returns the worst-case stack without the exception frames of HardFault and NMI, whose handlers use none."""
+        """Returns the worst-case stack without the exception frames of HardFault and NMI. Their handlers use no stack."""
         self.assertTrue(verdict.accepted, verdict.problems)
         match = re.search(r"(\d+) stack at worst", verdict.figures)
         assert match
         return int(match.group(1)) - 2 * EXCEPTION
 
-    def test_a_main_loop_without_interrupts_requires_one_exception_frame(self) -> None:
+    def test_an_empty_main_loop_and_an_empty_interrupt_handler_require_one_exception_frame(self) -> None:
         self.assertEqual(self.stack(check('extern "C" void reset() { for (;;) {} }')), EXCEPTION)
 
     def test_frames_add_up_along_the_deepest_calls(self) -> None:
@@ -38,17 +38,17 @@ class Accepts(unittest.TestCase):
             """,
             options="--verbose",
         )
-        # 8 bytes for the registers that reset saves, the arrays, and 4 bytes to round up to a multiple of eight.
+        # 8 bytes for the registers that reset saves, 24 and 100 for the arrays, and 4 to round 100 up to a multiple of 8.
         self.assertIn("main loop 136: reset 8 -> deep 24 -> deepest 104", verdict.figures)
         self.assertEqual(self.stack(verdict), 136 + EXCEPTION)
 
-    def test_interrupts_add_the_deepest_handler_of_each_level(self) -> None:
+    def test_an_interrupt_adds_an_exception_frame_and_the_frame_of_its_handler(self) -> None:
         source = """
             extern "C" void reset() { for (;;) {} }
             extern "C" void interrupt() { room<40>(); }
             """
         self.assertEqual(self.stack(check(source)), EXCEPTION + 40)
-        # The handler is alone on a separate level, and there is no handler on the shared level.
+        # With --level, the handler is alone on a separate level, and there is no handler on the shared level.
         self.assertEqual(self.stack(check(source, options="--level interrupt")), EXCEPTION + 40)
 
     def test_a_processor_without_a_divide_instruction_calls_the_function_of_libgcc(self) -> None:
@@ -153,7 +153,7 @@ class Accepts(unittest.TestCase):
         self.assertRegex(verdict.figures, r"main loop \d+: reset 8 -> program 40\n")
         self.assertTrue(verdict.accepted, verdict.problems)
 
-    def test_the_copy_functions_of_newlib_use_no_more_stack_than_the_table_states(self) -> None:
+    def test_the_memory_functions_of_newlib_use_no_more_stack_than_foreign_permits(self) -> None:
         source = """
             #include <string.h>
             unsigned char a[999], b[999];
@@ -229,7 +229,7 @@ class Accepts(unittest.TestCase):
 class Growth(unittest.TestCase):
     RECORDED = records.Figures(1000, 400, 600)
 
-    def test_five_percent_of_growth_requires_no_new_record(self) -> None:
+    def test_only_growth_of_more_than_five_percent_exceeds_the_record(self) -> None:
         self.assertFalse(records.Figures(1050, 420, 630).exceeds(self.RECORDED))
         self.assertTrue(records.Figures(1051, 400, 600).exceeds(self.RECORDED))
         self.assertTrue(records.Figures(1000, 451, 600).exceeds(self.RECORDED))

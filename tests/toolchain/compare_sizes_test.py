@@ -11,7 +11,7 @@ PROGRAM = Path(__file__).resolve().parents[2] / "toolchain" / "compare-sizes"
 
 
 class CompareSizes(unittest.TestCase):
-    """The record contains one image with 1000 bytes of flash, 200 of static RAM and 100 of stack."""
+    """When a test starts, the record has a line for one image: 1000 bytes of flash, 200 of static RAM, 100 of stack."""
 
     def setUp(self) -> None:
         folder = tempfile.TemporaryDirectory()
@@ -29,7 +29,7 @@ class CompareSizes(unittest.TestCase):
         compared = self.compare("board IMAGE 1050 215 100")
         self.assertEqual((compared.returncode, compared.stderr), (0, ""))
 
-    def test_more_flash_is_rejected_and_the_growth_is_printed(self) -> None:
+    def test_more_than_five_percent_more_flash_is_rejected_and_the_growth_is_printed(self) -> None:
         compared = self.compare("board IMAGE 1051 200 100")
         self.assertEqual(compared.returncode, 1)
         grown = "board IMAGE: has grown by more than 5 %: flash 1051 (+51), static 200, stack 100"
@@ -44,7 +44,7 @@ class CompareSizes(unittest.TestCase):
         self.assertEqual(compared.returncode, 1)
         self.assertIn("board OTHER: is not in the record", compared.stderr)
 
-    def test_a_new_record_has_the_sizes_of_the_build(self) -> None:
+    def test_a_new_record_has_the_sizes_of_the_build_and_accepts_them(self) -> None:
         self.assertEqual(self.compare("board IMAGE 2000 400 300", "--record").returncode, 0)
         self.assertEqual(self.record.read_text(encoding="utf-8"), "board IMAGE 2000 400 300\n")
         self.assertEqual(self.compare("board IMAGE 2000 400 300").returncode, 0)

@@ -9,7 +9,7 @@ COUNT_TESTS = pathlib.Path(__file__).resolve().parents[1] / "count-tests"
 
 
 def count(log, table):
-    """Returns how many tests passed, failed and were skipped."""
+    """Returns the numbers that count-tests prints for these texts: passed, failed and skipped tests."""
     with tempfile.TemporaryDirectory() as folder:
         files = [pathlib.Path(folder, name) for name in ("log", "table")]
         for file, text in zip(files, (log, table)):
@@ -19,7 +19,7 @@ def count(log, table):
 
 
 class CountTests(unittest.TestCase):
-    def test_a_program_of_googletest_counts_each_test(self):
+    def test_each_test_of_a_googletest_program_is_counted(self):
         log = (
             "1/1 Testing: bus_test\n"
             "[  FAILED  ] Bus.Arrives (3 ms)\n"
@@ -29,13 +29,13 @@ class CountTests(unittest.TestCase):
         )
         self.assertEqual(count(log, "bus_test 1 FAILED ctest\n"), (5, 2, 1))
 
-    def test_a_program_of_unittest_counts_each_test(self):
+    def test_each_test_of_a_unittest_program_is_counted(self):
         log = "1/1 Testing: bus_py\nRan 9 tests in 1 s\nFAILED (failures=1, errors=2, skipped=1)\n"
         self.assertEqual(count(log, "bus_py 1 FAILED ctest\n"), (5, 3, 1))
         log = "1/1 Testing: bus_py\nRan 9 tests in 1 s\nOK (skipped=2)\n"
         self.assertEqual(count(log, "bus_py 1 passed ctest\n"), (7, 0, 2))
 
-    def test_a_part_that_fails_without_a_failed_test_counts_as_one(self):
+    def test_a_part_that_fails_without_a_failed_test_counts_as_one_failed_test(self):
         log = "1/2 Testing: bus_test\nterminate called\n2/2 Testing: line_test\n[  PASSED  ] 5 tests.\n"
         self.assertEqual(count(log, "build 1 FAILED b\nbus_test 1 FAILED b\nline_test 1 passed b\n"), (5, 2, 0))
 

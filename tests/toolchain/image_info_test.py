@@ -1,4 +1,4 @@
-"""Tests image-info on small files whose every byte is known. tests/boards/image_info_test.py reads real images."""
+"""Tests image-info on small files that this program writes. tests/boards/image_info_test.py reads real images."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ class Reads(unittest.TestCase):
                     self.assertEqual(flash_content(file), content)
                     self.assertEqual(info_of(flash_content(file)), EXPECTED)
 
-    def test_a_gap_is_erased_flash(self) -> None:
+    def test_a_gap_is_read_as_erased_flash(self) -> None:
         self.assertEqual(flash_content(elf((0, b"ab"), (4, b"c"))), b"ab\xff\xffc")
 
 
@@ -97,7 +97,7 @@ class Rejects(unittest.TestCase):
         self.refused(good.replace(b":", b":0", 1), "line 1 is not a record")
         self.refused(record(7, 0, b"") + good, "record type 7")
 
-    def test_addresses_beyond_the_largest_flash_are_rejected(self) -> None:
+    def test_content_that_spans_more_than_16_mib_is_rejected(self) -> None:
         self.refused(elf((0, b"a"), (0x20000000, b"b")), "at most 16 MiB")
 
 
@@ -113,7 +113,7 @@ class Program(unittest.TestCase):
         self.assertEqual(done.stdout, "".join(f"{name} {text}\n" for name, text in EXPECTED.items()))
         self.assertEqual(done.returncode, 0)
 
-    def test_it_reports_a_wrong_file_in_one_line(self) -> None:
+    def test_it_reports_a_wrong_file_in_one_line_and_rejects_a_call_without_a_file(self) -> None:
         missing = self.run_on("/missing.bin")
         self.assertEqual(missing.stderr, "/missing.bin: No such file or directory; name a file that you can read\n")
         self.assertEqual(missing.returncode, 1)

@@ -1,4 +1,4 @@
-"""Tests the checksum of the second stage, and the UF2 files."""
+"""Tests the checksum of the second stage in images for an RP2040, and the UF2 files of such images."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ BLOCK = 512
 
 
 def elf(*segments: tuple[int, bytes]) -> bytes:
-    """Returns an ELF file with segments that are loaded to these addresses."""
+    """Returns an ELF file with loadable segments. `segments`: the load address and the content of each."""
     header = 52 + 32 * len(segments)
     table, content = b"", b""
     for address, data in segments:
@@ -33,8 +33,8 @@ STAGE = bytes(range(252)) + bytes(4)
 
 
 class SecondStage(unittest.TestCase):
-    def test_the_checksum_is_that_of_the_data_sheet(self) -> None:
-        # The check value of CRC-32/MPEG-2, which has the same parameters.
+    def test_the_checksum_is_crc_32_mpeg_2(self) -> None:
+        # The data sheet of the RP2040 requires the parameters of CRC-32/MPEG-2. This is the check value of that CRC.
         self.assertEqual(checksum(b"123456789"), 0x0376E6E7)
 
     def test_the_last_four_bytes_become_the_checksum_of_the_others(self) -> None:
@@ -46,7 +46,7 @@ class SecondStage(unittest.TestCase):
         self.assertEqual(len(after), len(before))
         self.assertEqual(sealed(after), after)
 
-    def test_an_image_without_a_second_stage_is_rejected(self) -> None:
+    def test_a_file_without_a_second_stage_is_rejected(self) -> None:
         for file in (elf((FLASH, b"short")), elf((FLASH + 256, STAGE)), b"text"):
             with self.assertRaises(NotAnImage):
                 sealed(file)
@@ -57,7 +57,7 @@ class Uf2(unittest.TestCase):
         self.assertEqual(len(file) % BLOCK, 0)
         return [file[start : start + BLOCK] for start in range(0, len(file), BLOCK)]
 
-    def test_each_block_has_a_page_and_its_place(self) -> None:
+    def test_each_block_has_a_page_with_its_address_and_number(self) -> None:
         image = bytes(range(256)) + b"abc"
         blocks = self.blocks(uf2(elf((FLASH, STAGE), (FLASH + 256, image))))
         self.assertEqual(len(blocks), 3)

@@ -1,4 +1,4 @@
-"""Builds images so small that every byte is known: compiles and links snippets of C++, and runs check-image on them."""
+"""Compiles and links snippets of C++ to small images, and runs check-image on these images."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _COMPILE = (
 ).split()
 _LINK = "arm-none-eabi-g++ -mcpu=cortex-m3 -mthumb -nostdlib -Wl,--gc-sections,--no-warn-rwx-segments".split()
 
-# `room<N>()` uses N bytes of stack.
+# `room<N>()` adds an array of N bytes to the stack frame of the function that calls it.
 PRELUDE = """
 #include <stddef.h>
 #include <stdint.h>
@@ -57,8 +57,8 @@ def check(
     compile_options: str = "",
     link_options: str = "",
 ) -> Verdict:
-    """Builds an image from the sources and checks it. Each source is a translation unit. The first one gets the
-    vectors."""
+    """Builds an image from the sources and runs check-image on it. Each source is a translation unit. Adds the vector
+    table to the first one, and also an empty interrupt handler if the first one does not contain `interrupt`."""
     vectors = VECTORS if "interrupt" in source else NO_INTERRUPT + VECTORS
     with tempfile.TemporaryDirectory(prefix="check-image-") as folder:
         objects = []
@@ -79,7 +79,7 @@ def check(
 
 
 def holding(code: str) -> str:
-    """Returns a source that disables interrupts during this assembly code."""
+    """Returns a source that disables interrupts before the assembly code in `code` and enables them after it."""
     return f"""
         extern "C" void reset() {{ for (;;) asm volatile("cpsid i\\n{code}cpsie i" ::: "memory"); }}
         """

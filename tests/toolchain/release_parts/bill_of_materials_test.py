@@ -1,4 +1,4 @@
-"""Tests the bill of materials: its form, and whether it names all that the sources include."""
+"""Tests the bill of materials: its form, and whether it names the libraries whose headers the simulator includes."""
 
 from __future__ import annotations
 
@@ -11,16 +11,16 @@ from parts import ROOT, SECONDS
 from bill_of_materials import COMPONENTS, bill_of_materials
 
 VERSIONS = {component.package: "1.0+x-1" for component in COMPONENTS}
-# Folders of the include path that belong to a component.
+# The first folder of an included path, and the component to which this folder belongs.
 FOLDERS = {"boost": "Boost", "CLI": "CLI11", "nlohmann": "nlohmann-json"}
-SYSTEM = {"sys", "netinet", "asm", "linux", "arpa"}  # the C library and the kernel
+SYSTEM = {"sys", "netinet", "asm", "linux", "arpa"}  # folders of the C library and of the kernel
 
 
 class BillOfMaterials(unittest.TestCase):
     def setUp(self) -> None:
         self.document = json.loads(bill_of_materials("1.00", "abc", SECONDS, VERSIONS))
 
-    def test_it_has_the_fields_that_spdx_requires(self) -> None:
+    def test_the_document_and_its_packages_have_the_main_fields_of_spdx_2_3(self) -> None:
         self.assertEqual(self.document["spdxVersion"], "SPDX-2.3")
         self.assertEqual(self.document["dataLicense"], "CC0-1.0")
         self.assertEqual(self.document["SPDXID"], "SPDXRef-DOCUMENT")
@@ -30,13 +30,13 @@ class BillOfMaterials(unittest.TestCase):
             self.assertRegex(package["SPDXID"], r"^SPDXRef-[A-Za-z0-9.-]+$")
             self.assertTrue({"name", "downloadLocation", "licenseConcluded", "copyrightText"} <= set(package))
 
-    def test_relationships_connect_the_document_and_all_packages(self) -> None:
+    def test_the_relationships_name_the_document_and_all_packages_and_nothing_else(self) -> None:
         known = {package["SPDXID"] for package in self.document["packages"]} | {"SPDXRef-DOCUMENT"}
         self.assertEqual(len(known), len(self.document["packages"]) + 1)
         ends = {end for r in self.document["relationships"] for end in (r["spdxElementId"], r["relatedSpdxElement"])}
         self.assertEqual(ends, known)
 
-    def test_it_names_what_the_simulator_includes(self) -> None:
+    def test_it_names_each_library_that_the_simulator_includes_except_the_system_libraries(self) -> None:
         included = set()
         for path in self.includes("sim"):
             folder = path.partition("/")[0]
@@ -45,7 +45,7 @@ class BillOfMaterials(unittest.TestCase):
         self.assertEqual(included, set(FOLDERS.values()))
         self.assertTrue(included <= {component.key for component in COMPONENTS})
 
-    def test_the_firmware_includes_only_headers_of_the_language(self) -> None:
+    def test_firmware_hal_and_boards_include_no_library_header_with_a_folder_or_an_extension(self) -> None:
         for path in self.includes("firmware", "hal", "boards"):
             self.assertRegex(path, r"^[a-z_]+$")
 

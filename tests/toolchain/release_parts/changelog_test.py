@@ -1,4 +1,4 @@
-"""Tests the reader of the changelog, and the real changelog."""
+"""Tests the functions that read and convert the changelog, and checks the real changelog."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ class Changelog(unittest.TestCase):
             " -- A <a@example.org>  Thu, 24 Dec 2026 08:00:00 +0000\n",
         )
 
-    def test_the_real_changelog_has_a_section_to_release(self) -> None:
+    def test_the_real_changelog_has_an_unreleased_section_with_items_or_a_released_section(self) -> None:
         text = (ROOT / ".github/CHANGELOG.md").read_text("utf-8")
         if "## Unreleased\n" in text:
             self.assertIn("- ", written("release-notes", "1.00", "abc", "--unreleased"))

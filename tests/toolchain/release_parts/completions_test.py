@@ -1,4 +1,4 @@
-"""Tests the completions of the built program in the shells themselves."""
+"""Tests the completions for bash and zsh that are generated from the built program."""
 
 from __future__ import annotations
 
@@ -61,13 +61,13 @@ class Bash(unittest.TestCase):
 
 
 class Zsh(unittest.TestCase):
-    def test_it_names_the_program_and_its_options(self) -> None:
+    def test_it_names_the_program_and_an_option(self) -> None:
         script = written("zsh-completion", str(PROGRAM))
         self.assertTrue(script.startswith("#compdef ex9000-sim\n"))
         self.assertIn("--tcp[", script)
 
     @unittest.skipUnless(shutil.which("zsh"), "zsh is not installed")
-    def test_zsh_accepts_the_function(self) -> None:
+    def test_zsh_finds_no_syntax_error(self) -> None:
         script = written("zsh-completion", str(PROGRAM))
         done = subprocess.run(["zsh", "-n", "/dev/stdin"], input=script, capture_output=True, text=True, check=False)
         self.assertEqual((done.stderr, done.returncode), ("", 0))

@@ -1,4 +1,5 @@
-"""Tests the archive of the container image against the two formats that it must have."""
+"""Tests the tar file of the container image. The file must have both the OCI image layout and the format of `docker
+save`."""
 
 from __future__ import annotations
 
@@ -48,7 +49,7 @@ class Container(unittest.TestCase):
         for path, descriptor in ((docker["Config"], manifest["config"]), (docker["Layers"][0], manifest["layers"][0])):
             self.assertEqual(path, "blobs/" + descriptor["digest"].replace(":", "/"))
 
-    def test_an_ordinary_user_runs_the_program_in_a_folder_that_it_can_write(self) -> None:
+    def test_an_ordinary_user_runs_the_program_in_a_folder_that_this_user_owns(self) -> None:
         manifest = json.loads(self.files["manifest.json"])[0]
         config = json.loads(self.files[manifest["Config"]])["config"]
         self.assertEqual((config["User"], config["Entrypoint"]), ("65534:65534", ["/ex9000-sim"]))

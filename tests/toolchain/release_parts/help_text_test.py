@@ -41,7 +41,7 @@ Notes begin here
 
 
 class HelpText(unittest.TestCase):
-    def test_each_part_is_read(self) -> None:
+    def test_description_positionals_options_subcommands_and_notes_are_read(self) -> None:
         text = read(TEXT)
         self.assertEqual(text.description, "A program.")
         self.assertEqual(text.positionals, [Option(["THING"], "TEXT", "the things", True)])

@@ -15,7 +15,8 @@ namespace detail {
 
 inline void require_side(bool interrupt) {
   if (interleaving::Points::in_interrupt() != interrupt) {
-    throw std::logic_error("the wrong side has written a crossing");
+    throw std::logic_error(
+        "an interrupt has called a function for the main loop, or the main loop a function for interrupts");
   }
 }
 
