@@ -1,7 +1,6 @@
-// Commands that make a module store settings (wire.md section 8), timeouts of the host watchdog, which also
-// make it store settings, and the expected settings. The extended settings are stored only with ~AARDVV and
-// with Modbus requests, not with ~AAXRRRRVVVV. The expected settings are calculated without the code of the
-// core, except for its types and constants.
+// Commands that make a module store settings, and timeouts of the host watchdog, which have the same effect
+// (wire.md section 8). ~AAXRRRRVVVV is not in this list. Each command and timeout has the expected settings,
+// which are calculated without the code of the core, except for its types and constants.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Opens the pseudo-terminal of a simulator or an emulator, as a terminal program does. The test is the master.
+// Opens the pseudo-terminal of a simulator or of an emulator, as a terminal program does.
 #pragma once
 
 #include <chrono>

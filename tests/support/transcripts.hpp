@@ -1,4 +1,5 @@
-// Loads transcripts. A transcript names its models; a scenario does not.
+// Loads transcripts, and adds up the waiting times in them. A transcript names its models. A scenario names
+// none.
 #pragma once
 
 #include <chrono>

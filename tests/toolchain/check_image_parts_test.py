@@ -71,8 +71,8 @@ class CallGraph(unittest.TestCase):
         )
 
     def graph(self, memcpy: int) -> Graph:
-        """Returns a graph of the recorded functions and of memcpy. `memcpy` is the size of the frame of memcpy. The address
-        of a function is its index in `names`."""
+        """Returns a graph of the recorded functions and of memcpy, whose frame has `memcpy` bytes. The address of a
+        function is its index in `names`."""
         names = [*self.records, "memcpy"]
         nodes = {
             names.index(name): Node(name, r.frame, frozenset(names.index(title.name) for title in r.calls))
@@ -97,7 +97,7 @@ class WorstCase(unittest.TestCase):
     }
 
     def test_only_the_deepest_handler_of_a_level_counts(self) -> None:
-        # reset, turn and leaf use 8 + 100 + 4 bytes. The exception uses 36, and its deepest handler, timer, uses 24.
+        # reset, turn and leaf use 8 + 100 + 4 bytes, the exception uses 36, and the deepest handler, timer, uses 24.
         self.assertEqual(worst_case(self.GRAPH, 0, [Level("interrupts", [10, 11, 12])]).size, 112 + 36 + 24)
 
     def test_levels_add_up(self) -> None:
@@ -194,8 +194,9 @@ Refusal answer (const struct State & state, struct Bytes args)
 
 class MachineCode(unittest.TestCase):
     def stack(self, text: str) -> int:
-        """Returns the number of bytes that the code in `text` uses on the stack. Each line is an instruction of 2 bytes:
-        the mnemonic, a space and the operands. In the operands, `@N` is the address of line N, counted from 0."""
+        """Returns the number of bytes that the code in `text` uses on the stack. Each line is an instruction of 2
+        bytes: the mnemonic, a space and the operands. In the operands, `@N` is the address of line N, counted from
+        0."""
         code = []
         for number, line in enumerate(text.strip().splitlines()):
             mnemonic, _, operands = line.strip().partition(" ")

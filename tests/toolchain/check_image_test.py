@@ -19,7 +19,8 @@ EXCEPTION = 36
 
 class Accepts(unittest.TestCase):
     def stack(self, verdict: Verdict) -> int:
-        """Returns the worst-case stack without the exception frames of HardFault and NMI. Their handlers use no stack."""
+        """Returns the worst-case stack without the exception frames of HardFault and NMI. The handlers of these
+        two exceptions use no stack."""
         self.assertTrue(verdict.accepted, verdict.problems)
         match = re.search(r"(\d+) stack at worst", verdict.figures)
         assert match
@@ -38,7 +39,7 @@ class Accepts(unittest.TestCase):
             """,
             options="--verbose",
         )
-        # 8 bytes for the registers that reset saves, 24 and 100 for the arrays, and 4 to round 100 up to a multiple of 8.
+        # 8 bytes for the registers that reset saves, 24 and 100 for the arrays, 4 to round up to a multiple of eight.
         self.assertIn("main loop 136: reset 8 -> deep 24 -> deepest 104", verdict.figures)
         self.assertEqual(self.stack(verdict), 136 + EXCEPTION)
 

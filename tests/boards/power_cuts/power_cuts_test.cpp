@@ -1,7 +1,7 @@
-// Tests power cuts at every point of every command that stores, and of a timeout of the host watchdog:
-// wire.md section 8, "At the next reset each *command* is either done completely or not done at all". A
-// command to which the module has replied must be done. Also tests resets of the microcontroller during these
-// commands.
+// Tests power cuts at every point of each command of `storing_commands`, and of a timeout of the host
+// watchdog: wire.md section 8, "At the next reset each *command* is either done completely or not done at
+// all". A command to which the module has replied must be done. Also tests resets of the microcontroller
+// during these commands.
 //
 // The image stores settings with its own drivers. StoredCopy, which has no code of the firmware, reads the
 // settings from all contents that a cut may leave in the EEPROM. The image also starts from some of these

@@ -1,5 +1,4 @@
-"""Tests the tar file of the container image. The file must have both the OCI image layout and the format of `docker
-save`."""
+"""Tests the tar file of the container image, which must be an OCI image layout and have a manifest for Docker."""
 
 from __future__ import annotations
 

@@ -37,7 +37,7 @@ class ManualPage(unittest.TestCase):
     def test_a_reader_sees_every_word_of_the_help_except_headings_and_notation(self) -> None:
         command = ["mandoc", "-Tascii", "-Owidth=200"]
         done = subprocess.run(command, input=self.page, capture_output=True, text=True, check=True)
-        shown = re.sub(".\b", "", done.stdout)  # mandoc prints a bold x as x, backspace, x
+        shown = re.sub(".\b", "", done.stdout)  # bold: `x`, backspace, `x`; underlined: `_`, backspace, `x`
         only_in_help = {"-h,--help", "[MODULE...]", "[SUBCOMMAND]", "REQUIRED", "TEXT", "Usage:"}
         only_in_help |= {"Positionals:", "Options:", "Subcommands:", "Examples:"}
         missing = {word for word in printed("--help").split() if word not in shown}
