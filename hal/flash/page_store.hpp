@@ -55,8 +55,9 @@ class PageStore {
 
  public:
   /// The timeouts of jobs. If the memory does not answer, SettingsStore tries to read it six times after a
-  /// reset, and the module must reply within 100 ms of the reset. For a command, SettingsStore tries to write
-  /// to it at most six times, and the module must refuse the command within 200 ms.
+  /// reset, and the module must be ready to receive requests within 100 ms of the reset. For a command,
+  /// SettingsStore tries to write to it at most six times, and the module must refuse the command within 200
+  /// ms.
   static constexpr Duration kLongestRead = milliseconds(12);
   static constexpr Duration kLongestWrite = milliseconds(25);
 

@@ -21,7 +21,7 @@ class EmulatedModule {
     bench_.begin_anew(model, &settings);
     bench_.set_baud(baud_rate(settings.baud_code));
     bench_.power(true);
-    // A module replies at the latest 100 ms after a reset (wire.md section 2).
+    // A module is ready to receive at the latest 100 ms after a reset (wire.md section 2).
     bench_.run_for(std::chrono::milliseconds(100));
   }
   play::Bytes reply_of(const play::Bytes& request) {

@@ -3,7 +3,7 @@
 "use strict";
 const fs = require("fs");
 
-const ENOUGH = 10_000; // the number of lines in memory that are then written to the file
+const ENOUGH = 10_000; // when this many lines are in memory, `note` writes them to the file
 const DATA = 0x00; // the data register of the UART
 
 const hexOf = (word) => (word >>> 0).toString(16).padStart(8, "0");

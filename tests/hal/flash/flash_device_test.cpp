@@ -96,7 +96,7 @@ class ModuleOnFlash {
     while (!device_.module().listening()) {
       run(1'000);
     }
-    EXPECT_LE(chip.now - began, 100'000U) << "a module replies within 100 ms of a reset";
+    EXPECT_LE(chip.now - began, 100'000U) << "a module is ready to receive within 100 ms of a reset";
     run(5'000);
   }
 

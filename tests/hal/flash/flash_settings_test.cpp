@@ -253,7 +253,7 @@ TEST(FlashSettingsTime, SavesAndLoadsThatCannotSucceedFailInTime) {
     longest.emplace_back("a dead flash", reader.latency);
     const std::uint64_t began = dead.now;
     EXPECT_TRUE(OnFlash(dead).keeper().unreadable());
-    EXPECT_LE(dead.now - began, 90'000U) << "a module replies within 100 ms of a reset";
+    EXPECT_LE(dead.now - began, 90'000U) << "a module is ready to receive within 100 ms of a reset";
   }
   for (const auto& [what, time] : longest) {
     std::printf("refused after %.1f ms: %s\n", static_cast<double>(time) / 1e3, what.c_str());

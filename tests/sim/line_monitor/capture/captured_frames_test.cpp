@@ -1,4 +1,4 @@
-// Tests captures that sim::Capture writes without the program, as Wireshark shows them.
+// Tests sim::Capture directly, without the program ex9000-sim: tshark decodes the captures.
 #include <gtest/gtest.h>
 
 #include <chrono>
