@@ -5,9 +5,9 @@
 //     -plugin gate.so,address=INSTRUCTION,socket=PATH
 //
 // When the processor executes this instruction, the plugin sends the address from which the instruction loads
-// the byte. The interrupt code of AlarmClock reports its state with this address. Then the plugin waits for a
-// byte from the socket. This file declares the required functions of the emulator, because Debian has no
-// package with the header: QEMU 7.2, include/qemu/qemu-plugin.h.
+// the byte. The interrupt code of AlarmClock puts the UART flags and the levels of two pins into this
+// address. Then the plugin waits for a byte from the socket. This file declares the required functions of the
+// emulator, because Debian has no package with the header: QEMU 7.2, include/qemu/qemu-plugin.h.
 #include <sys/socket.h>
 #include <sys/un.h>
 #include <unistd.h>

@@ -35,7 +35,7 @@ function correctI2c(master) {
   };
   i2c.writeUint32 = (offset, value) => {
     if (WHILE_OFF.includes(offset) && i2c.enable & ON) {
-      i2c.error(`register ${offset.toString(16)} is written while the master is on`);
+      i2c.error(`register 0x${offset.toString(16)} is written while the master is on`);
     }
     if (offset === DATA_COMMAND && i2c.intRaw & ABORTED) {
       i2c.error("a command is queued before the abort is cleared, and is discarded");
@@ -44,7 +44,7 @@ function correctI2c(master) {
       i2c.error("a command is queued while there is no room for it, or while the master is off");
     }
     if (offset === DATA_COMMAND && (read(CONTROL) & MASTER_ONLY) !== MASTER_ONLY) {
-      i2c.error("a command is queued, but the block is not a master only");
+      i2c.error("a command is queued while the master is disabled or the slave is enabled; expected control bits 0 and 6 to be 1");
     }
     if (offset === INTERRUPT_MASK) {
       i2c.intEnable = value;

@@ -97,7 +97,7 @@ class Ssi extends BasePeripheral {
 
   writeUint32(offset, value) {
     if (this.enabled && [0x00, 0x04, 0x14].includes(offset)) {
-      this.error(`register ${offset.toString(16)} is written while the SSI is enabled`);
+      this.error(`register 0x${offset.toString(16)} is written while the SSI is enabled`);
     }
     switch (offset) {
     case 0x00:

@@ -11,16 +11,16 @@
 
 namespace ex9000::sim {
 
-/// How exports for Modbus clients present an item. Read-only: these exports do not write the value, even if
-/// masters can write it.
+/// How exports for Modbus clients present an item. These exports write only Output and Button. They do not
+/// write the other items, even if masters can write them.
 enum class Role : std::uint8_t {
   Output,   ///< read and written
-  Input,    ///< a level or a latch; read-only
+  Input,    ///< a level or a latch
   Counter,  ///< counts up; after its highest value, it continues with 0
-  Preset,   ///< a stored value of the outputs; read-only, because a write also drives the outputs
+  Preset,   ///< a stored value of the outputs; not written, because a write also drives the outputs
   State,    ///< on or off, both are normal
   Problem,  ///< on means a problem
-  Tenths,   ///< units of 0.1 s; read-only
+  Tenths,   ///< units of 0.1 s
   Button,   ///< a coil that starts an action when 1 is written to it
 };
 

@@ -1,4 +1,4 @@
-// Makes paths comparable. The files may not exist yet.
+// Makes paths comparable. The files do not have to exist.
 #pragma once
 
 #include <filesystem>

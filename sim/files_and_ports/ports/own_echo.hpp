@@ -47,8 +47,8 @@ class OwnEcho {
  private:
   /// Maximum time from the end of the last byte on the line until the program reads its echo. An adapter may
   /// collect bytes for 16 ms; a busy host can take seconds. If the limit were too short, a module could carry
-  /// out its own reply. If the adapter has no echo, the next request loses the leading bytes that match the
-  /// reply, if it arrives within this time.
+  /// out its own reply. If the adapter has no echo and the next request arrives within this time, the
+  /// request loses its leading bytes that match the reply.
   static constexpr std::chrono::seconds kLatency{10};
 
   hal::SerialMode mode_;

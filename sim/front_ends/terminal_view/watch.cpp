@@ -86,7 +86,8 @@ std::vector<std::string> Watch::painting() const {
     lines.insert(lines.end(), faces[i].begin(), faces[i].end());
   }
   if (shown != faces.size()) {
-    lines.push_back(std::to_string(faces.size() - shown) + " more modules are not shown; the terminal has too few rows");
+    lines.push_back(std::to_string(faces.size() - shown) +
+                    " more modules are not shown; the terminal has too few rows");
   }
   for (std::string& line : lines) {
     line = shortened(line, screen_.columns);

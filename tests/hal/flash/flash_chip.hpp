@@ -71,8 +71,8 @@ class FlashChip {
       if (!is_broken(at + i)) {
         EXPECT_EQ(cells[at + i] & source[i], source[i]) << "the byte is not erased";
       }
-      EXPECT_TRUE(!weak_[at + i] || source[i] == 0)
-          << "this byte may be unreliable: an interrupted operation has left it";
+      EXPECT_TRUE(!weak_[at + i] || source[i] == 0) << "this byte may be unreliable, because an operation on "
+                                                       "it was interrupted; expected an erase first";
     }
     source_.assign(source.begin(), source.end());
     begin(Operation::Program, at, times.program);
