@@ -1,6 +1,6 @@
-// Selects the host processor on which a test and its emulator run. The test and the emulator run alternately,
-// and so do the threads of the emulator. Waking threads on other processors would take longer than all other
-// work.
+// Selects the host processor on which a test and its emulator run. The test and the emulator run alternately.
+// The threads of the emulator also run alternately. Waking threads on other processors would take longer than
+// all other work.
 #pragma once
 
 namespace ex9000::rig {

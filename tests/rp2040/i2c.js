@@ -44,7 +44,7 @@ function correctI2c(master) {
       i2c.error("a command is queued while there is no room for it, or while the master is off");
     }
     if (offset === DATA_COMMAND && (read(CONTROL) & MASTER_ONLY) !== MASTER_ONLY) {
-      i2c.error("a command is queued while the master is disabled or the slave is enabled; expected control bits 0 and 6 to be 1");
+      i2c.error("the master is disabled or the slave is enabled; set the control bits 0 and 6");
     }
     if (offset === INTERRUPT_MASK) {
       i2c.intEnable = value;

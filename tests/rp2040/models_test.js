@@ -1,5 +1,5 @@
-// Tests what the models report, how long their operations take, and which accesses they reject because these are errors
-// on a real chip. Also tests the trace.
+// Tests what the models report, how long their operations take, and which accesses they reject: errors on a real chip,
+// errors of an image, and accesses that a model does not support. Also tests the trace.
 "use strict";
 const assert = require("node:assert/strict");
 const fs = require("node:fs");

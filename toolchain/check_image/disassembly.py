@@ -9,8 +9,8 @@ from pathlib import Path
 
 from check_image.functions import Function
 
-# objdump prints a constant in a code section as characters. Such a line matches only if the characters look like a
-# mnemonic without operands.
+# objdump prints a literal of a function as .word, .short or .byte; see `is_data`. It prints an object, for example a
+# table, as characters. A line with characters matches only if the characters look like a mnemonic without operands.
 _LINE = re.compile(r"^ *([0-9a-f]+):\t(\.?[a-z][a-z0-9.]*)(?:\t([^@;]*)|$)")
 _CONDITIONS = "eq|ne|cs|hs|cc|lo|mi|pl|vs|vc|hi|ls|ge|lt|gt|le"
 _BRANCH = re.compile(rf"(b|bl|blx|cbz|cbnz|b({_CONDITIONS})|bl({_CONDITIONS}))(\.[nw])?")
@@ -145,7 +145,9 @@ def stack_of(code: list[Instruction]) -> int:
             depth += pushed_by(instruction)
             deepest = max(deepest, depth)
             if depth > _MAX_DEPTH:
-                raise StackPointerUnknown("push beyond 64 KiB, for example in a loop")
+                raise StackPointerUnknown(
+                    "pushes more than 64 KiB, for example in a loop; push a fixed number of bytes"
+                )
             target = instruction.branch_target
             if target is not None and not instruction.is_call:
                 ways.append((target, depth))
@@ -175,7 +177,9 @@ def _growth(mnemonic: str, operands: str) -> int:
     if constant and mnemonic.startswith(("sub", "add")):
         return int(constant.group(1)) * (1 if mnemonic.startswith("sub") else -1)
     if re.match(r"sp\b", operands) and mnemonic.startswith(("add", "sub", "mov", "ldr", "orr", "and", "bic")):
-        raise StackPointerUnknown(f"{mnemonic} {operands}")
+        raise StackPointerUnknown(
+            f"moves the stack pointer with '{mnemonic} {operands}'; push, pop, or add or subtract a constant"
+        )
     return 0
 
 

@@ -35,7 +35,6 @@ FOREIGN = {
 }
 
 _VENEER = re.compile(r"__(.*)_veneer")
-_NOT_UNDERSTOOD = "moves the stack pointer with '{}'; push, pop, or add or subtract a constant"
 
 
 class LinkedGraph:
@@ -179,7 +178,7 @@ class LinkedGraph:
         try:
             pushed = stack_of(code)
         except StackPointerUnknown as unknown:
-            self.problems.append(f"{node.name}: {_NOT_UNDERSTOOD.format(unknown)}")
+            self.problems.append(f"{node.name}: {unknown}")
             return
         if pushed > node.frame:
             self.problems.append(
@@ -229,7 +228,7 @@ def _compare_with_table(known: Foreign, code: list[Instruction]) -> str:
     try:
         pushed = stack_of(code)
     except StackPointerUnknown as unknown:
-        return _NOT_UNDERSTOOD.format(unknown)
+        return str(unknown)
     if pushed > known.frame:
         return f"uses {pushed} bytes of stack; FOREIGN in linked_graph.py permits {known.frame}"
     if any(instruction.is_indirect for instruction in code):

@@ -119,8 +119,9 @@ struct SetupError : std::invalid_argument {
 /// path or a name is not valid.
 void check(const Setup& setup);
 
-// Values with the same syntax on the command line and in a bus file. The parsers throw std::invalid_argument
-// with a one-line message.
+// The values of options of the command line. A bus file contains the same values, with the same syntax,
+// except the number of threads and the speed. The parsers throw std::invalid_argument with a one-line
+// message.
 
 /// Parses `instant` or `paced`. Returns true for `instant`: bytes take almost no time.
 bool parse_line_kind(const std::string& text);

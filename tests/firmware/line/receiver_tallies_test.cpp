@@ -96,7 +96,7 @@ TEST_F(ReceiverTest, AnOpenFrameIsNotCounted) {
   EXPECT_EQ(counts(), (Counts{0, 0, 0, 0, 0}));
 }
 
-TEST_F(ReceiverTest, AFramingErrorAndABreakCountInBothProtocolsButAnOverrunDoesNot) {
+TEST_F(ReceiverTest, AFramingErrorAndABreakAreDamagedBytesInBothProtocolsButAnOverrunIsNot) {
   for (const Protocol protocol : {Protocol::Ascii, Protocol::ModbusRtu}) {
     listen(protocol);
     receiver_.tallies().clear();

@@ -71,7 +71,7 @@ std::optional<std::string> Module::dcon_frame(std::string frame, bool spoiled) {
       rule(expiry_ ? "~** restarts the host watchdog" : "~**");
       restart_host_watchdog_by_host_ok();
     } else {
-      rule("no broadcast");
+      rule("unknown broadcast");
     }
     return std::nullopt;
   }
@@ -289,7 +289,7 @@ std::string Module::dollar_command(const std::string& body) {
     }
     return set_protocol(body.substr(1));
   }
-  throw Refused{"$ no command"};
+  throw Refused{"$ unknown command"};
 }
 
 /// Executes `$AAPN`.
@@ -397,7 +397,7 @@ std::string Module::tilde_command(const std::string& body) {
   if (command == 'X') {
     return extension_command(argument);
   }
-  throw Refused{"~ no command"};
+  throw Refused{"~ unknown command"};
 }
 
 /// Executes `~AA3EVV`.

@@ -16,7 +16,6 @@ const char* const kRules[] = {
     "reset into 8N1",
     "reset to the power-on value",
     "reset to the safe value",
-    "reset starts the host watchdog",
     // wire.md 3
     "another module's reply is skipped",
     "ASCII frame too long",
@@ -27,7 +26,7 @@ const char* const kRules[] = {
     "ASCII frame for another address",
     "CHK right",
     "CHK wrong or missing",
-    "no broadcast",
+    "unknown broadcast",
     // wire.md 4
     "%AANNTTCCFF",
     "%AANNTTCCFF with TT 24",
@@ -80,7 +79,7 @@ const char* const kRules[] = {
     "$AAPN out of range",
     "$AAPN without permission",
     "$AAPN at an address that Modbus lacks",
-    "$ no command",
+    "$ unknown command",
     "@AA",
     "@AA(Data) of 1",
     "@AA(Data) of 2",
@@ -121,11 +120,12 @@ const char* const kRules[] = {
     "~AA5V S",
     "~AA5V lacking",
     "~AA5V refused",
-    "~ no command",
+    "~ unknown command",
     // wire.md 5
     "counter wraps after 99999",
     "counter wraps after 65535",
     // wire.md 6
+    "reset starts the host watchdog",
     "host watchdog expires",
     "host watchdog expires again",
     // wire.md 7
@@ -418,9 +418,10 @@ Rules::Rules(Extensions extensions) : list_(std::begin(kRules), std::end(kRules)
 void Rules::reached(const std::string& rule) {
   const auto found = counts_.find(rule);
   if (found == counts_.end()) {
-    throw std::logic_error("'" + rule +
-                           "': not in the list of rules; add it to kRules or kExtensionRules, or it requires "
-                           "an extension that this module lacks");
+    throw std::logic_error(
+        "'" + rule +
+        "': not in the list of rules of this module; add it to kRules or kExtensionRules, or, "
+        "if it is in kExtensionRules, do not reach it without extensions");
   }
   ++found->second;
 }
