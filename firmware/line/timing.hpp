@@ -19,7 +19,8 @@ struct LineTiming {
   /// time from the beginning of a byte to its report. It is rounded down, so that a byte that begins exactly
   /// at the end of T3.5 begins a new frame.
   Duration rtu_grace;
-  /// The largest time between the reports of two bytes of a frame; a larger time makes the frame invalid.
+  /// The largest time between the reports of two successive bytes of a frame; a larger time makes the frame
+  /// invalid.
   Duration rtu_slack;
   /// Time from the report of a byte to the end of its last stop bit, rounded up.
   Duration rest_of_stop_bit;

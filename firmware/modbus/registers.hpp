@@ -1,5 +1,5 @@
 // The Modbus register map, one table row for each range of coils, discrete inputs or registers - wire.md
-// section 7.
+// section 7 and extensions.md.
 #pragma once
 
 #include <cstdint>

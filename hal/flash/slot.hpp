@@ -8,9 +8,9 @@
 
 namespace ex9000::hal::flash {
 
-/// The number of sectors that the store uses. Each page has at most one entry in force, so the entries in
-/// force are in at most 12 sectors. At least two sectors hold none, so the store can begin to write to one of
-/// them and erase another one in advance.
+/// The number of sectors that the store uses. Each of the 12 pages of the store (entry.hpp) has at most one
+/// entry in force, so the entries in force are in at most 12 sectors. At least two sectors hold none, so the
+/// store can begin to write to one of them and erase another one in advance.
 inline constexpr unsigned kSectors = 14;
 static_assert(kSectors >= kPages + 2);
 

@@ -1,6 +1,6 @@
-// Clock tree, clock gates and the reason of a reset. Sources: LM3S6965 data sheet, 6.4 and 6.5 (system
-// control); TM4C123GH6PM data sheet, 5.3 and 5.5. The legacy RCC and RCGCn registers of the TM4C have the
-// same addresses as on the LM3S6965. The bits that this file uses have the same meaning, unless a comment
+// Clock tree, clock gates and the reason of a reset. Sources: LM3S6965 data sheet, 5.3 and 5.5 (system
+// control); TM4C123GH6PM data sheet, 5.3, 5.5 and 5.6. RCC and the legacy RCGCn registers of the TM4C have
+// the same addresses as on the LM3S6965. The bits that this file uses have the same meaning, unless a comment
 // says otherwise.
 #pragma once
 
@@ -40,16 +40,16 @@ constexpr std::uint32_t kTimer2 = 1U << 18U;
 
 class SystemControl {
  public:
-  /// Switches the processor to `clock`. Call this once after reset, when the watchdog is running. It blocks
-  /// for a few hundred microseconds until the PLL has locked; until then the processor runs without the
-  /// PLL. If the PLL never locks, the watchdog resets the MCU.
+  /// Switches the processor to `clock`. Call this once after reset, when the watchdog is running.
+  /// Blocks until the crystal has started, which can take some milliseconds, and the PLL has locked, which
+  /// takes a few hundred microseconds more. If the PLL never locks, the watchdog resets the MCU.
   static void use(const ClockTree& clock) {
     constexpr Bits<Rcc> kBypass(1U << 11U);
     constexpr Bits<Rcc> kPowerDown(1U << 13U);
     constexpr Bits<Rcc> kOutputDisable(1U << 12U);  // LM3S only; reserved on the TM4C
     constexpr Bits<Rcc> kUseDivider(1U << 22U);
     constexpr Bits<Rcc> kDivider(0xFU << 23U);
-    constexpr Bits<Rcc> kCrystal(0x1FU << 6U);
+    constexpr Bits<Rcc> kCrystal(0x1FU << 6U);          // bit 10 is reserved on the LM3S
     constexpr Bits<Rcc> kOscillatorSource(0x3U << 4U);  // 0: the main oscillator
     constexpr Bits<Rcc> kMainOscillatorOff(1U << 0U);
     constexpr Bits<InterruptStatus> kPllLocked(1U << 6U);

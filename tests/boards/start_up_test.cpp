@@ -1,4 +1,5 @@
-// Tests the shipped code that an image runs before its `main`, after a return from `main`, and on a fault.
+// Tests boards/cortex_m/start_up.cpp: the code that an image for the LM3S6965 or the TM4C123 runs before its
+// `main`, after a return from `main`, and on a fault.
 #include <gtest/gtest.h>
 
 #include <algorithm>

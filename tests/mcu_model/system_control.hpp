@@ -1,4 +1,4 @@
-// Clock tree, clock gates, causes of resets and software resets. Data sheets: LM3S6965 6.3 to 6.5,
+// Clock tree, clock gates, causes of resets and software resets. Data sheets: LM3S6965 5.2 to 5.5,
 // TM4C123GH6PM 5.2 to 5.6.
 #pragma once
 

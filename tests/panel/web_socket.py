@@ -111,7 +111,7 @@ class Page:
         while (message := self.next()) is not None:
             if holds(message):
                 return message
-        raise AssertionError("the connection was closed")
+        raise AssertionError("/live: the server has closed the connection; expected another message")
 
     def tell(self, command, number=1):
         self.say(command, number)

@@ -114,7 +114,7 @@ class Ssi extends BasePeripheral {
       break;
     case 0x14:
       if (value < 2 || value % 2 !== 0) {
-        this.error(`the divider is ${value}`);
+        this.error(`the divider is ${value}; expected an even number from 2 on`);
       }
       this.divider = value;
       break;
@@ -137,7 +137,7 @@ class Ssi extends BasePeripheral {
       this.pins.requestSelect(false);
     } else if (![BOTH_WAYS, EEPROM_READ].includes(this.mode) || ![8, 32].includes(this.frameBits)
       || (this.control & ~0x1f0300) !== 0) {
-      this.error(`control ${this.control.toString(16)} is not in this model`);
+      this.error(`control 0x${this.control.toString(16)} is not in this model; expected 8 or 32 bits`);
     }
   }
 

@@ -48,8 +48,9 @@ inline Settings settings_from(const Model& model, const std::uint8_t* memory) {
                                 : settings_of(StoredCopy(storing, memory, place).settings());
 }
 
-/// Stores a copy of `settings` at `place` as firmware with layout 2 does. This layout does not contain the
-/// settings of the extensions. `place` must be one of the addresses for the older layouts.
+/// Stores a copy of `settings` at `place` as firmware with layout 2 does. This layout contains the line
+/// format, but not the settings of the registers 0x0240 to 0x0252. `place` must be one of the addresses for
+/// the older layouts.
 inline void put_layout_2(const Model& model, const Settings& settings, std::uint16_t sequence,
                          std::uint8_t* memory, std::size_t place) {
   std::uint8_t* bytes = memory + place;

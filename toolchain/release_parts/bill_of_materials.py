@@ -37,7 +37,7 @@ COMPONENTS = (
     Component("CLI11", "CLI11", "BSD-3-Clause", "libcli11-dev", "headers: the command line"),
     Component("nlohmann-json", "JSON for Modern C++", _MIT, "nlohmann-json3-dev", "headers: JSON"),
     Component("libstdcxx", "libstdc++", _GCC_RUNTIME, "libstdc++-12-dev", "the C++ library of the host"),
-    Component("libgcc", "libgcc", _GCC_RUNTIME, "libgcc-12-dev", "functions that the compiler of the host calls"),
+    Component("libgcc", "libgcc", _GCC_RUNTIME, "libgcc-12-dev", "functions that code from the host's compiler calls"),
     Component("glibc", "GNU C Library", "LGPL-2.1-or-later", "libc6-dev", "the C library of the host"),
     Component(
         "libstdcxx-arm", "libstdc++ for Arm", _GCC_RUNTIME, "libstdc++-arm-none-eabi-dev",

@@ -129,8 +129,7 @@ boost::system::error_code ModbusTcpServer::take(const ClientPointer& client) {
   return error;
 }
 
-/// Passes a function to `received_` that runs `action` when the line's clock has the present time, unless the
-/// client has been removed by then.
+/// Passes a function to `received_` that runs `action`, unless the client has been removed by then.
 void ModbusTcpServer::deliver(const ClientPointer& client, std::size_t size,
                               const std::function<void()>& action) {
   ++client->arriving;

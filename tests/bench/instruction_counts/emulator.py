@@ -20,12 +20,12 @@ RECEIVER_EMPTY = 1 << 4
 UART_IDENTIFICATION = 0x4000CFE0  # a register that no image reads
 UART_IDENTIFICATION_2 = 0x4000CFE4  # a register that no image reads
 
-# tests/qemu/alarm_clock.cpp explains the meaning of the values from here to INTERRUPT_TAKES.
+# tests/qemu/alarm_clock.cpp explains these addresses and registers.
 TIMERS = range(0x40030000, 0x40034000, 0x1000)
 ALARM = TIMERS[3]
 TIMER_MODE, TIMER_CONTROL, TIMER_MASK, TIMER_CLEAR, TIMER_INTERVAL = 0x04, 0x0C, 0x18, 0x24, 0x28
 ALARM_INTERRUPT = 35
-VECTORS = 16 + 24
+VECTORS = 16 + 32  # those of an image
 SET_ENABLE = 0xE000E104  # for interrupts from 32 on
 VECTOR_TABLE_OFFSET = 0xE000ED08
 DRIVER_ENABLE = 0x40004100
@@ -35,7 +35,7 @@ NEXT_ALARM, EDGES, HALT, LEFT = ORDERS, ORDERS + 4, ORDERS + 20, ORDERS + 24
 GATE = CODE + 0x48
 HERTZ = 50_000_000
 AT_RESET = 4  # clock divisor at reset, relative to HERTZ
-INTERRUPT_TAKES = 0.7e-6
+INTERRUPT_TAKES = 0.7e-6  # seconds from the alarm to the end of its interrupt, approximately
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 HANG = 60  # seconds of real time; only detects a hang: even a busy machine needs less
 
@@ -151,14 +151,14 @@ class Emulator:
         while len(told) < 4:
             piece = self._at_gate.recv(4 - len(told))
             if not piece:
-                raise RuntimeError("the emulator has ended")
+                raise RuntimeError("emulator: it has ended; expected it to run until the alarm")
             told += piece
 
     def put(self, byte):
         """Puts a byte on the line. The image receives it when the emulator continues. Raises RuntimeError if the image
         has not read the previous byte."""
         if not self._read(UART_FLAGS) & RECEIVER_EMPTY:
-            raise RuntimeError("the image has not read the previous byte")
+            raise RuntimeError("image: it has not read the previous byte; let more time pass before the next byte")
         self.line.sendall(bytes([byte]))
         while self._read(UART_FLAGS) & RECEIVER_EMPTY:
             pass
