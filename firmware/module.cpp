@@ -105,7 +105,7 @@ void Module::listen() {
 // --- events from interrupts ---
 
 void Module::collect_edges(Time now) {
-  // Before `listen()`, the module does not know whether the counters count rising or falling edges.
+  // Before `listen()`, the inputs do not have the counting edge, inversion and filters of the settings.
   if (listening()) {
     state_.inputs.collect(edges_, state_.model().inputs, now);
   }
@@ -117,8 +117,9 @@ void Module::use_filters() {
   state_.inputs.use_filters(state_.settings.input_filters);
 }
 
-/// Applies the inversion and the filters of the settings. The edges until now count with the previous
-/// inversion and filters.
+/// Applies the inversion and the filters of the settings. Before that, counts the edges that count with the
+/// previous inversion and filters. A changed level that does not count yet counts when the new filter time
+/// has passed since its last edge.
 void Module::configure_inputs(Time now) {
   edges_.time_edges(true);  // a new filter uses the times of all edges that are not collected now
   collect_edges(now);

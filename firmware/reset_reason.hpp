@@ -12,7 +12,7 @@ enum class ResetReason : std::uint8_t {
   ModuleWatchdog,
   Software,
   ResetPin,
-  Fault,  ///< a fault of the processor
+  Fault,  ///< a fault of the processor, or an unexpected interrupt
 };
 
 }  // namespace ex9000

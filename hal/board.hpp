@@ -1,4 +1,5 @@
-// Checks that a board has all required peripherals, and that they have the required functions.
+// Checks that a board has the peripherals that `Device` accesses, and that they have the required functions.
+// The composition file of a board checks its tick.
 #pragma once
 
 #include <type_traits>

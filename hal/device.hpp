@@ -46,7 +46,8 @@ class Device {
     if (!(silence == Duration())) {
       board_.silence_timer.restart(silence);
     } else if (module_.frame_waits()) {
-      wake();  // the turn-around time may be over already, if bytes take no time on this line
+      // `silence` is 0 after an ASCII host OK, and after an ASCII request if bytes take no time on this line.
+      wake();
     }
   }
   /// Processes the end of the silence after a byte, or of the turn-around time after an ASCII frame. Call

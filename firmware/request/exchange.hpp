@@ -9,9 +9,9 @@
 
 namespace ex9000 {
 
-/// The argument of a handler, which is the function of a DCON command or a Modbus function. A handler reads
-/// the request, the module's state and the tallies, writes the reply, and records in the outcome what the
-/// module must do. It changes nothing else.
+/// The argument of a handler, which is the C++ function of a DCON command or of a Modbus function. A handler
+/// reads the request, the module's state and the tallies, writes the reply, and records in the outcome what
+/// the module must do. It changes nothing else.
 struct Exchange {
   constexpr Exchange(const State& state_of_module, const LineTallies& tallies_of_line)
       : state(state_of_module), tallies(tallies_of_line) {}

@@ -25,7 +25,8 @@ struct Place {
 
 /// A save writes to one of the first two places, but never to the place of the current copy. The other two
 /// places are those of older firmware. Their copies stay valid until the first save of this firmware is
-/// verified, so a power failure during that save does not lose the settings.
+/// verified, so a power failure during that save does not lose the settings. For an exception, see
+/// SettingsStore::update_unfinished.
 constexpr std::array<Place, 4> kPlaces{{{0x0080, false}, {0x0100, false}, {0x0000, true}, {0x0020, true}}};
 static_assert(kOldCopySize <= kMemoryPage && kRecordRoom <= 0x0080, "a copy does not fit in its place");
 

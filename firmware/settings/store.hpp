@@ -35,7 +35,8 @@ struct MemoryJob {
 /// The store does not access the memory. The owner of the memory carries out `job()` and then calls `done()`.
 class SettingsStore {
  public:
-  /// The result of loading. A successful save changes it to Settings.
+  /// The result of loading. A successful save changes it to Settings. A place is blank if its first
+  /// kMemoryPage bytes are FF.
   enum class Found : std::uint8_t {
     Settings,    ///< the memory contains a good copy
     Blank,       ///< all places are blank; factory settings are used
@@ -102,7 +103,8 @@ class SettingsStore {
   /// Returns the memory access to carry out. Call this only while `busy()`. The result stays the same until
   /// `done`.
   [[nodiscard]] MemoryJob job();
-  /// Call this when the job has ended. `ok`: the memory answered.
+  /// Call this when the job has ended. `ok`: the job succeeded. If a job fails for any reason, the store
+  /// treats it like a job that the memory did not answer.
   void done(bool ok);
 
  private:

@@ -67,7 +67,7 @@ class BackgroundErase {
   enum class State : std::uint8_t {
     None,
     Running,
-    Suspended,  ///< suspended; or the erase had ended before that; or `suspend_unknown` found no erase
+    Suspended,  ///< also if the erase had ended before the command, or `suspend_unknown` found no erase
   };
 
   void run(Time now) {

@@ -44,7 +44,8 @@ namespace ex9000::hal::flash {
 /// With the longest times of the data sheet and a poll every millisecond, a read takes at most 5 ms, and a
 /// write takes at most 14 ms if it does not wait for the end of an erase. Typical times are 0 ms and 1 ms. A
 /// job fails if it has not ended after kLongestRead or kLongestWrite. The first job after a reset also waits
-/// for the scan of the log, which reads at most 50 kB and computes at most about 1,100 CRCs.
+/// for the scan of the log, and it does not fail during the scan. The scan reads at most 50 kB and computes
+/// at most about 1,100 CRCs.
 ///
 /// The tests in tests/hal/flash measure these times, cut the power at each operation, and count erases.
 template <class Flash, std::uint32_t kBegin>
@@ -56,8 +57,8 @@ class PageStore {
  public:
   /// The timeouts of jobs. If the memory does not answer, SettingsStore tries to read it six times after a
   /// reset, and the module must be ready to receive requests within 100 ms of the reset. For a command,
-  /// SettingsStore tries to write to it at most six times, and the module must refuse the command within 200
-  /// ms.
+  /// SettingsStore tries to write to it at most six times if the memory contains no copy of an older layout,
+  /// and the module must refuse the command within 200 ms.
   static constexpr Duration kLongestRead = milliseconds(12);
   static constexpr Duration kLongestWrite = milliseconds(25);
 

@@ -93,8 +93,8 @@ void occupy_standard_streams() {
 
 int run_program(int argc, const char* const* argv) {
   occupy_standard_streams();
-  // While these signals are ignored, a write to a closed pipe or beyond the file-size limit does not end the
-  // program. Instead, the write returns an error.
+  // These signals would end the program at a write to a closed pipe or beyond the file-size limit. While they
+  // are ignored, the write returns an error instead.
   static_cast<void>(std::signal(SIGPIPE, SIG_IGN));
   static_cast<void>(std::signal(SIGXFSZ, SIG_IGN));
   try {

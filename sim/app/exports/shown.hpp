@@ -12,7 +12,8 @@
 namespace ex9000::sim {
 
 /// How exports for Modbus clients present an item. These exports write only Output and Button. They do not
-/// write the other items, even if masters can write them.
+/// write the other items, even if masters can write them. Comments in the Home Assistant export describe
+/// actions for the host watchdog, which write other items if the user calls them.
 enum class Role : std::uint8_t {
   Output,   ///< read and written
   Input,    ///< a level or a latch

@@ -27,8 +27,8 @@ class LineRecord final : private Station {
   void note(const std::string& text);
   /// Starts to print frames.
   void print_frames();
-  /// Starts to write frames to `capture`, which must outlive this object. `began` is the wall clock time
-  /// (since 1970-01-01 00:00:00 UTC) that corresponds to time 0 of the line.
+  /// Starts to write frames to `capture`, which must outlive this object. `began` is the timestamp of time 0
+  /// of the line in the capture, since 1970-01-01 00:00:00 UTC.
   void keep_in(Capture& capture, VirtualTime began);
   /// Starts to call `take` with each frame when the frame has ended, and `note` with each note.
   void tell(FrameWatch::Take take, BusLog::Note note);

@@ -19,8 +19,9 @@ class SteppedLine {
  public:
   using Arrived = std::function<void()>;
 
-  /// A port or a server that delivers bytes while at least this many bytes are stored, including the
-  /// delivered ones, delivers no more until `put_on_line`.
+  /// If at least this many bytes are stored after a port has delivered bytes, the port delivers no more bytes
+  /// of the same master until `put_on_line`. If the server has delivered them, it delivers no more bytes of
+  /// any client until then.
   static constexpr std::size_t kMostBytes = 65'536;
 
   /// `frames` may be null. `line`, `ports` and `frames` must outlive this object.

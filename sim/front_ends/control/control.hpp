@@ -19,7 +19,8 @@ class Control {
   struct ControlledLine {
     std::string name;  ///< may be empty if there is only one line
     Line& line;
-    /// Returns the number of bytes written to the line's ports so far; null: the line has no ports.
+    /// Returns the number of bytes written to each port of the line so far, including dropped bytes; null:
+    /// the line has no ports.
     std::function<std::uint64_t()> sent = nullptr;
     bool has_serial_port = false;  ///< if true, commands cannot change the line's rate or format
   };

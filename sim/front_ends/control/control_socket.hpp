@@ -28,7 +28,7 @@ class ControlSocket {
 
   /// Starts to listen on `path`; replaces a socket of a process that has ended. Throws std::invalid_argument
   /// with a one-line message if the path is empty, too long or in use, or cannot be created. `quit` is
-  /// called after the reply to the `quit` command has been sent or could not be sent.
+  /// called after a reply whose member `quit` is true has been sent or could not be sent.
   ControlSocket(boost::asio::io_context& io, std::string path, CarryOut carry_out,
                 std::function<void()> quit);
   /// Removes the socket file if it still belongs to this object.

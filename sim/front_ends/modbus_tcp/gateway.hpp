@@ -21,7 +21,7 @@ enum class GatewayException : std::uint8_t {
 /// Sends requests on the line as RTU frames. The unit of a request is the address in the frame.
 class Gateway {
  public:
-  /// Receives the PDU of the reply; nullopt if the request has no reply.
+  /// Receives the PDU of the reply or of an exception; nullopt if the request is a broadcast.
   using Answer = std::function<void(std::optional<std::vector<std::uint8_t>> pdu)>;
 
   /// `line` must outlive this object.

@@ -36,7 +36,7 @@ struct ModbusTcpServer::Client : std::enable_shared_from_this<Client> {
             },
             [this, &server] { server.go_on(shared_from_this()); }) {}
 
-  /// Returns whether the server may read more bytes of this client while it is not paused.
+  /// Returns whether the server may read more bytes of this client while the server is not paused.
   [[nodiscard]] bool may_read() const {
     return socket.is_open() && !ended && !session.broken() && session.unread() < kMostUnread;
   }

@@ -40,8 +40,9 @@ class ModbusTcpServer {
   void start(Received received);
   /// Continues to read after `received` has returned false.
   void resume();
-  /// Calls `received` during this call for the bytes that have arrived, until `received` returns false; the
-  /// io_context need not run. Call this only if `received` can accept more bytes.
+  /// Accepts clients that have connected. Then calls `received` during this call for the bytes that have
+  /// arrived, until `received` returns false; the io_context need not run. Does not call `received` while the
+  /// server waits for `resume`. Call this only after `start`.
   void read_waiting();
   /// Returns the HOST:PORT on which the server listens.
   [[nodiscard]] std::string address() const { return listener_.address(); }

@@ -25,7 +25,7 @@ std::string Module::first_second(unsigned outputs, unsigned inputs) const {
 
 /// Processes a frame from the delimiter to the character before CR. Returns no value if there is no reply.
 /// `spoiled`: a byte of the frame had a line error. The value of a line tally includes the request that reads
-/// it, like the counters of function 08 in Modbus.
+/// it, if the tally counts this request, like the counters of function 08 in Modbus.
 std::optional<std::string> Module::dcon_frame(std::string frame, bool spoiled) {
   if (spoiled) {
     rule("ASCII frame spoiled");
