@@ -35,9 +35,11 @@ class SettingsKeeper {
   [[nodiscard]] std::uint16_t saves() const { return store_.saves(); }
 
   /// Returns whether a reset now would certainly load `stored()`. This is not certain while `unreadable()`,
-  /// SettingsStore::needs_invalidation or SettingsStore::update_unfinished returns true.
+  /// SettingsStore::place_unread, SettingsStore::needs_invalidation or SettingsStore::update_unfinished
+  /// returns true.
   [[nodiscard]] bool certain() const {
-    return !unreadable() && !store_.needs_invalidation() && !store_.update_unfinished();
+    return !unreadable() && !store_.place_unread() && !store_.needs_invalidation() &&
+           !store_.update_unfinished();
   }
 
   /// Returns whether a memory access, `job()`, is waiting or running.

@@ -67,6 +67,7 @@ void SettingsStore::begin_reading(Step step) {
   step_ = step;
   blank_places_ = 0;
   bad_copy_ = false;
+  place_unread_ = false;
   current_place_ = kNoPlace;
   old_copies_ = 0;
   silent_ = false;
@@ -103,6 +104,7 @@ void SettingsStore::read_page(bool ok) {
   if (!blank && !stored && !place.old) {
     bad_copy_ = true;
   }
+  place_unread_ = place_unread_ || !ok;
   if (stored) {
     take_copy(*stored);
   }
@@ -214,6 +216,7 @@ void SettingsStore::retry_or_give_up() {
 
 void SettingsStore::finish_writing() {
   found_ = Found::Settings;
+  place_unread_ = false;
   current_place_ = place_;
   ++edition_.sequence;
   edition_.layout = kLayout;

@@ -90,6 +90,10 @@ class SettingsStore {
     return found_ == Found::Settings && old_copies_ != 0 && !kPlaces[current_place_].old;
   }
 
+  /// Returns whether the memory did not answer at a place while the settings were loaded. A later reset may
+  /// find a newer copy at this place. Returns false after a successful save, which overwrites such a copy.
+  [[nodiscard]] bool place_unread() const { return place_unread_; }
+
   /// Returns whether a reset now could load a copy that must not be used: the copy of a failed save, or a
   /// copy of an older layout.
   [[nodiscard]] bool needs_invalidation() const { return copies_to_invalidate_ != 0; }
@@ -142,6 +146,7 @@ class SettingsStore {
   bool silent_ = false;                  ///< the memory did not answer the last read at the place before
   std::uint8_t blank_places_ = 0;
   bool bad_copy_ = false;                 ///< a place of this layout is not blank and has no good copy
+  bool place_unread_ = false;             ///< result of `place_unread()`
   std::size_t current_place_ = kNoPlace;  ///< place of the current copy, the newest good one; or kNoPlace
   unsigned old_copies_ = 0;               ///< bit n: place n holds a good copy of an older layout
   unsigned copies_to_invalidate_ = 0;     ///< bit n: the copy at place n must be invalidated

@@ -268,6 +268,27 @@ TEST(SettingsKeeperAtReset, StoredSettingsAreUncertainIfTheMemoryDidNotAnswer) {
   EXPECT_FALSE(keeper.certain());
 }
 
+// The copy that could not be read may be the newer one, and a later reset may load it.
+TEST(SettingsKeeperAtReset, StoredSettingsAreUncertainIfOneCopyCouldNotBeReadUntilTheyAreStored) {
+  FakeMemory memory;
+  put(memory, 0, numbered(5), 8);
+  put(memory, 1, numbered(6), 7);
+  memory.failing_reads = kAttempts;
+  SettingsKeeper keeper(the_model());
+  const auto drive_memory = [&] {
+    while (keeper.busy()) {
+      keeper.done(memory.run(keeper.job()).value_or(false));
+    }
+  };
+  drive_memory();
+  ASSERT_TRUE(keeper.stored() == numbered(6));
+  EXPECT_FALSE(keeper.certain());
+  keeper.save(numbered(6), Time(1000));
+  drive_memory();
+  EXPECT_TRUE(keeper.certain());
+  EXPECT_TRUE(Boot(memory).stored() == numbered(6));
+}
+
 TEST_F(SettingsKeeperTest, ACommandIsStoredWithoutWaitingForTheNextRetry) {
   keeper_.settings_changed();
   memory_.unanswered_writes = 4;
