@@ -68,7 +68,8 @@ class Plant(Panel):
                 self.assertEqual(self.value(SHOWN_LINES), lines)
                 self.assertEqual(self.value(OPEN_LINES), lines)
                 self.assertEqual(len(self.value(PLATES)), plates)
-                self.assertEqual(self.value("document.getElementById('found').textContent"), f"{plates} modules found")
+                found = "1 module found" if plates == 1 else f"{plates} modules found"
+                self.assertEqual(self.value("document.getElementById('found').textContent"), found)
         self.find("nothing like it")
         self.assertEqual(self.value(SHOWN_LINES), [])
         self.picture("plant-nothing-found")

@@ -17,7 +17,8 @@ ADDR is the address in hex, as in `$AA2` (default: 01). The keys:
   edge=falling|rising      sets the edge that the counters count
   name=TEXT                sets the name that `$AAM` reads
   init=on|off              ties INIT* to GND: ASCII at address 00, 9600 baud
-  eeprom=FILE              keeps the settings in this file; the file overrides the other keys
+  eeprom=FILE              keeps the settings in this file; an existing file overrides ADDR and the
+                           other keys, except init
 
 A bus file, BUS.json, takes the place of the modules and describes any number of lines. --example prints an example,
 --schema prints the JSON Schema. Options for ports, rates and modules cannot be combined with a bus file.

@@ -47,7 +47,7 @@ void run(const Setup& setup) {
   const auto greet = [&errors](const std::string& text) { errors.write(text + "\n"); };
   std::optional<TerminalOutput> terminal;
   if (setup.watch) {
-    terminal.emplace(STDOUT_FILENO);
+    terminal.emplace(STDOUT_FILENO, gives_up);
   }
   RunningProgram running(io, setup, print_line, greet,
                          terminal && terminal->is_open() ? &*terminal : nullptr);

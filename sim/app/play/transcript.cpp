@@ -6,6 +6,7 @@
 #include <fstream>
 #include <map>
 #include <optional>
+#include <regex>
 #include <string_view>
 
 #include "sim/files_and_ports/files/regular_file.hpp"
@@ -81,6 +82,10 @@ std::string substitute(std::string text, const Variables& variables) {
     for (auto at = text.find(pattern); at != std::string::npos; at = text.find(pattern, at + value.size())) {
       text.replace(at, pattern.size(), value);
     }
+  }
+  static const std::regex kName("\\{([A-Za-z_][A-Za-z_0-9]*)\\}");
+  if (std::smatch unknown; std::regex_search(text, unknown, kName)) {
+    fail("'" + unknown.str() + "': unknown variable; add " + unknown.str(1) + "=VALUE to the 'model:' line");
   }
   return text;
 }
@@ -264,7 +269,10 @@ bool read_header(const std::string& text, unsigned number, Source& source) {
       if (equals == std::string::npos) {
         fail("'" + word[i] + "': expected KEY=VALUE");
       }
-      run.variables.insert({word[i].substr(0, equals), word[i].substr(equals + 1)});
+      const std::string key = word[i].substr(0, equals);
+      if (!run.variables.insert({key, word[i].substr(equals + 1)}).second) {
+        fail("'" + key + "' is given twice; leave out one of them");
+      }
     }
     source.models.push_back(run);
   } else if (const auto preset = header_value(text, "preset")) {
@@ -350,7 +358,7 @@ std::string missing_input(const Model& model, unsigned channel) {
 std::vector<std::string> transcript_files(const std::string& directory) {
   std::vector<std::string> files;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(directory)) {
-    if (entry.path().extension() == ".txt") {
+    if (entry.path().extension() == ".txt" && !entry.is_directory()) {
       files.push_back(entry.path().string());
     }
   }

@@ -1,7 +1,5 @@
 #include "sim/app/running_line/pacer.hpp"
 
-#include <sys/prctl.h>
-
 #include <algorithm>
 #include <utility>
 
@@ -19,10 +17,6 @@ constexpr std::size_t kMostWaiting = 4096;
 /// consecutive transactions.
 constexpr std::chrono::milliseconds kFarthestAhead{5};
 
-/// By default the kernel may delay timers by 50 us to save power; this is more than half a character at
-/// 115200 baud.
-constexpr unsigned long kTimerSlackNanoseconds = 1;
-
 /// The shortest delay that is reported. A master may notice a reply that is late by this time, and a user
 /// must be able to find the reason.
 constexpr VirtualTime kReportedDelay = std::chrono::milliseconds(20);
@@ -39,7 +33,6 @@ Pacer::Pacer(boost::asio::io_context& io, Line& line, const LinePorts::All& port
       pace_(pace) {}
 
 void Pacer::start() {
-  prctl(PR_SET_TIMERSLACK, kTimerSlackNanoseconds);
   began_ = std::chrono::steady_clock::now();
   first_ = line_.clock().virtual_now();
   ports_.report_mismatches();

@@ -47,7 +47,7 @@ void PtyPort::read() {
   descriptor_.async_wait(boost::asio::posix::stream_descriptor::wait_read,
                          [this](const boost::system::error_code& error) {
                            reading_ = false;
-                           if (!error && take() >= 0) {
+                           if (!error && !paused_ && take() >= 0) {
                              read();
                            }
                          });

@@ -151,7 +151,7 @@ std::size_t SerialPort::send(const std::vector<std::uint8_t>& bytes) {
     write_out();
     under_way_ = true;
   }
-  return 0;  // the port sends the bytes even if no master reads them
+  return std::exchange(dropped_, 0);
 }
 
 void SerialPort::sent() {
@@ -160,11 +160,12 @@ void SerialPort::sent() {
 }
 
 void SerialPort::write_out() {
+  const ssize_t written = write(descriptor_.native_handle(), held_back_.data(), held_back_.size());
+  const std::size_t sent = written > 0 ? static_cast<std::size_t>(written) : 0;
   if (echo_) {
-    echo_->sent({held_back_.data(), held_back_.size()}, OwnEcho::Clock::now());
+    echo_->sent({held_back_.data(), sent}, OwnEcho::Clock::now());
   }
-  [[maybe_unused]] const ssize_t written =
-      write(descriptor_.native_handle(), held_back_.data(), held_back_.size());
+  dropped_ += held_back_.size() - sent;
   held_back_.clear();
 }
 

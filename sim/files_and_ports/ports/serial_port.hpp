@@ -43,6 +43,7 @@ class SerialPort final : public Port {
   std::vector<std::uint8_t> held_back_;
   OwnEcho::Clock::time_point began_;  ///< when the first byte in held_back_ was stored
   bool under_way_ = false;            ///< the beginning of a reply has been written
+  std::size_t dropped_ = 0;           ///< bytes that the kernel had no room for since the last `send`
   std::optional<OwnEcho> echo_;
   std::optional<ParityMarks> marks_;  ///< nullopt: the format has no parity
 };

@@ -100,6 +100,9 @@ void TcpPort::read(const ClientPointer& client) {
       return;  // the client was removed, or the port was destroyed
     }
     client->reading = false;
+    if (client->paused) {
+      return;  // the client was paused during the wait
+    }
     const boost::system::error_code ended = error ? error : take(*client);
     if (ended && ended != boost::asio::error::would_block) {
       part_with(client, ended == boost::asio::error::eof);

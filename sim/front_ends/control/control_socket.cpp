@@ -44,7 +44,13 @@ void remove_stale(boost::asio::io_context& io, const std::string& path, const Cl
   }
   Local::socket visitor(io);
   boost::system::error_code error;
+  visitor.open(Local(), error);
+  visitor.non_blocking(true,
+                       error);  // otherwise connect could wait for a program that accepts no connections
   visitor.connect(Local::endpoint(path), error);
+  if (error == boost::asio::error::would_block) {
+    refuse(path, in_use);
+  }
   if (error != boost::asio::error::connection_refused) {
     refuse(path, error ? error.message() + "; name another path" : in_use);
   }
@@ -79,10 +85,12 @@ ControlSocket::ControlSocket(boost::asio::io_context& io, std::string path, Carr
   if (!error) {
     acceptor_.bind(Local::endpoint(path_), error);
   }
-  struct stat status {};
-  if (!error && lstat(path_.c_str(), &status) == 0) {
-    device_ = status.st_dev;
-    inode_ = status.st_ino;
+  if (!error) {
+    struct stat status {};
+    if (lstat(path_.c_str(), &status) == 0) {
+      device_ = status.st_dev;
+      inode_ = status.st_ino;
+    }
     acceptor_.listen(Local::acceptor::max_listen_connections, error);
   }
   if (error) {

@@ -102,6 +102,9 @@ void ModbusTcpServer::read(const ClientPointer& client) {
       return;  // the client was removed, or the server was destroyed
     }
     client->reading = false;
+    if (paused_ || !client->may_read()) {
+      return;  // the server was paused during the wait
+    }
     const boost::system::error_code ended = error ? error : take(client);
     if (ended == boost::asio::error::eof) {
       client->ended = true;

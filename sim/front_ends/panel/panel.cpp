@@ -23,8 +23,8 @@ namespace ex9000::sim {
 namespace {
 
 /// The maximum number of frames and notes in one message, for all lines together, unless kFewestFrames
-/// applies. At speed 1, two lines at 115200 baud carry fewer frames between two calls of `look`. Writing this
-/// number of frames causes no delay that a master notices.
+/// applies. At speed 1, two lines at 115200 baud usually carry fewer frames between two calls of `look`.
+/// Writing this number of frames causes no delay that a master notices.
 constexpr std::size_t kMostFrames = 250;
 /// The limit for each line is at least this number, even if there are many lines.
 constexpr std::size_t kFewestFrames = 20;

@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <cstdlib>
 #include <string>
+#include <utility>
 
 namespace ex9000::sim {
 
@@ -44,7 +45,8 @@ bool names_utf8(const std::string& locale) {
   return plain.find("utf8") != std::string::npos;
 }
 
-TerminalOutput::TerminalOutput(int descriptor) {
+TerminalOutput::TerminalOutput(int descriptor, std::function<bool()> gives_up)
+    : gives_up_(std::move(gives_up)) {
   if (isatty(descriptor) != 0 && environment("TERM") != "dumb") {
     const std::string terminal = "/proc/self/fd/" + std::to_string(descriptor);
     fd_ = open(terminal.c_str(), O_WRONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
@@ -73,9 +75,15 @@ void TerminalOutput::write(const std::string& text) {
   waiting_ += text;
   flush();
   while (waiting_.size() > kMostWaiting) {
+    // A signal that another thread receives does not interrupt poll(), so poll() has a time limit, in
+    // milliseconds.
+    constexpr int kAskEvery = 100;
     pollfd ready{fd_, POLLOUT, 0};
-    poll(&ready, 1, -1);
+    poll(&ready, 1, kAskEvery);
     flush();
+    if (gives_up_()) {
+      return;
+    }
   }
 }
 

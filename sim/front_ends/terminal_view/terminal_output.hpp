@@ -1,6 +1,7 @@
 // The terminal on standard output, or on another descriptor.
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include "sim/front_ends/terminal_view/terminal.hpp"
@@ -16,8 +17,10 @@ bool names_utf8(const std::string& locale);
 /// shell.
 class TerminalOutput final : public Terminal {
  public:
-  /// Opens the terminal of `descriptor`, which remains open.
-  explicit TerminalOutput(int descriptor);
+  /// Opens the terminal of `descriptor`, which remains open. `gives_up`: returns whether to stop waiting for
+  /// a terminal that accepts no output; must not throw.
+  explicit TerminalOutput(
+      int descriptor, std::function<bool()> gives_up = [] { return false; });
   /// Writes as much output as the terminal accepts without blocking, and discards the rest.
   ~TerminalOutput() override;
   TerminalOutput(const TerminalOutput&) = delete;
@@ -30,7 +33,7 @@ class TerminalOutput final : public Terminal {
 
   // --- Terminal ---
   [[nodiscard]] Screen screen() const override;
-  /// Blocks while more than 1 MiB of output is waiting.
+  /// Blocks while more than 1 MiB of output is waiting and `gives_up` returns false.
   void write(const std::string& text) override;
   bool keeps_up() override;
 
@@ -40,6 +43,7 @@ class TerminalOutput final : public Terminal {
   static constexpr int kClosed = -1;  ///< the result of open(2) after an error
   int fd_ = kClosed;
   std::string waiting_;
+  std::function<bool()> gives_up_;
 };
 
 }  // namespace ex9000::sim

@@ -86,8 +86,9 @@ std::vector<std::string> Watch::painting() const {
     lines.insert(lines.end(), faces[i].begin(), faces[i].end());
   }
   if (shown != faces.size()) {
-    lines.push_back(std::to_string(faces.size() - shown) +
-                    " more modules are not shown; the terminal has too few rows");
+    const std::size_t left_out = faces.size() - shown;
+    lines.push_back(std::to_string(left_out) + (left_out == 1 ? " more module is" : " more modules are") +
+                    " not shown; the terminal has too few rows");
   }
   for (std::string& line : lines) {
     line = shortened(line, screen_.columns);

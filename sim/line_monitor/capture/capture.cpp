@@ -61,7 +61,8 @@ void Capture::write(std::size_t line, const Frame& frame) {
       frame.speaker() == Speaker::Master ? pcapng::Direction::Outbound : pcapng::Direction::Inbound;
   packet.data = pdu.header();
   packet.data.insert(packet.data.end(), frame.bytes.begin(), frame.bytes.end());
-  packet.comment = errors(frame);
+  const bool known = frame.speaker() == Speaker::Master || frame.station <= lines_[line].modules;
+  packet.comment = known ? errors(frame) : line_error(frame);  // only the sender knows what it sends
   const std::lock_guard<std::mutex> lock(writing_);
   file_.append(pcapng::enhanced_packet(packet));
 }

@@ -67,8 +67,8 @@ bool checksum_is_right(const std::string& text) {
   return text.substr(text.size() - kChecksumDigits) == hex_byte_text(sum & 0xFFU);
 }
 
-/// Returns whether modules ignore this byte before a delimiter (wire.md section 3). The turn-around of a line
-/// can produce 00, and some terminals send LF after CR.
+/// Returns whether the byte is 00 or LF, which modules ignore before a delimiter (wire.md section 3). The
+/// turn-around of a line can produce 00, and some terminals send LF after CR.
 bool is_skipped(std::uint8_t byte) { return byte == 0x00 || byte == '\n'; }
 
 /// Returns the position of the delimiter if only bytes of `is_skipped` precede it; otherwise the beginning.
@@ -157,14 +157,18 @@ std::string modbus_meaning(const FrameBytes& bytes, Speaker speaker) {
     return error;
   }
   const std::string who = bytes[0] == 0 ? "all modules: " : hex_byte_text(bytes[0]) + ": ";
+  constexpr unsigned kExceptionBit = 0x80;
+  constexpr std::size_t kExceptionSize = 5;
   const unsigned function = bytes[1];
-  const auto* row =
-      std::find_if(modbus::kFunctions.begin(), modbus::kFunctions.end(),
-                   [function](const modbus::Function& f) { return f.row.code == (function & 0x7FU); });
+  const bool exception =
+      speaker == Speaker::Module && (function & kExceptionBit) != 0 && bytes.size() == kExceptionSize;
+  const unsigned code = exception ? function & ~kExceptionBit : function;
+  const auto* row = std::find_if(modbus::kFunctions.begin(), modbus::kFunctions.end(),
+                                 [code](const modbus::Function& f) { return f.row.code == code; });
   const std::string name =
-      row == modbus::kFunctions.end() ? "function " + hex_byte_text(function) : std::string(row->name);
+      row == modbus::kFunctions.end() ? "function " + hex_byte_text(code) : std::string(row->name);
   if (speaker == Speaker::Module) {
-    return who + name + (function >= 0x80 ? ", exception " + hex_byte_text(bytes[2]) : ", reply");
+    return who + name + (exception ? ", exception " + hex_byte_text(bytes[2]) : ", reply");
   }
   if (bytes.size() < 8 || row == modbus::kFunctions.end() || function > 0x10 || function == 0x08) {
     return who + name;

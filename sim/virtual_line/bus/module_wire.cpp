@@ -16,7 +16,10 @@ void ModuleWire::drive(bool on) {
   if (on) {
     ++reply_;
     fate_ = begins_ ? begins_(reply_) : ReplyFate();
-    fate_.lost = fate_.lost || late_.size() > kMostLate;
+    if (!fate_.lost && late_.size() > kMostLate) {
+      fate_.lost = true;
+      tell(reply_, false);
+    }
     forced_for_reply_ = forced_;
     if (!late_.empty()) {  // replies keep their order: a reply after a late one is late too
       fate_.late_by = std::max(fate_.late_by, late_.back().when - clock_.virtual_now());

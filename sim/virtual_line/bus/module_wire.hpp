@@ -35,7 +35,7 @@ class ModuleWire final : public Wire {
   using Ends = std::function<void()>;
   /// Called with `on` true before the driver is enabled on the wires for a reply. Called with false after the
   /// driver is disabled, or when `abort` drops the reply. `reply` is the same number as for Begins. This
-  /// function is not called for lost replies.
+  /// function is not called for replies that are lost because Begins has returned this.
   using OnTheWires = std::function<void(std::uint64_t reply, bool on)>;
   void watch(Begins begins, Ends ends, OnTheWires on_the_wires);
   /// Makes the UART run at `baud` regardless of the firmware's setting; 0: the firmware's setting applies.

@@ -46,8 +46,9 @@ struct Schedule {
   VirtualTime time{0};      ///< At: from the start of the line's time; EveryTime: the period
   std::uint64_t count = 1;  ///< EveryReply: 10 means every 10th reply; AfterWrites: number of writes
   double probability = 0;   ///< Probably: the probability for each reply
-  /// How long the fault lasts after it begins. nullopt: a power cut lasts kPowerCutLasts, another fault that
-  /// depends on replies lasts until the end of the reply, and any other fault with a duration is permanent.
+  /// How long the fault lasts after it begins. A hang and foreign traffic have no duration. For the others,
+  /// nullopt means: a power cut lasts kPowerCutLasts, another fault that depends on replies lasts until the
+  /// end of the reply, and any other fault is permanent.
   std::optional<VirtualTime> lasts;
 
   [[nodiscard]] bool of_replies() const { return when == When::EveryReply || when == When::Probably; }

@@ -38,7 +38,7 @@ Levels Noise::disturbed(const Sent& sent) {
   return levels;
 }
 
-/// Puts the next stray character on the wires. The driver enable stays off, because no station sends this
+/// Puts the next stray character on the wires. Does not enable a driver, because no device sends this
 /// character.
 void Noise::run() {
   const Stray stray = strays_.front();

@@ -30,12 +30,12 @@ inline std::vector<std::uint8_t> rtu_frame(std::uint8_t address, const std::vect
 inline Bytes pdu_of(Bytes frame) { return frame.first(frame.size - 2).from(1); }
 
 /// Returns whether `frame` is a valid reply, perhaps an exception, to `request`. Both begin with the address
-/// and end with the CRC. The CRC of `frame` must be correct. The address and the function code must be those
-/// of the request; an exception also has the bit kRtuException, and a length of 5 bytes. A reply to a read
-/// (01 to 04) must have the byte count and the length that the request implies. A reply to a write (05, 06,
-/// 0F, 10) must have 8 bytes and repeat the first 6 bytes of the request (MODBUS Application Protocol
-/// V1.1b3, section 6). The rest of a reply to another function is not checked. These checks reject nearly all
-/// echoes of requests that read, and most late replies to other requests.
+/// and end with the CRC. `frame` must have at least 5 bytes and a correct CRC. The address and the function
+/// code must be those of the request; an exception also has the bit kRtuException, and a length of 5 bytes. A
+/// reply to a read (01 to 04) must have the byte count and the length that the request implies. A reply to a
+/// write (05, 06, 0F, 10) must have 8 bytes and repeat the first 6 bytes of the request (MODBUS Application
+/// Protocol V1.1b3, section 6). The rest of a reply to another function is not checked. These checks reject
+/// nearly all echoes of requests that read, and most late replies to other requests.
 inline bool is_rtu_reply(Bytes request, Bytes frame) {
   constexpr std::size_t kException = 5;        // size of an exception; no reply is shorter
   constexpr std::size_t kAddressAndCount = 8;  // minimum size of a request that reads or writes

@@ -17,7 +17,7 @@ export class LineView {
     this.plateOf = plateOf;
     this.plates = make("div", {class: "plates", "data-count": count});
     const ports = make("span", {class: "quiet"}, line.ports.join(", "));
-    const size = make("span", {class: "quiet"}, `${modules.length} modules`);
+    const size = make("span", {class: "quiet"}, `${modules.length} ${modules.length === 1 ? "module" : "modules"}`);
     this.element = make("details", {class: "line", ontoggle: () => this.fill()},
       make("summary", {}, make("h3", {class: "linename"}, line.name, " ", ports), " ", size), this.plates);
     this.found = modules;

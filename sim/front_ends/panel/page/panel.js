@@ -99,7 +99,7 @@ function find() {
     faults.element.hidden = console.element.hidden = !found[index].length;
     view.unfold(found[index].length > 0 && total <= mostUnfolded);
   });
-  setText(at("found"), words.length ? `${total} modules found` : "");
+  setText(at("found"), words.length ? `${total} ${total === 1 ? "module" : "modules"} found` : "");
 }
 
 function show(message) {

@@ -17,12 +17,12 @@ const waitingTrimmedFrom = 1200;
 /// would cause a drawing at each repaint.
 const slowest = 30;
 
-/// Return the number of frames, and of frames and notes, in `entries`. For entries that were left out, the number of
-/// frames may not be known; then `frames` counts notes too.
+/// `framesIn` returns the number of frames in `entries`, and `rowsIn` returns the number of frames and notes. For
+/// entries that were left out, the number of frames may not be known; then `framesIn` counts notes too.
 const framesIn = (entries) =>
   entries.reduce((count, entry) => count + (entry.frames ?? entry.missed ?? (entry.note ? 0 : 1)), 0);
 const rowsIn = (entries) => entries.reduce((count, entry) => count + (entry.missed ?? 1), 0);
-const rowsOfFrames = (entries) => entries.filter(({note}) => !note).length;
+const rowsOfFrames = (entries) => entries.filter(({note, missed}) => !note && !missed).length;
 
 /// Inserts an entry by its time, because entries may arrive late.
 function insert(list, entry) {

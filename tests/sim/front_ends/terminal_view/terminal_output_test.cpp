@@ -69,6 +69,12 @@ TEST_F(TerminalOutputTest, KeepsWhatAnUnreadTerminalDoesNotAccept) {
   EXPECT_EQ(received, text);
 }
 
+TEST_F(TerminalOutputTest, StopsWaitingForAnUnreadTerminalWhenItGivesUp) {
+  TerminalOutput output(program_, [] { return true; });
+  output.write(std::string(std::size_t{3} << 20U, 'x'));
+  EXPECT_FALSE(output.keeps_up());
+}
+
 TEST_F(TerminalOutputTest, IsNotOpenOnADumbTerminalOrAPipe) {
   setenv("TERM", "dumb", 1);
   EXPECT_FALSE(TerminalOutput(program_).is_open());

@@ -103,6 +103,16 @@ TEST_F(ModuleWireTest, LimitsTheNumberOfStoredLateReplies) {
   EXPECT_GT(wires.happened.size(), 65'000U);
 }
 
+TEST_F(ModuleWireTest, ReportsTheEndOfEachReplyThatIsLostBecauseTooManyAreLate) {
+  watch();
+  fate.late_by = 1h;
+  for (int i = 0; i < 30'000; ++i) {
+    reply(5ms, 'a');
+  }
+  ASSERT_FALSE(on_the_wires.empty());
+  EXPECT_EQ(on_the_wires.back(), "30000 off");
+}
+
 TEST_F(ModuleWireTest, ReportsTheStartAndEndOfEachReplyOnTheWiresAndEachAbortedReply) {
   watch();
   fate.late_by = 20ms;
