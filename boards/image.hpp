@@ -18,8 +18,8 @@ static_assert(
 #endif
 
 #ifdef EX9000_PRESET
-/// Only image files contain this information, because only boards/CMakeLists.txt defines EX9000_PRESET and
-/// EX9000_COMMIT.
+/// boards/CMakeLists.txt defines EX9000_PRESET and EX9000_COMMIT for the image files. Tests compile images
+/// for the host without these definitions, so the images for the host do not contain this information.
 // NOLINTNEXTLINE(misc-definitions-in-headers): included once
 __attribute__((section(".image_info"), used)) constexpr ImageInfo kImageInfo{
     {kImageMark}, {kFirmwareVersion}, {EX9000_PRESET}, {kOnlyModel.designation}, {EX9000_COMMIT}};

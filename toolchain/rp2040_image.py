@@ -74,12 +74,17 @@ def uf2(elf: bytes) -> bytes:
 def _segments(elf: bytes) -> Iterator[tuple[int, int, bytes]]:
     """Yields offset, load address and content of each loadable segment that has content.
 
-    Raises NotAnImage if `elf` is not a 32-bit little-endian ELF file.
+    Raises NotAnImage if `elf` is not a complete 32-bit little-endian ELF file.
     """
     if elf[:6] != b"\x7fELF\x01\x01":
         raise NotAnImage("is not a 32-bit little-endian ELF file; name the linked image")
-    offset, size, count = struct.unpack_from("<I", elf, 28)[0], *struct.unpack_from("<HH", elf, 42)
-    for index in range(count):
-        kind, start, _, address, length = struct.unpack_from("<5I", elf, offset + index * size)
+    try:
+        offset, size, count = struct.unpack_from("<I", elf, 28)[0], *struct.unpack_from("<HH", elf, 42)
+        headers = [struct.unpack_from("<5I", elf, offset + index * size) for index in range(count)]
+    except struct.error:
+        raise NotAnImage("is a truncated ELF file; build or copy it again") from None
+    for kind, start, _, address, length in headers:
         if kind == _LOAD and length:
+            if start + length > len(elf):
+                raise NotAnImage("is a truncated ELF file; build or copy it again")
             yield start, address, elf[start : start + length]

@@ -56,7 +56,7 @@ def parser_for(emulator: str, preset: str) -> argparse.ArgumentParser:
 
 
 def run(arguments: argparse.Namespace, emulator: str, start: Callable[[], Machine]) -> int:
-    """Runs the machine that `start` returns, until a signal arrives or the emulator ends.
+    """Runs the machine that `start` returns, until a signal arrives, or until the machine raises Ended.
 
     Returns the exit status: 0 after a signal, 1 after Ended, 2 after a Refusal.
     """

@@ -23,6 +23,9 @@ _IN_CLOSE_WRITE, _IN_CLOSE_NOWRITE, _IN_OPEN = 0x08, 0x10, 0x20
 class PseudoTerminal:
     """A pseudo-terminal in raw mode.
 
+    A master is a program that opens the terminal like a serial port. The attribute `master` does not mean such a
+    program: it is the descriptor of the other end, which this class reads and writes.
+
     As on a real line, bytes from the module are lost if no master has the terminal open. Unread bytes are lost when the
     last master closes the terminal.
     """

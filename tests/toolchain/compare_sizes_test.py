@@ -44,6 +44,14 @@ class CompareSizes(unittest.TestCase):
         self.assertEqual(compared.returncode, 1)
         self.assertIn("board OTHER: is not in the record", compared.stderr)
 
+    def test_a_folder_without_sizes_is_rejected_and_the_record_stays(self) -> None:
+        with tempfile.TemporaryDirectory() as empty:
+            command = [str(PROGRAM), "--file", str(self.record), "--record", empty]
+            compared = subprocess.run(command, capture_output=True, text=True, check=False)
+        self.assertEqual(compared.returncode, 2)
+        self.assertIn("contains no sizes of images", compared.stderr)
+        self.assertEqual(self.record.read_text(encoding="utf-8"), "board IMAGE 1000 200 100\n")
+
     def test_a_new_record_has_the_sizes_of_the_build_and_accepts_them(self) -> None:
         self.assertEqual(self.compare("board IMAGE 2000 400 300", "--record").returncode, 0)
         self.assertEqual(self.record.read_text(encoding="utf-8"), "board IMAGE 2000 400 300\n")

@@ -75,6 +75,12 @@ class Uf2(unittest.TestCase):
         self.assertEqual([struct.unpack_from("<4I", block)[3] for block in blocks], [FLASH, FLASH + 0x1000])
         self.assertEqual(blocks[1][32:49], b"\xff" * 16 + b"x")
 
+    def test_a_truncated_file_is_rejected(self) -> None:
+        whole = elf((FLASH, STAGE), (FLASH + 0x1010, b"x"))
+        for size in (50, len(whole) - 1):
+            with self.subTest(size), self.assertRaisesRegex(NotAnImage, "is a truncated ELF file"):
+                uf2(whole[:size])
+
     def test_the_programs_report_a_wrong_file_in_one_line(self) -> None:
         with tempfile.TemporaryDirectory() as folder:
             image = pathlib.Path(folder, "image.elf")

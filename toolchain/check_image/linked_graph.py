@@ -64,7 +64,7 @@ class LinkedGraph:
         self.graph: Graph = {}
         self._calls_indirectly: set[int] = set()
         self.pointer_calls: dict[tuple[str, str], list[str]] = {}  # targets of each call, by caller and location
-        self.untyped = 0  # calls through pointers in no dump: they can reach all functions whose address is taken
+        self.untyped = 0  # pointer calls that no dump contains; they can reach all functions whose address is taken
         for record in records:
             function = self._find(record.title)
             if function is not None:  # otherwise it was inlined everywhere, or the linker has removed it

@@ -66,7 +66,9 @@ def _parse(arguments: list[str]) -> argparse.Namespace:
         metavar="FILE",
         help="print the changes since this record, which has lines of BOARD IMAGE FLASH STATIC STACK",
     )
-    parser.add_argument("--board", default="", help="use the lines of this board in the record")
+    parser.add_argument(
+        "--board", default="", help="use the lines of this board in the record, and write the sizes next to the image"
+    )
     parser.add_argument(
         "--level",
         action="append",
@@ -133,7 +135,7 @@ def _report(
     options: argparse.Namespace, figures: Figures, vectors: Vectors, disabled: DisabledInterrupts
 ) -> list[str]:
     """Prints the sizes, their changes since the record, and the largest number of instructions for which interrupts
-    are disabled. Writes the sizes to a file next to the image.
+    are disabled. With --board, writes the sizes to a file next to the image.
 
     Returns a problem if RAM is too small, otherwise an empty list. If flash is too small, the linker already fails.
     """
@@ -143,7 +145,8 @@ def _report(
         f"{options.image.stem}: flash {flash} bytes, RAM {figures.static + figures.stack} bytes "
         f"({static} static, {stack} stack at worst), interrupts disabled for {disabled.longest} instructions"
     )
-    records.write(options.image.with_suffix(".size"), {(options.board, options.image.stem): figures})
+    if options.board:
+        records.write(options.image.with_suffix(".size"), {(options.board, options.image.stem): figures})
     ram = vectors.stack_top - sizes.RAM.start
     used = figures.static + figures.stack
     return [f"requires {used} bytes of RAM; the board has {ram}"] if used > ram else []

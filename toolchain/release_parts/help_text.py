@@ -38,7 +38,7 @@ class Help:
     positionals: list[Option] = field(default_factory=list)
     options: list[Option] = field(default_factory=list)
     subcommands: list[str] = field(default_factory=list)
-    notes: list[str] = field(default_factory=list)  # the lines after the last list
+    notes: list[str] = field(default_factory=list)  # the lines after the positionals, options and subcommands
 
 
 def read(text: str) -> Help:

@@ -12,8 +12,8 @@ _ENTRY = re.compile(r"^  (\S+(?: \S+)*) {2,}(\S.*)$")
 _CONTINUED = re.compile(r"^ {10,}(\S.*)$")
 
 # Without these escapes, a backslash would begin an escape, and a quotation mark would end an argument of a macro. A
-# reader would see typographic characters in place of -, ' and `, which a shell does not understand. The backslash is
-# first, because the other escapes contain it.
+# reader would see typographic characters in place of -, ' and `. A shell does not understand these typographic
+# characters. The backslash is first, because the other escapes contain it.
 _ESCAPES = {"\\": "\\e", '"': "\\(dq", "-": "\\-", "'": "\\(aq", "`": "\\(ga"}
 
 
@@ -62,12 +62,19 @@ _EXIT_STATUS = [
     ".Ql quit ,",
     "the reader of the log or",
     ".Fl \\-for",
-    "has ended the program",
-    ".It 1",
-    "any other error has occurred, for example a serial port has disappeared",
+    "has ended the program, an option such as",
+    ".Fl \\-help",
+    "has printed its text, or all files of",
+    ".Ql play",
+    "have passed",
     ".It 2",
     "an argument is wrong, a path or a port is in use, or a file is not an EEPROM",
     "image",
+    ".It 1",
+    "any other error has occurred, for example a serial port has disappeared, or a",
+    "file of",
+    ".Ql play",
+    "has failed",
     ".El",
 ]
 
@@ -100,7 +107,7 @@ def _tag(option: Option) -> str:
 
 
 def _without_examples(notes: list[str]) -> tuple[list[str], list[str]]:
-    """Returns the notes before the examples, and the examples, which end the notes."""
+    """Returns the notes before the line `Examples:`, and the notes after this line."""
     if "Examples:" not in notes:
         return notes, []
     at = notes.index("Examples:")

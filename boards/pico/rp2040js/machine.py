@@ -90,15 +90,15 @@ class Machine:
         return 0.002 if time.monotonic() - self._last_byte < 1 else 0.02
 
     def carry(self, requests: bytes, _ready: list[int]) -> bytes:
-        """Lets virtual time pass up to the time of the host, and returns the bytes that the module has sent. Then
-        begins to send `requests`, the bytes of the master. The module receives them during later calls.
+        """Lets virtual time pass up to the time of the host, and then begins to send `requests`, the bytes of the
+        master. The module receives them during later calls. Returns the bytes that the module has sent.
 
         Raises Ended if the emulator has ended or reports an error.
         """
         now = time.monotonic()
         due = round((now - self._began) * _NANOSECONDS)
-        # If virtual time is more than _LARGEST_LAG behind the time of the host, the rest of the lag is skipped.
-        # Otherwise the module would run faster than real time for too long.
+        # If virtual time is more than _LARGEST_LAG behind the time of the host, the lag above _LARGEST_LAG is skipped.
+        # Without this limit, the module would run faster than real time for too long.
         lag = due - self._passed - _LARGEST_LAG * _NANOSECONDS
         if lag > 0:
             self._began += lag / _NANOSECONDS
