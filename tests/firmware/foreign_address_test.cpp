@@ -17,8 +17,8 @@ using Bytes = ModuleBench::Bytes;
 
 constexpr unsigned kOwnAddress = 0x35;
 
-/// Returns arguments for the command. They are valid on a model that has the command, except for the commands
-/// of firmware/extensions.md.
+/// Returns arguments for the command. Their form is valid on those models of this test that have the command.
+/// Exception: the arguments for the commands of firmware/extensions.md may have a wrong form.
 std::string arguments(const dcon::Command& command) {
   if (command.id == "set-configuration") {
     return "02400600";

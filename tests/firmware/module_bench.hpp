@@ -83,7 +83,7 @@ class ModuleBench {
   }
 
   /// Returns all characters that the master has received since the beginning of the last call of `ask` or
-  /// `forget_heard`. If there was no such call, returns all characters since power-on.
+  /// `forget_heard`. If there was no such call, returns all characters since construction.
   [[nodiscard]] std::string heard_text() const { return {heard_.begin(), heard_.end()}; }
   void forget_heard() { heard_.clear(); }
 

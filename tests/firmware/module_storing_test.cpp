@@ -55,8 +55,8 @@ TEST(Storing, ABroadcastThatCannotBeStoredGetsNoReplyAndHasNoEffect) {
 }
 
 /// Sends each command twice. The first execution may store something, but the second execution must not. More
-/// than half of the commands must store something the first time. `ask` returns whether the command was
-/// executed.
+/// than half of the commands must store something the first time. `ask` sends a command and returns whether
+/// the reply, or its absence, is as expected.
 template <class Command, class Ask>
 void expect_nothing_written_the_second_time(ModuleBench& bench, const std::vector<Command>& commands,
                                             Ask ask) {
@@ -267,7 +267,7 @@ TEST(Storing, ARefusedStoreIsNotInForceAfterTheNextResetEvenIfItWasWritten) {
 
 TEST(Storing, AStoringCommandIsRefusedWhileAnEarlierTimeoutCannotBeStored) {
   // The timeout has disabled the watchdog, but the module has not stored this change yet. The module must
-  // refuse the command that disables the watchdog until the change is stored.
+  // refuse the command that disables the watchdog while the memory cannot store the change.
   ModuleBench bench("EX9042D");
   ASSERT_EQ(bench.ask("~013103"), "!01");
   bench.module().memory().fail(true);

@@ -33,8 +33,8 @@ def follow(log, sleeps, listener):
     """Reads the log to its end. `sleeps` are the addresses of WFI instructions. Calls these methods of `listener`:
 
     - entered(span, main), left(span, main): an interrupt other than ALARM has started, or has returned
-    - slept(main): a turn has ended
-    - seen(): everything that was executed before the call of Emulator.write_sync_line has been reported
+    - slept(main): a turn has ended; follow calls this function only when the main loop has woken up again
+    - seen(): the log has been read up to the call of Emulator.write_sync_line
     """
     main = Span(MAIN)
     stack = [main]

@@ -2,6 +2,7 @@
 //
 //     libmodbus_server        on a pseudo-terminal; prints its path and runs until it is terminated
 //     libmodbus_server tcp    RTU frames over TCP; prints the port and ends when its only client disconnects
+//                            or sends an invalid request
 #include <fcntl.h>
 #include <modbus/modbus.h>
 #include <netinet/in.h>

@@ -45,7 +45,8 @@ bool CutBench::has_unfinished_update(const Contents& contents) const {
 constexpr std::size_t pages_of(std::size_t bytes) { return (bytes + kStoredPage - 1) / kStoredPage; }
 
 /// Returns the number of page writes of the next store if it stores `settings`. Includes the writes that
-/// invalidate old copies (firmware/settings/store.hpp). `contents` must not contain an unfinished update.
+/// invalidate old copies (firmware/settings/store.hpp). If `contents` contain an unfinished update, the
+/// result is for the store after the module has finished this update.
 std::size_t CutBench::pages_of_a_store(const Contents& contents, const Settings& settings) const {
   const StoringModel storing = storing_model(model_);
   const std::size_t place = place_that_counts(storing, contents.data());

@@ -104,7 +104,9 @@ void leave_reply_unread(const std::string& tty, const std::string& command, cons
       there = static_cast<std::size_t>(count);
     }
     EXPECT_EQ(there, reply.size() + 1);
-    visits.emplace(tty);  // not earlier: the program may still have emptied it after an earlier master
+    // If the observation began earlier, it could include the time when the program empties the terminal after
+    // the previous master.
+    visits.emplace(tty);
     close(fd);
   }
   // This function has closed the terminal. Then the program opens and closes it in order to empty it.

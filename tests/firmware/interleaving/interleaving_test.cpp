@@ -12,6 +12,8 @@
 //    store to `dropped_`;
 //  - Uart::rest_, a HandedToInterrupt: it belongs to the main loop until the store to `begun_`, then to the
 //    interrupts until the store to `ended_`;
+//  - the bytes of a reply, to which `rest_` refers: the main loop does not write them from the store to
+//    `begun_` until the store to `ended_`;
 //  - Uart::bit_ and character_: `open` writes them before the UART may interrupt;
 //  - Receiver::protocol_, DconAssembler::checksum_, RtuAssembler::timing_: `listen` writes them before
 //    `open`;

@@ -23,6 +23,7 @@ Outcome of_everything() {
   }
   outcome.counters_to_clear = 0xFF;
   outcome.drive({0x1FFF, 0x0AAA});
+  outcome.drive_for(3, 10);
   outcome.change().address = 0x2A;
   outcome.change().safe_value = 0x1234;
   return outcome;
@@ -34,6 +35,7 @@ void expect_nothing(const Outcome& outcome) {
     EXPECT_FALSE(outcome.asks_for(effect));
   }
   EXPECT_EQ(outcome.outputs_to_drive().mask, 0);
+  EXPECT_EQ(outcome.timed_outputs_to_drive().mask, 0);
   EXPECT_FALSE(outcome.changes_settings());
   const Settings factory = Settings::factory(the_model());
   EXPECT_TRUE(outcome.change().applied_to(factory) == factory);

@@ -116,13 +116,6 @@ TEST(Record, HasTheDocumentedCheck) {
   }
 }
 
-TEST(Record, RecordsThatDifferInOneBitAreNotEqual) {
-  const Record record = record_of(changed_settings());
-  for (std::size_t bit = 0; bit < kRecordBits; ++bit) {
-    EXPECT_FALSE(with_flipped(record, bit) == record) << bit;
-  }
-}
-
 // --- contents that are not settings of the model ---
 
 TEST(Record, ARecordOfAnotherModelIsInvalid) {

@@ -159,7 +159,7 @@ TEST(SettingsStore, RefusedSettingsAreNotUsedWhenAllCopiesAreReadAgain) {
   memory.unanswered_but_done = false;
   EXPECT_FALSE(run.save(numbered(9)));
   for (const std::uint16_t address : memory.writes) {
-    EXPECT_NE(address, kCopies[0]) << "the only good copy";
+    EXPECT_NE(address, kCopies[0]) << "the only copy without refused settings";
   }
   EXPECT_TRUE(Boot(memory).stored() == numbered(5));
 }

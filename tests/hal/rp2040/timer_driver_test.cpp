@@ -171,7 +171,8 @@ TEST(OneShotTimer, FiresAlsoIfAnInterruptDelaysItsStart) {
   }
 }
 
-// If the delay is before the access that sets the alarm, the driver forces the interrupt.
+// If the delay is between the read of the time and the write of the alarm (access 4), the driver forces the
+// interrupt. With each other delay, the alarm fires normally.
 TEST(OneShotTimer, RestartCancelsAPendingInterruptAfterADelayedStart) {
   for (int access = 0; access < 8; ++access) {
     TimerModel model;
