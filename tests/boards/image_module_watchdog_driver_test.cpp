@@ -129,7 +129,7 @@ TEST_P(FaultOnBoard, AStuckEepromBusCausesRefusedStoresButNoReset) {
       module.changes.clear();
       bench.run_for(seconds(2));
       if (doing == Doing::OnTheEepromsBus || doing == Doing::Programming) {
-        // The module refuses the command, because it cannot read back the value.
+        // The module refuses the command, because it can neither write to the EEPROM nor read from it.
         ASSERT_GE(bench.line.heard.size(), 3U);
         EXPECT_TRUE(module.ascii() ? bench.line.heard[0].byte == '?' : bench.line.heard[1].byte == 0x86U);
       }

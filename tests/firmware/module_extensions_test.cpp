@@ -23,7 +23,7 @@ using std::chrono::seconds;
 
 /// A timed output, a filter time and the timeout of the host watchdog may end at most this time too late
 /// (firmware/extensions.md; wire.md section 6).
-constexpr milliseconds kTick{1};
+constexpr milliseconds kLatest{1};
 
 std::uint16_t outputs_of(ModuleBench& bench) { return bench.module().outputs(); }
 
@@ -40,7 +40,7 @@ TEST(TimedOutput, IsSwitchedOffAfterItsTimeNeverEarlyAndAtMost1MsLate) {
     EXPECT_EQ(changes[0].channels, 1U << 5U);
     EXPECT_EQ(changes[1].channels, 0U);
     EXPECT_GE(changes[1].at - changes[0].at, milliseconds(100) * units);
-    EXPECT_LE(changes[1].at - changes[0].at, milliseconds(100) * units + kTick);
+    EXPECT_LE(changes[1].at - changes[0].at, milliseconds(100) * units + kLatest);
   }
 }
 
@@ -55,7 +55,7 @@ TEST(TimedOutput, IsSwitchedOffInTimeWhileSettingsAreStoredOrAReplyIsSent) {
     bench.run(milliseconds(400));
     ASSERT_EQ(changes.size(), 2U) << offset;
     EXPECT_GE(changes[1].at - changes[0].at, milliseconds(300)) << offset;
-    EXPECT_LE(changes[1].at - changes[0].at, milliseconds(300) + kTick) << offset;
+    EXPECT_LE(changes[1].at - changes[0].at, milliseconds(300) + kLatest) << offset;
   }
 }
 
@@ -100,7 +100,7 @@ TEST(InputFilter, ALevelCountsAfterItsTimeNeverEarlyAndAtMost1MsLate) {
     bench.run(milliseconds(time));
     const State& state = bench.module().module().state();
     EXPECT_EQ(state.inputs.levels(), 0) << time;
-    bench.run(kTick);
+    bench.run(kLatest);
     EXPECT_EQ(state.inputs.levels(), 1U << 3U) << time;
   }
 }
@@ -150,7 +150,7 @@ TEST(FedByRequests, ARequestRestartsTheHostWatchdogAtItsEnd) {
   bench.run(seconds(1));
   ASSERT_EQ(changes.size(), 1U);
   EXPECT_GE(changes[0].at - fed, milliseconds(500));
-  EXPECT_LE(changes[0].at - fed, milliseconds(500) + kTick);
+  EXPECT_LE(changes[0].at - fed, milliseconds(500) + kLatest);
 }
 
 // The second request ends less than a millisecond before or after the time at which the watchdog expires.

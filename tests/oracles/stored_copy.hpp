@@ -214,7 +214,7 @@ class StoredCopy {
     for (std::size_t channel = 0; channel < found.filters.size(); ++channel) {
       extensions = extensions && found.filters[channel] <= (channel < model_.inputs ? 2000 : 0);
     }
-    // Bits 7 and 6 are the line format; all four formats exist.
+    // Bits 7 and 6 of the baud code are the line format; all four formats exist.
     const unsigned rate = found.baud_code % 0x40U;
     return extensions && name && protocol && watchdog && rate >= 0x03 && rate <= 0x0A &&
            (found.format & 0x3FU) == 0 && ((found.power_on_value | found.safe_value) & beyond) == 0;

@@ -232,9 +232,9 @@ TEST(ModuleWatchdog, ASlowMainLoopFeedsItInTheNextTurnAtTheLatest) {
   }
 }
 
-// --- the host watchdog: never early, and at most one tick of 1 ms late ---
+// --- the host watchdog: never early, and at most 1 ms late (wire.md section 6) ---
 
-constexpr std::uint32_t kTick = 1'000;
+constexpr std::uint32_t kLatest = 1'000;
 
 Settings running(std::uint8_t tenths) {
   Settings settings;
@@ -262,7 +262,7 @@ TEST(HostWatchdog, ExpiresAfterEveryTimeoutAndNeverEarlier) {
       const std::uint32_t timeout = tenths * 100'000;
       EXPECT_FALSE(watchdog.expired(settings, start));
       EXPECT_FALSE(watchdog.expired(settings, start + Duration(timeout - 1))) << tenths;
-      EXPECT_TRUE(watchdog.expired(settings, start + Duration(timeout + kTick))) << tenths;
+      EXPECT_TRUE(watchdog.expired(settings, start + Duration(timeout + kLatest))) << tenths;
     }
   }
 }
@@ -273,7 +273,7 @@ TEST(HostWatchdog, ExpiryReturnsTheTimeOfTheTimeout) {
     watchdog.restart(start);
     const Deadline expiry = watchdog.expiry(running(10));
     EXPECT_GE(expiry.remaining(start).microseconds(), 1'000'000U);
-    EXPECT_LE(expiry.remaining(start).microseconds(), 1'000'000U + kTick);
+    EXPECT_LE(expiry.remaining(start).microseconds(), 1'000'000U + kLatest);
     EXPECT_GE(expiry.remaining(ms(start, 999)).microseconds(), 1'000U);
     EXPECT_EQ(expiry.remaining(ms(start, 1'500)).microseconds(), 0U);
   }
@@ -285,7 +285,7 @@ TEST(HostWatchdog, ARestartStartsTheFullTimeoutAgain) {
     watchdog.restart(start);
     watchdog.restart(ms(start, 99));
     EXPECT_FALSE(watchdog.expired(running(1), ms(start, 198)));
-    EXPECT_TRUE(watchdog.expired(running(1), ms(start, 199) + Duration(kTick)));
+    EXPECT_TRUE(watchdog.expired(running(1), ms(start, 199) + Duration(kLatest)));
   }
 }
 
@@ -295,7 +295,7 @@ TEST(HostWatchdog, ARestartLaterThanTheTimeOfTheMainLoopCausesNoExpiry) {
       HostWatchdog watchdog;
       watchdog.restart(start + Duration(ahead));
       EXPECT_FALSE(watchdog.expired(running(1), start)) << ahead;
-      EXPECT_TRUE(watchdog.expired(running(1), start + Duration(ahead + 100'000 + kTick))) << ahead;
+      EXPECT_TRUE(watchdog.expired(running(1), start + Duration(ahead + 100'000 + kLatest))) << ahead;
     }
   }
 }
@@ -314,7 +314,7 @@ TEST(HostWatchdog, ANewTimeoutCountsFromTheLastRestart) {
   HostWatchdog watchdog;
   watchdog.restart(Time(0));
   EXPECT_FALSE(watchdog.expired(running(100), ms(Time(0), 5'000)));
-  EXPECT_TRUE(watchdog.expired(running(50), ms(Time(0), 5'000) + Duration(kTick)));
+  EXPECT_TRUE(watchdog.expired(running(50), ms(Time(0), 5'000) + Duration(kLatest)));
 }
 
 }  // namespace

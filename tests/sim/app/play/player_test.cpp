@@ -90,5 +90,11 @@ TEST(Player, RefusesAFileWithAnInvalidStepOrHeader) {
   EXPECT_FALSE(loads("source: x\nmodel: EX1\n\n> $01M\n"));
 }
 
+TEST(Player, RefusesAVariableThatIsNotDefinedOrIsDefinedTwice) {
+  EXPECT_TRUE(loads("source: x\nmodel: EX9042D A=M\n\n> $01{A}\n"));
+  EXPECT_FALSE(loads("source: x\nmodel: EX9042D A=M\n\n> $01{B}\n"));
+  EXPECT_FALSE(loads("source: x\nmodel: EX9042D A=M A=F\n\n> $01{A}\n"));
+}
+
 }  // namespace
 }  // namespace ex9000::runner

@@ -317,6 +317,9 @@ TEST(Play, RefusesAFileWithoutValidSteps) {
       << "/dev/zero has no end";
   EXPECT_NE(played(directory.path(), true).find("contains no file that ends with .txt; name a transcript"),
             std::string::npos);
+  std::filesystem::create_directory(directory / "folder.txt");  // not a file
+  EXPECT_NE(played(directory.path(), true).find("contains no file that ends with .txt; name a transcript"),
+            std::string::npos);
   write_file(directory / "empty.txt", "; nothing\n");
   EXPECT_NE(played(directory / "empty.txt", true).find("has no step; add one"), std::string::npos);
   write_file(directory / "wrong.txt", "> $01M\nwiat 1s\n");

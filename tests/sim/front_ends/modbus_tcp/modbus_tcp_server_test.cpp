@@ -204,6 +204,24 @@ TEST_F(ModbusTcpServerTest, TheServerDoesNotReadWhileTheLineAcceptsNoMoreBytes) 
   EXPECT_EQ(receive(client, 11), reply(2));
 }
 
+TEST_F(ModbusTcpServerTest, TheServerReadsFromNoClientAfterOneHasFilledTheLine) {
+  tcp::socket first = connect();
+  tcp::socket second = connect();
+  send(first, request(1));
+  send(second, request(2));
+  wait_for_arrival(24);  // both clients are connected, and the server waits for their next bytes
+  io_.poll();
+  full_ = true;
+  send(first, request(3));
+  wait_for_arrival(36);
+  send(second, request(4));
+  io_.poll();
+  EXPECT_EQ(arrived_, 36U);
+  full_ = false;
+  server_.resume();
+  wait_for_arrival(48);
+}
+
 TEST_F(ModbusTcpServerTest, WaitingBytesAreReadWithoutTheIoContext) {
   tcp::socket client = connect();
   send(client, request(1));

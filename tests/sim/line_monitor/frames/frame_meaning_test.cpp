@@ -220,6 +220,11 @@ TEST(ModbusMeaning, AnExceptionReplyIsShownWithItsCode) {
   EXPECT_TRUE(has(text, "exception 04")) << text;
 }
 
+TEST(ModbusMeaning, AFunctionWithTheExceptionBitIsAnExceptionOnlyInAReplyOfFiveBytes) {
+  EXPECT_TRUE(has(of_request(FrameBytes{0x01, 0x81, 0x00, 0x00, 0x00, 0x01}), "function 81"));
+  EXPECT_FALSE(has(of_reply(FrameBytes{0x01, 0x81}), "exception"));
+}
+
 TEST(ModbusMeaning, ANormalReplyIsNamedAsAReply) {
   EXPECT_EQ(of_reply(FrameBytes{0x01, 0x01, 0x02, 0x07, 0x00}), "01: Read Coils, reply");
 }
