@@ -150,8 +150,8 @@ class Device {
     board_.line.send(reply);
   }
 
-  /// Returns whether the tick or the wake timer has fired since the last call, or whether an event was
-  /// already due at the end of the last pass. Also returns true in the first pass.
+  /// Returns whether the tick has occurred or the wake timer has expired since the last call, or whether an
+  /// event was already due at the end of the last pass. Also returns true in the first pass.
   bool panel_is_due() {
     const std::uint32_t times_due = times_due_.load();
     const bool due = due_now_ || times_due != times_seen_;
@@ -212,7 +212,7 @@ class Device {
   std::uint32_t wakes_seen_ = 0;
   std::uint32_t times_seen_ = 0;  ///< the value of `times_due_` that has been processed
   WrittenByInterrupt<std::uint32_t> wakes_;
-  WrittenByInterrupt<std::uint32_t> times_due_;  ///< number of times the tick or the wake timer has fired
+  WrittenByInterrupt<std::uint32_t> times_due_;  ///< number of ticks and of expiries of the wake timer
   Module module_;
 };
 

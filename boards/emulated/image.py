@@ -61,6 +61,8 @@ def _segments(file: bytes) -> Iterator[Segment]:
     for index in range(count):
         kind, offset, address, stored_at, stored = struct.unpack_from("<5I", file, headers + index * size)
         if kind == _LOADED and stored != 0:
+            if offset + stored > len(file):
+                raise struct.error("a segment ends beyond the end of the file")
             yield Segment(address, stored_at, file[offset : offset + stored])
 
 

@@ -67,7 +67,6 @@ void SettingsStore::begin_reading(Step step) {
   step_ = step;
   blank_places_ = 0;
   bad_copy_ = false;
-  place_unread_ = false;
   current_place_ = kNoPlace;
   old_copies_ = 0;
   silent_ = false;
@@ -104,7 +103,9 @@ void SettingsStore::read_page(bool ok) {
   if (!blank && !stored && !place.old) {
     bad_copy_ = true;
   }
-  place_unread_ = place_unread_ || !ok;
+  if (!ok) {
+    unread_places_ |= bit(place_);
+  }
   if (stored) {
     take_copy(*stored);
   }
@@ -162,6 +163,14 @@ SettingsStore::Source SettingsStore::source_of_settings() const {
   return bad_copy_ ? Source::OneCopyBad : Source::Good;
 }
 
+bool SettingsStore::place_unread() const {
+  unsigned newer = 0;  // the places whose copy could be newer than the current copy
+  for (std::size_t place = 0; found_ == Found::Settings && place < kPlaces.size(); ++place) {
+    newer |= !kPlaces[place].old || kPlaces[current_place_].old ? bit(place) : 0U;
+  }
+  return (unread_places_ & newer) != 0;
+}
+
 // --- writing ---
 
 void SettingsStore::begin_saving(const Settings& settings) {
@@ -216,7 +225,7 @@ void SettingsStore::retry_or_give_up() {
 
 void SettingsStore::finish_writing() {
   found_ = Found::Settings;
-  place_unread_ = false;
+  unread_places_ &= ~bit(place_);
   current_place_ = place_;
   ++edition_.sequence;
   edition_.layout = kLayout;

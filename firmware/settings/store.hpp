@@ -90,9 +90,9 @@ class SettingsStore {
     return found_ == Found::Settings && old_copies_ != 0 && !kPlaces[current_place_].old;
   }
 
-  /// Returns whether the memory did not answer at a place while the settings were loaded. A later reset may
-  /// find a newer copy at this place. Returns false after a successful save, which overwrites such a copy.
-  [[nodiscard]] bool place_unread() const { return place_unread_; }
+  /// Returns whether the memory did not answer at a place while the settings were loaded, and a later reset
+  /// may find a copy there that is newer than the current copy. A successful save overwrites one such place.
+  [[nodiscard]] bool place_unread() const;
 
   /// Returns whether a reset now could load a copy that must not be used: the copy of a failed save, or a
   /// copy of an older layout.
@@ -146,7 +146,7 @@ class SettingsStore {
   bool silent_ = false;                  ///< the memory did not answer the last read at the place before
   std::uint8_t blank_places_ = 0;
   bool bad_copy_ = false;                 ///< a place of this layout is not blank and has no good copy
-  bool place_unread_ = false;             ///< result of `place_unread()`
+  unsigned unread_places_ = 0;            ///< places that did not answer while loading; bit n is place n
   std::size_t current_place_ = kNoPlace;  ///< place of the current copy, the newest good one; or kNoPlace
   unsigned old_copies_ = 0;               ///< bit n: place n holds a good copy of an older layout
   unsigned copies_to_invalidate_ = 0;     ///< bit n: the copy at place n must be invalidated

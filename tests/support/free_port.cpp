@@ -34,7 +34,8 @@ std::uint16_t free_port() {
       return static_cast<std::uint16_t>(port);
     }
   }
-  throw std::runtime_error("no TCP port is free");
+  throw std::runtime_error(
+      "127.0.0.1: no TCP port from 10000 to 31999 is free; end programs that use these ports");
 }
 
 }  // namespace ex9000::system

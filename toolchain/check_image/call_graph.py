@@ -20,7 +20,8 @@ class NotACallGraph(Exception):
 @dataclass(frozen=True)
 class Title:
     """The name of a function in a call graph. GCC writes the source file of the translation unit before the name of a
-    function that is static, inline or an instance of a template."""
+    function that is local to the unit, inline or an instance of a template. With -fwhole-program, a function is local
+    unless it is `main` or has the attribute `externally_visible`."""
 
     file: str  # empty for other functions
     name: str

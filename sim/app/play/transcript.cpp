@@ -6,7 +6,6 @@
 #include <fstream>
 #include <map>
 #include <optional>
-#include <regex>
 #include <string_view>
 
 #include "sim/files_and_ports/files/regular_file.hpp"
@@ -83,9 +82,13 @@ std::string substitute(std::string text, const Variables& variables) {
       text.replace(at, pattern.size(), value);
     }
   }
-  static const std::regex kName("\\{([A-Za-z_][A-Za-z_0-9]*)\\}");
-  if (std::smatch unknown; std::regex_search(text, unknown, kName)) {
-    fail("'" + unknown.str() + "': unknown variable; add " + unknown.str(1) + "=VALUE to the 'model:' line");
+  constexpr std::string_view kLetters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz_0123456789";
+  for (auto at = text.find('{'); at != std::string::npos; at = text.find('{', at + 1)) {
+    const auto end = text.find_first_not_of(kLetters, at + 1);
+    if (end != std::string::npos && end != at + 1 && text[end] == '}') {
+      const std::string name = text.substr(at + 1, end - at - 1);
+      fail("'{" + name + "}': unknown variable; add " + name + "=VALUE to the 'model:' line");
+    }
   }
   return text;
 }

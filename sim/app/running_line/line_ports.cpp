@@ -34,8 +34,10 @@ void LinePorts::report_dropped(const Port& port, std::size_t bytes) {
     full_.erase(known);
   } else if (bytes != 0 && known == full_.end()) {
     full_.push_back(&port);
-    notice_("a port is full: " + std::to_string(bytes) +
-            " bytes are dropped; all later bytes are dropped too until its master reads");
+    notice_(port.is_a_line()
+                ? "the serial port is full: " + std::to_string(bytes) + " bytes are dropped"
+                : "a port is full: " + std::to_string(bytes) +
+                      " bytes are dropped; all later bytes are dropped too until its master reads");
   }
 }
 

@@ -165,7 +165,9 @@ void SerialPort::write_out() {
   if (echo_) {
     echo_->sent({held_back_.data(), sent}, OwnEcho::Clock::now());
   }
-  dropped_ += held_back_.size() - sent;
+  if (written >= 0 || errno == EAGAIN) {  // after another error, reading fails too
+    dropped_ += held_back_.size() - sent;
+  }
   held_back_.clear();
 }
 

@@ -45,14 +45,15 @@ void remove_stale(boost::asio::io_context& io, const std::string& path, const Cl
   Local::socket visitor(io);
   boost::system::error_code error;
   visitor.open(Local(), error);
-  visitor.non_blocking(true,
-                       error);  // otherwise connect could wait for a program that accepts no connections
-  visitor.connect(Local::endpoint(path), error);
-  if (error == boost::asio::error::would_block) {
-    refuse(path, in_use);
+  if (!error) {
+    visitor.non_blocking(true, error);  // otherwise connect could wait for a program that accepts nothing
+  }
+  if (!error) {
+    visitor.connect(Local::endpoint(path), error);
   }
   if (error != boost::asio::error::connection_refused) {
-    refuse(path, error ? error.message() + "; name another path" : in_use);
+    const bool listens = !error || error == boost::asio::error::no_buffer_space;  // Asio's code for EAGAIN
+    refuse(path, listens ? in_use : error.message() + "; name another path");
   }
   unlink(path.c_str());
 }

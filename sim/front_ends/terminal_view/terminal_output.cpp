@@ -74,16 +74,13 @@ Screen TerminalOutput::screen() const {
 void TerminalOutput::write(const std::string& text) {
   waiting_ += text;
   flush();
-  while (waiting_.size() > kMostWaiting) {
+  while (waiting_.size() > kMostWaiting && !gives_up_()) {
     // A signal that another thread receives does not interrupt poll(), so poll() has a time limit, in
     // milliseconds.
     constexpr int kAskEvery = 100;
     pollfd ready{fd_, POLLOUT, 0};
     poll(&ready, 1, kAskEvery);
     flush();
-    if (gives_up_()) {
-      return;
-    }
   }
 }
 

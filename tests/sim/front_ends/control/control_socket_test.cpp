@@ -398,6 +398,24 @@ TEST(ControlSocket, ADatagramSocketAtThePathIsRefusedAndNotRemoved) {
   close(datagrams);
 }
 
+TEST(ControlSocket, AProgramThatListensButAcceptsNothingIsNotReplaced) {
+  const Directory directory;
+  const int listener = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  (directory / "busy").copy(address.sun_path, sizeof address.sun_path - 1);
+  const auto* name = reinterpret_cast<const sockaddr*>(&address);
+  ASSERT_EQ(bind(listener, name, sizeof address), 0);
+  ASSERT_EQ(listen(listener, 0), 0);
+  const int waiting = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  ASSERT_EQ(connect(waiting, name, sizeof address), 0);  // the queue of connections is full now
+  const Finished finished = run({simulator_path(), "EX9055D", "--control", "busy"}, directory.path());
+  EXPECT_EQ(finished.status, 2);
+  EXPECT_NE(finished.error.find("busy: another program listens there"), std::string::npos) << finished.error;
+  close(waiting);
+  close(listener);
+}
+
 TEST(ControlSocket, APathThatCannotBeCreatedIsRefusedAndNoFileRemains) {
   const Directory directory;
   for (const std::string& path : {std::string("missing/control"), std::string("/proc/control"),
