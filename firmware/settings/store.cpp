@@ -164,9 +164,14 @@ SettingsStore::Source SettingsStore::source_of_settings() const {
 }
 
 bool SettingsStore::place_unread() const {
-  unsigned newer = 0;  // the places whose copy could be newer than the current copy
-  for (std::size_t place = 0; found_ == Found::Settings && place < kPlaces.size(); ++place) {
-    newer |= !kPlaces[place].old || kPlaces[current_place_].old ? bit(place) : 0U;
+  if (found_ != Found::Settings) {
+    return unread_places_ != 0;
+  }
+  // Every copy of this layout is newer than a copy of an older layout.
+  const bool current_is_old = kPlaces[current_place_].old;
+  unsigned newer = 0;
+  for (std::size_t place = 0; place < kPlaces.size(); ++place) {
+    newer |= current_is_old || !kPlaces[place].old ? bit(place) : 0U;
   }
   return (unread_places_ & newer) != 0;
 }

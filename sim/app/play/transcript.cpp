@@ -87,7 +87,7 @@ std::string substitute(std::string text, const Variables& variables) {
     const auto end = text.find_first_not_of(kLetters, at + 1);
     if (end != std::string::npos && end != at + 1 && text[end] == '}') {
       const std::string name = text.substr(at + 1, end - at - 1);
-      fail("'{" + name + "}': unknown variable; add " + name + "=VALUE to the 'model:' line");
+      fail("'{" + name + "}': unknown variable; add its value to the 'model:' line");
     }
   }
   return text;

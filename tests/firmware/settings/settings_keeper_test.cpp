@@ -289,6 +289,34 @@ TEST(SettingsKeeperAtReset, StoredSettingsAreUncertainIfOneCopyCouldNotBeReadUnt
   EXPECT_TRUE(Boot(memory).stored() == numbered(6));
 }
 
+/// Loads from `memory`, which does not answer at `place`. The places before it must be blank or readable with
+/// one read each.
+void load_without(SettingsKeeper& keeper, FakeMemory& memory, std::size_t place) {
+  for (std::size_t job = 0; keeper.busy(); ++job) {
+    memory.failing_reads = job == place ? kAttempts : memory.failing_reads;
+    keeper.done(memory.run(keeper.job()).value_or(false));
+  }
+}
+
+TEST(SettingsKeeperAtReset, AnUnreadPlaceOfAnOlderLayoutMattersOnlyIfTheCurrentCopyIsAlsoOld) {
+  constexpr std::size_t kFirstOldPlace = 2;
+  FakeMemory updating;
+  put_old(updating, 0, numbered(5), 8);
+  put_old(updating, 1, numbered(6), 7);
+  SettingsKeeper old(the_model());
+  load_without(old, updating, kFirstOldPlace);
+  ASSERT_TRUE(old.stored() == numbered(6));
+  EXPECT_FALSE(old.certain());
+
+  FakeMemory updated;
+  put(updated, 0, numbered(7), 9);
+  put_old(updated, 0, numbered(5), 8);
+  SettingsKeeper recent(the_model());
+  load_without(recent, updated, kFirstOldPlace);
+  ASSERT_TRUE(recent.stored() == numbered(7));
+  EXPECT_TRUE(recent.certain());
+}
+
 TEST_F(SettingsKeeperTest, ACommandIsStoredWithoutWaitingForTheNextRetry) {
   keeper_.settings_changed();
   memory_.unanswered_writes = 4;
