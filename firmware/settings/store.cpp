@@ -103,9 +103,7 @@ void SettingsStore::read_page(bool ok) {
   if (!blank && !stored && !place.old) {
     bad_copy_ = true;
   }
-  if (!ok) {
-    unread_places_ |= bit(place_);
-  }
+  unread_places_ = ok ? unread_places_ & ~bit(place_) : unread_places_ | bit(place_);
   if (stored) {
     take_copy(*stored);
   }

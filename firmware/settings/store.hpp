@@ -146,7 +146,7 @@ class SettingsStore {
   bool silent_ = false;                  ///< the memory did not answer the last read at the place before
   std::uint8_t blank_places_ = 0;
   bool bad_copy_ = false;                 ///< a place of this layout is not blank and has no good copy
-  unsigned unread_places_ = 0;            ///< places that did not answer while loading; bit n is place n
+  unsigned unread_places_ = 0;            ///< places whose last read got no answer; bit n is place n
   std::size_t current_place_ = kNoPlace;  ///< place of the current copy, the newest good one; or kNoPlace
   unsigned old_copies_ = 0;               ///< bit n: place n holds a good copy of an older layout
   unsigned copies_to_invalidate_ = 0;     ///< bit n: the copy at place n must be invalidated

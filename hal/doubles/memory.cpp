@@ -18,8 +18,7 @@ void Memory::begin(bool writing, std::uint16_t address, std::size_t size) {
   constexpr std::int64_t kAddressing = 4;
   writing_ = writing;
   address_ = address;
-  began_ = clock_.virtual_now();
-  ends_ = began_ + kByteOnBus * (static_cast<std::int64_t>(size) + kAddressing) +
+  ends_ = clock_.virtual_now() + kByteOnBus * (static_cast<std::int64_t>(size) + kAddressing) +
           (writing ? kProgram : VirtualTime(0));
 }
 

@@ -71,7 +71,6 @@ class Memory {
   std::uint16_t address_ = 0;
   Bytes source_;
   MutableBytes destination_;
-  VirtualTime began_{0};
   VirtualTime ends_ = kNever;
   std::uint64_t writes_ = 0;
 };

@@ -257,7 +257,7 @@ TEST_F(SettingsKeeperTest, StoredSettingsAreUncertainUntilARefusedCopyIsInvalida
   EXPECT_TRUE(keeper_.certain());
 }
 
-TEST(SettingsKeeperAtReset, StoredSettingsAreUncertainIfTheMemoryDidNotAnswer) {
+TEST(SettingsKeeperAtReset, StoredSettingsAreUncertainIfTheMemoryDidNotAnswerUntilTheyAreStored) {
   FakeMemory memory;
   memory.failing_reads = kReadsOfASilentMemory;
   SettingsKeeper keeper(the_model());
@@ -266,6 +266,11 @@ TEST(SettingsKeeperAtReset, StoredSettingsAreUncertainIfTheMemoryDidNotAnswer) {
   }
   EXPECT_TRUE(keeper.stored() == factory());
   EXPECT_FALSE(keeper.certain());
+  keeper.save(factory(), Time(1000));
+  while (keeper.busy()) {
+    keeper.done(memory.run(keeper.job()).value_or(false));
+  }
+  EXPECT_TRUE(keeper.certain());
 }
 
 // The copy that could not be read may be the newer one, and a later reset may load it.
