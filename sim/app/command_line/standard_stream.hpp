@@ -1,18 +1,18 @@
 // Writes to standard output and standard error.
 #pragma once
 
-#include <functional>
 #include <string>
+
+#include "sim/files_and_ports/files/wait_for_room.hpp"
 
 namespace ex9000::sim {
 
 /// A standard stream without a buffer, because a log is read while it grows. One thread at a time may use it.
 class StandardStream {
  public:
-  /// `file`: STDOUT_FILENO or STDERR_FILENO. `name`: name of the stream in messages. `gives_up`: returns
-  /// whether to stop waiting for a reader that does not read; must not throw.
+  /// `file`: STDOUT_FILENO or STDERR_FILENO. `name`: name of the stream in messages.
   StandardStream(
-      int file, std::string name, std::function<bool()> gives_up = [] { return false; });
+      int file, std::string name, GivesUp gives_up = [] { return false; });
 
   /// Writes `text`. If the stream accepts no output, for example because a pipe is full, blocks until the
   /// reader reads or closes the pipe, or until `gives_up` returns true. Returns false if `gives_up` has
@@ -21,11 +21,9 @@ class StandardStream {
   bool write(const std::string& text);
 
  private:
-  [[nodiscard]] bool wait_for_room() const;
-
   int file_;
   std::string name_;
-  std::function<bool()> gives_up_;
+  GivesUp gives_up_;
   bool ended_ = false;  ///< texts are discarded
 };
 

@@ -153,7 +153,7 @@ void RunningProgram::open_capture() {
     refuse_overwriting(*setup_.capture, in_use_by(setup_));
   });
   made_.emplace_back(*setup_.capture, is_there(*setup_.capture));
-  capture_ = std::make_unique<Capture>(*setup_.capture, place);
+  capture_ = std::make_unique<Capture>(*setup_.capture, place, [this] { return stop_signals_.arrived(); });
 }
 
 /// Carries out a command of the control socket or of the panel. Before the command, advances all paced lines

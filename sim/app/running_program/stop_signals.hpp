@@ -1,6 +1,7 @@
 // The signals that ask the program to end.
 #pragma once
 
+#include <atomic>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/signal_set.hpp>
 
@@ -19,13 +20,14 @@ class StopSignals {
   StopSignals(const StopSignals&) = delete;
   StopSignals& operator=(const StopSignals&) = delete;
 
-  /// Returns whether one of these signals has arrived since construction. Does not block.
+  /// Returns whether one of these signals has arrived since construction. Does not block. Several threads may
+  /// call this at the same time.
   bool arrived();
 
  private:
   boost::asio::io_context io_;
   boost::asio::signal_set signals_;
-  bool arrived_ = false;
+  std::atomic<bool> arrived_ = false;
 };
 
 }  // namespace ex9000::sim

@@ -5,7 +5,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <climits>
 #include <stdexcept>
 #include <utility>
 
@@ -13,8 +15,8 @@
 
 namespace ex9000::sim {
 
-CaptureFile::CaptureFile(std::string path, const std::string& place)
-    : path_(std::move(path)), where_(place + path_) {
+CaptureFile::CaptureFile(std::string path, const std::string& place, GivesUp gives_up)
+    : path_(std::move(path)), where_(place + path_), gives_up_(std::move(gives_up)) {
   // Without O_NONBLOCK, open would wait until a pipe has a reader.
   constexpr int kFlags = O_WRONLY | O_CLOEXEC | O_NONBLOCK;
   constexpr mode_t kAsUmaskPermits = 0666;
@@ -52,8 +54,15 @@ void CaptureFile::begin() {
 
 void CaptureFile::append(const std::vector<std::uint8_t>& block) {
   const off_t before = regular_ ? lseek(fd_, 0, SEEK_CUR) : 0;
-  for (std::size_t done = 0; done < block.size();) {
-    const ssize_t written = write(fd_, block.data() + done, block.size() - done);
+  for (std::size_t done = 0; done < block.size() && !given_up_;) {
+    if (!wait_for_room(fd_, gives_up_)) {
+      given_up_ = true;
+      return;
+    }
+    // A pipe that has room accepts PIPE_BUF bytes without blocking.
+    const std::size_t piece =
+        regular_ ? block.size() - done : std::min<std::size_t>(block.size() - done, PIPE_BUF);
+    const ssize_t written = write(fd_, block.data() + done, piece);
     if (written < 0 && errno != EINTR) {
       const std::string why = reason();
       if (regular_ && ftruncate(fd_, before) != 0) {

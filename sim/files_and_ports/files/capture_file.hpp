@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "sim/files_and_ports/files/wait_for_room.hpp"
+
 namespace ex9000::sim {
 
 /// A regular file, a pipe with a reader, or a device.
@@ -14,7 +16,8 @@ class CaptureFile {
   /// std::invalid_argument with a one-line message if the file is not writable, if it is a regular file that
   /// another simulator uses, or if it is a pipe without a reader. All messages begin with `place` and the
   /// path.
-  CaptureFile(std::string path, const std::string& place);
+  CaptureFile(
+      std::string path, const std::string& place, GivesUp gives_up = [] { return false; });
   /// Removes the file if the constructor has created it and `begin` has not been called.
   ~CaptureFile();
   CaptureFile(const CaptureFile&) = delete;
@@ -24,7 +27,8 @@ class CaptureFile {
   void begin();
   /// Writes the block to the kernel, without a buffer in the program: blocks that were written stay in the
   /// file even if the program is killed. If a write to a regular file fails, removes the incomplete block. If
-  /// that fails too, the message says so. Waits while a pipe is full. Throws std::runtime_error with a
+  /// that fails too, the message says so. Blocks while a pipe is full, until `gives_up` returns true. The
+  /// file then discards the rest of this block and all later blocks. Throws std::runtime_error with a
   /// one-line message if the write fails, for example because the disk is full or the reader has closed the
   /// pipe.
   void append(const std::vector<std::uint8_t>& block);
@@ -34,10 +38,12 @@ class CaptureFile {
 
   std::string path_;
   std::string where_;  ///< place and path, for messages
+  GivesUp gives_up_;
   int fd_ = -1;
   bool regular_ = false;
   bool made_ = false;
   bool begun_ = false;
+  bool given_up_ = false;
 };
 
 }  // namespace ex9000::sim

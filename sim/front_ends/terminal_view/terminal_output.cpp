@@ -1,7 +1,6 @@
 #include "sim/front_ends/terminal_view/terminal_output.hpp"
 
 #include <fcntl.h>
-#include <poll.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
 
@@ -45,8 +44,7 @@ bool names_utf8(const std::string& locale) {
   return plain.find("utf8") != std::string::npos;
 }
 
-TerminalOutput::TerminalOutput(int descriptor, std::function<bool()> gives_up)
-    : gives_up_(std::move(gives_up)) {
+TerminalOutput::TerminalOutput(int descriptor, GivesUp gives_up) : gives_up_(std::move(gives_up)) {
   if (isatty(descriptor) != 0 && environment("TERM") != "dumb") {
     const std::string terminal = "/proc/self/fd/" + std::to_string(descriptor);
     fd_ = open(terminal.c_str(), O_WRONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
@@ -74,12 +72,7 @@ Screen TerminalOutput::screen() const {
 void TerminalOutput::write(const std::string& text) {
   waiting_ += text;
   flush();
-  while (waiting_.size() > kMostWaiting && !gives_up_()) {
-    // A signal that another thread receives does not interrupt poll(), so poll() has a time limit, in
-    // milliseconds.
-    constexpr int kAskEvery = 100;
-    pollfd ready{fd_, POLLOUT, 0};
-    poll(&ready, 1, kAskEvery);
+  while (waiting_.size() > kMostWaiting && wait_for_room(fd_, gives_up_)) {
     flush();
   }
 }

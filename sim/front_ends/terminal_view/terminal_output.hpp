@@ -1,9 +1,9 @@
 // The terminal on standard output, or on another descriptor.
 #pragma once
 
-#include <functional>
 #include <string>
 
+#include "sim/files_and_ports/files/wait_for_room.hpp"
 #include "sim/front_ends/terminal_view/terminal.hpp"
 
 namespace ex9000::sim {
@@ -17,10 +17,9 @@ bool names_utf8(const std::string& locale);
 /// shell.
 class TerminalOutput final : public Terminal {
  public:
-  /// Opens the terminal of `descriptor`, which remains open. `gives_up`: returns whether to stop waiting for
-  /// a terminal that accepts no output; must not throw.
+  /// Opens the terminal of `descriptor`, which remains open.
   explicit TerminalOutput(
-      int descriptor, std::function<bool()> gives_up = [] { return false; });
+      int descriptor, GivesUp gives_up = [] { return false; });
   /// Writes as much output as the terminal accepts without blocking, and discards the rest.
   ~TerminalOutput() override;
   TerminalOutput(const TerminalOutput&) = delete;
@@ -43,7 +42,7 @@ class TerminalOutput final : public Terminal {
   static constexpr int kClosed = -1;  ///< the result of open(2) after an error
   int fd_ = kClosed;
   std::string waiting_;
-  std::function<bool()> gives_up_;
+  GivesUp gives_up_;
 };
 
 }  // namespace ex9000::sim

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <mutex>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "sim/files_and_ports/files/capture_file.hpp"
@@ -24,7 +25,9 @@ constexpr std::uint16_t kCapturedModulesPort = 9000;
 class Capture {
  public:
   /// Opens the file; see CaptureFile. All functions may throw the exceptions of CaptureFile.
-  Capture(std::string path, const std::string& place) : file_(std::move(path), place) {}
+  Capture(
+      std::string path, const std::string& place, GivesUp gives_up = [] { return false; })
+      : file_(std::move(path), place, std::move(gives_up)) {}
 
   /// Replaces the content of the file with an empty capture. Call this first.
   void begin();

@@ -125,6 +125,29 @@ TEST(Program, ASignalEndsTheProgramIfThePipeOfItsLogIsFull) {
   }
 }
 
+TEST(Program, ASignalEndsTheProgramIfThePipeOfItsCaptureIsFull) {
+  for (const std::string threads : {"1", "2"}) {
+    const Directory directory;
+    ASSERT_EQ(mkfifo((directory / "fifo").c_str(), 0600), 0);
+    const int pipe = open((directory / "fifo").c_str(), O_RDWR | O_CLOEXEC);
+    ASSERT_GE(pipe, 0);
+    write_file(directory / "bus.json", R"({"lines": [
+      {"tcp": 0, "line": "instant", "modules": [{"model": "EX9042D", "address": "01"}]},
+      {"pty": ")" + (directory / "link") + R"(", "modules": [{"model": "EX9042D", "address": "01"}]}]})");
+    SimulatorProcess simulator(
+        {directory / "bus.json", "--threads", threads, "--capture", directory / "fifo"});
+    SocketClient master(simulator.tcp_port());
+    std::string requests;
+    for (int i = 0; i < 4000; ++i) {
+      requests += "$01M\r";
+    }
+    master.send(requests);
+    ASSERT_TRUE(wait_until_full(pipe));
+    EXPECT_EQ(simulator.end(SIGTERM), 0) << threads;
+    close(pipe);
+  }
+}
+
 TEST(Program, ASignalEndsTheProgramIfItsGreetingIsNotRead) {
   for (const std::string log : {"off", "json"}) {  // with json, the greeting is on standard error
     const Directory directory;
