@@ -92,10 +92,10 @@ bool Faults::remove(std::size_t number) {
   if (found == armed_.end()) {
     return false;
   }
-  const bool was_late = found->fault.trouble == Trouble::LateReply;
+  const Fault removed = found->fault;
   armed_.erase(found);
-  if (was_late) {
-    release_late_replies();
+  if (removed.trouble == Trouble::LateReply) {
+    release_late_replies(removed.module);
   }
   change();
   act();
@@ -104,14 +104,17 @@ bool Faults::remove(std::size_t number) {
 
 void Faults::remove_all() {
   armed_.clear();
-  release_late_replies();
+  release_late_replies(std::nullopt);
   change();
   act();
 }
 
-void Faults::release_late_replies() {
-  for (const auto& module : modules_) {
-    module->release_late_replies();
+/// Sends the late replies of `only` now, or those of all modules if it is nullopt.
+void Faults::release_late_replies(std::optional<std::size_t> only) {
+  for (std::size_t i = 0; i < modules_.size(); ++i) {
+    if (only.value_or(i) == i) {
+      modules_[i]->release_late_replies();
+    }
   }
 }
 

@@ -95,7 +95,7 @@ class Faults final : public Station {
   void written(std::size_t module);
   void begin(Armed& armed, std::optional<std::size_t> reply_of);
   static void forget_others_of(Armed& armed, const Occurrence& latest);
-  void release_late_replies();
+  void release_late_replies(std::optional<std::size_t> only);
   template <class Over>
   void end_occurrences(Armed& armed, Over over);
   void say(const Armed& armed, const std::string& what) const;

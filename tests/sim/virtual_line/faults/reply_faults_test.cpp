@@ -66,6 +66,17 @@ TEST(LateReply, IsSentImmediatelyIfItsFaultIsRemovedAndDoesNotDelayTheNextReply)
   }
 }
 
+TEST(LateReply, IsNotSentIfTheFaultOfAnotherModuleIsRemoved) {
+  FaultBench bench({"EX9042D@01", "EX9042D@02"});
+  bench.add("late-reply 1h", 1);
+  const std::size_t other = bench.add("late-reply 1h", 2);
+  EXPECT_EQ(bench.ask("$01M"), "");
+  EXPECT_EQ(bench.ask("$022"), "");
+  EXPECT_TRUE(bench.faults().remove(other));
+  bench.run(50ms);
+  EXPECT_EQ(bench.heard(), "!02400600\r");
+}
+
 TEST(LateReply, IsNotSentAfterTheSupplyHasFailed) {
   FaultBench bench;
   bench.add("late-reply 200ms");
