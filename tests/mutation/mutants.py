@@ -1,7 +1,7 @@
 """Applies rules that make small changes to C++ source. A test should detect each change.
 
-Each rule lists the changes that it can make: other operators and constants, removed statements, swapped branches. No
-rule changes a static_assert, because no test at run time can detect a change there. The rules for operators and
+Each rule lists the changes that it can make: other operators and constants, removed statements, swapped branches.
+`all_of` omits the changes in a static_assert, because no test at run time can detect them. The rules for operators and
 constants divide the source into tokens, and skip comments, preprocessor lines, strings and character literals.
 """
 
@@ -11,7 +11,7 @@ import re
 
 TOKEN = re.compile(
     r"""
-    (?P<skip>\s+|//[^\n]*|/\*.*?\*/|^[ \t]*\#[^\n]*|R"\(.*?\)"|"(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])+')
+    (?P<skip>^[ \t]*\#[^\n]*|\n|[^\S\n]+|//[^\n]*|/\*.*?\*/|R"\(.*?\)"|"(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])+')
     |(?P<number>0[xX][0-9a-fA-F']+[uUlL]*|0b[01']+[uU]*|\d[\d']*[uUlL]*)
     |(?P<word>[A-Za-z_]\w*)
     |(?P<operator>->\*?|<<=|>>=|\+\+|--|&&|\|\||[-+*/%&|^=!<>]=|<<|>>|::|[-+*/%&|^=!<>~?:;,.(){}\[\]])
@@ -19,7 +19,8 @@ TOKEN = re.compile(
     re.VERBOSE | re.MULTILINE | re.DOTALL,
 )
 
-# The replacement of each operator. The operators in BETWEEN_OPERANDS are replaced only between spaces.
+# The replacement of each operator. The operators in BETWEEN_OPERANDS are replaced only between spaces, or
+# between a space and the end of the line.
 OPERATORS = {
     "==": "!=",
     "!=": "==",
@@ -47,8 +48,8 @@ OPERATORS = {
     "&=": "|=",
     "^=": "|=",
 }
-# Most of these operators can also be unary or part of a type. clang-format puts a space on each side only of a binary
-# operator.
+# Most of these operators can also be unary or part of a type. clang-format puts a space or the end of the line on
+# each side only of a binary operator.
 BETWEEN_OPERANDS = {"<", ">", "+", "-", "*", "/", "%", "&", "|", "^", "<<", ">>", "&&"}
 
 STATEMENT = re.compile(r"^[ ]+(?P<statement>[a-z_][\w.>\[\]:+\- ]*(?:\(.*\)| [-+|&^]?= .*|\+\+|--);)$", re.MULTILINE)
@@ -102,7 +103,7 @@ def of_operators(file, source):
         text = token.group()
         if token.lastgroup != "operator" or text not in OPERATORS:
             continue
-        spaced = source[token.start() - 1] == " " and source[token.end()] == " "
+        spaced = source[token.start() - 1] == " " and source[token.end()] in " \n"
         if text in BETWEEN_OPERANDS and not spaced:
             continue
         yield Mutant(file, token.start(), token.end(), OPERATORS[text], "operator")

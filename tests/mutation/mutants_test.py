@@ -6,13 +6,18 @@ import mutants
 
 SOURCE = """\
 #include "a.hpp"  // 1 + 1
+  #define INDENTED 1 + 1
 static_assert(sizeof(int) == 4, "4");
 int sum(const int& a, int b) {
   if (a < b && b != 7) {
     return a + b;
   }
   store(a, "x == y");
-  int c = 0;
+  int c = 0;  // 2 + 2
+  /* 3 + 3 */
+  wide(a &&
+       b);
+  const char d = '4';
   c += 0x10U;
   return true ? c : -1;
 }
@@ -31,20 +36,23 @@ class Mutants(unittest.TestCase):
         self.assertIn("if (a < b || b != 7) {", lines)
         self.assertIn("if (a < b && b == 7) {", lines)
         self.assertIn("return a - b;", lines)
+        self.assertIn("wide(a ||", lines)
         self.assertIn("c -= 0x10U;", lines)
 
-    def test_references_preprocessor_lines_and_strings_do_not_change(self):
+    def test_references_preprocessor_lines_comments_and_literals_do_not_change(self):
         for line in changed(mutants.of_operators) | changed(mutants.of_constants):
             self.assertNotIn("|", line.replace("||", ""))
             self.assertFalse(line.startswith("#"))
-            self.assertFalse(line.startswith("const char* raw"))
+            self.assertFalse(line.startswith("const char"))
+            self.assertFalse(line.startswith("/*"))
+            self.assertTrue(line.endswith("// 2 + 2") or "//" not in line)
         self.assertNotIn('store(a, "x != y");', changed(mutants.of_operators))
 
     def test_numbers_change_by_one_and_booleans_are_inverted(self):
         lines = changed(mutants.of_constants)
         self.assertIn("c += 17U;", lines)
         self.assertIn("c += 15U;", lines)
-        self.assertIn("int c = 1;", lines)
+        self.assertIn("int c = 1;  // 2 + 2", lines)
         self.assertIn("return false ? c : -1;", lines)
 
     def test_octal_and_binary_constants_are_read_in_their_base(self):

@@ -5,8 +5,8 @@ import unittest
 
 import programs
 
-# No unit contains these files. Headers of the tests replace the first two. Only panel_server.cpp includes the third,
-# and no unit contains panel_server.cpp.
+# In the areas of these files, no unit contains them. Headers of the tests replace the first two. Only panel_server.cpp
+# includes the third, and no unit contains panel_server.cpp.
 REACHED_BY_NONE = {"hal/registers/bus.hpp", "hal/cortex_m/processor.hpp", "sim/front_ends/panel/page_files.hpp"}
 
 
@@ -41,6 +41,12 @@ class Programs(unittest.TestCase):
         product = {file for unit in self.areas["hal"].product for file in unit.files}
         shipped = {file for file in self.areas["hal"].sources if not file.startswith("hal/doubles/")}
         self.assertEqual(shipped - product - REACHED_BY_NONE, set())
+
+    def test_every_header_of_the_area_sim_is_part_of_the_product(self):
+        product = {file for unit in self.areas["sim"].product for file in unit.files}
+        headers = {file for file in self.areas["sim"].sources if file.endswith(".hpp")}
+        declarations_of_generated_code = {"sim/front_ends/panel/page_files.hpp"}
+        self.assertEqual(headers - product, declarations_of_generated_code)
 
     def test_a_run_uses_every_test_that_tests_hal_lists_by_name(self):
         text = (programs.ROOT / "tests/hal/CMakeLists.txt").read_text(encoding="utf-8")
