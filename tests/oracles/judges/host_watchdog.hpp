@@ -26,7 +26,7 @@ class HostWatchdog {
   /// Returns whether the host watchdog of a module with these values may have expired by `now`.
   [[nodiscard]] bool may_expire(const Values& values, Microseconds now) const {
     constexpr Microseconds kUnit = 100 * kMillisecond;
-    return values.enabled && now - restarted_ >= values.timeout * kUnit;
+    return values.enabled && now >= restarted_ + values.timeout * kUnit;
   }
 
   /// Call this when the host watchdog has expired. `values`: those before the timeout.

@@ -20,19 +20,28 @@ inline bool begins_like(Bytes reply, Bytes request, std::size_t bytes) {
 /// Returns whether the request is correct and the reply has the form for functions 01 and 02: the byte count
 /// and the bits. Unused bits of the last byte must be 0.
 inline bool are_bits(Bytes request, Bytes reply) {
+  if (request.size != 6) {
+    return false;
+  }
   const unsigned bits = request.word(4);
   const std::size_t bytes = (bits + 7) / 8;
-  return request.size == 6 && bits >= 1 && bits <= 2000 && reply.size == 3 + bytes && reply[2] == bytes &&
+  return bits >= 1 && bits <= 2000 && reply.size == 3 + bytes && reply[2] == bytes &&
          (bits % 8 == 0 || reply[reply.size - 1] >> bits % 8 == 0);
 }
 
 inline bool are_registers(Bytes request, Bytes reply) {
+  if (request.size != 6) {
+    return false;
+  }
   const unsigned registers = request.word(4);
-  return request.size == 6 && registers >= 1 && registers <= 125 && reply.size == 3 + 2 * registers &&
+  return registers >= 1 && registers <= 125 && reply.size == 3 + 2 * registers &&
          reply[2] == 2 * registers;
 }
 
 inline bool is_diagnosis(Bytes request, Bytes reply) {
+  if (request.size < 6 || request.size % 2 != 0) {
+    return false;
+  }
   const unsigned sub = request.word(2);
   if (sub == 0x00) {
     return reply.size == request.size && begins_like(reply, request, request.size);
