@@ -1,5 +1,5 @@
-// The properties of the LM3S6965 and of the TM4C123GH6PM that differ, from their data sheets, and the
-// crystals on their boards.
+// Properties of the LM3S6965 and of the TM4C123GH6PM from their data sheets, and the crystals on their
+// boards.
 #pragma once
 
 #include <cstdint>

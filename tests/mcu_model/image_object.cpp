@@ -1,6 +1,6 @@
-// Source of the shared object for each board and model: the unchanged composition and its description.
-// EX9000_BOARD_HEADER and EX9000_MODEL select the board and the model. The image's `main` is renamed because
-// the test program has its own.
+// Source of the shared object for a Stellaris board and a model: the unchanged composition and the
+// description of the image. EX9000_BOARD_HEADER and EX9000_MODEL select the board and the model. The image's
+// `main` is renamed because the test program has its own.
 #define main main_of_the_image
 #include EX9000_BOARD_HEADER
 #include "boards/stellaris/composition.hpp"

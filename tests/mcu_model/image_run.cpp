@@ -1,5 +1,6 @@
 #include "tests/mcu_model/image_run.hpp"
 
+#include <stdexcept>
 #include <utility>
 
 namespace ex9000::registers {
@@ -22,8 +23,11 @@ ImageRun::~ImageRun() {
 }
 
 void ImageRun::run_until(Instant when) {
+  if (over_) {
+    throw std::logic_error("the image has ended, so it cannot run until a later time");
+  }
   limit_ = when;
-  if (!over_ && timeline_.now() < when) {
+  if (timeline_.now() < when) {
     begun_ = true;
     fiber_.resume();
   }

@@ -19,7 +19,7 @@ class ImageRun {
   ImageRun& operator=(const ImageRun&) = delete;
 
   /// Runs the image until `when`. Throws Fault or ResetRequest if the image causes one; the image does not
-  /// run again after that.
+  /// run again after that, and later calls throw std::logic_error.
   void run_until(Instant when);
 
  private:

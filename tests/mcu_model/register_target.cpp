@@ -11,7 +11,7 @@ using std::chrono::milliseconds;
 
 constexpr milliseconds kComingUp{100};
 constexpr microseconds kBetweenEdges{40};
-constexpr milliseconds kFlashes{600};  ///< a flashing LED changes within this time
+constexpr milliseconds kFlashes{600};  ///< an LED that flashes at 2 Hz changes within this time
 
 }  // namespace
 
@@ -83,6 +83,9 @@ void RegisterTarget::set_input(unsigned channel, bool level) {
 }
 
 void RegisterTarget::pulse_input(unsigned channel, std::uint32_t count) {
+  if (channel >= bench_.image.inputs || count == 0) {
+    return;
+  }
   const bool level = bench_.net(bench_.image.input_pins.at(channel)).level();
   std::uint32_t edges = 2 * count;
   Alarm edge(bench_.timeline, [&] {
@@ -91,10 +94,8 @@ void RegisterTarget::pulse_input(unsigned channel, std::uint32_t count) {
       edge.set_after(kBetweenEdges);
     }
   });
-  if (channel < bench_.image.inputs && edges != 0) {
-    edge.set_after(Instant(1));
-    bench_.run_for(kBetweenEdges * (2 * std::int64_t{count} + 1));
-  }
+  edge.set_after(Instant(1));
+  bench_.run_for(kBetweenEdges * (2 * std::int64_t{count} + 1));
 }
 
 play::step::Led::Shows RegisterTarget::led(play::step::Led::Shows expected) {
