@@ -16,7 +16,7 @@ namespace {
 
 using Over = system::TranscriptLines::Over;
 
-constexpr std::size_t kLines = 12;  ///< the maximum in one simulator process
+constexpr std::size_t kLines = 12;  ///< in one simulator process; the last process can have fewer
 
 /// Plays the transcripts one after another in one simulator, each on its own line. If the simulator does not
 /// start or does not accept a connection, all these transcripts fail.

@@ -26,7 +26,7 @@ struct Played {
   play::Result result;
 };
 
-/// Returns one run for each model of each transcript. The runs have not been played yet.
+/// Returns one run for each `model:` line of each file. The runs have not been played yet.
 inline std::vector<Played> all_runs() {
   std::vector<Played> runs;
   for (const std::string& file : play::transcript_files(EX9000_CONFORMANCE_DIR)) {
