@@ -29,8 +29,8 @@ inline constexpr std::uint8_t kTimeout = 0x64;
 /// Returns the low byte of `value` as two hex digits.
 inline std::string hex(unsigned value) { return reference::hex(value, 2); }
 
-/// Returns settings with an enabled host watchdog. If the model has outputs, the power-on value and the safe
-/// value differ from each other and from kDriven.
+/// Returns settings with an enabled host watchdog. The model must have 16 outputs or none. If it has outputs,
+/// the power-on value and the safe value differ from each other and from kDriven.
 inline Settings set_up(const Model& model, Protocol protocol) {
   Settings settings = Settings::factory(model);
   settings.protocol = protocol;
@@ -79,7 +79,8 @@ class WatchedModule : public EitherProtocol {
 
   Bytes text(const std::string& reply) { return framed(reply, {}); }
 
-  /// Drives `value` on all outputs. Returns whether the module accepted the command.
+  /// Drives `value` on all outputs of a model with 16 outputs. Returns whether the module accepted the
+  /// command.
   bool drive(std::uint16_t value) {
     const Bytes reply = bench.exchange(drive_frame(value));
     return ascii() ? reply == text(">") : reply.size() == 8 && reply[1] == 0x0F;

@@ -1,11 +1,11 @@
-// Runs the examples in each section of the documents that has a `text` block. A `sh` block that starts the
-// simulator runs in one terminal. All other `sh` and `python` blocks run in a second terminal, and the `text`
-// blocks are their expected output. A `json` block is the content of the file `bus.json`. Apart from this
-// file, the working directory at first contains only links to `boards` and `build`, because the examples use
-// the programs and images there. For the line `sim/run`, the test runs only the last command of sim/run. The
-// script itself also installs packages and builds the simulator; tests/first-command runs the script.
-// Another test in this file checks that the tables of the documents list all options, control commands and
-// faults.
+// Runs the examples in each section of the documents that has a `text` block. A `sh` block runs in one
+// terminal if it starts a simulator that runs until it is stopped. All other `sh` and `python` blocks run in
+// a second terminal, and the `text` blocks are their expected output. A `json` block is the content of the
+// file `bus.json`. Apart from this file, the working directory at first contains only links to `boards` and
+// `build`, because the examples use the programs and images there. For the line `sim/run`, the test runs only
+// the last command of sim/run. The script itself also installs packages and builds the simulator;
+// tests/first-command runs the script. Another test in this file checks that the tables of the documents list
+// all options, control commands and faults.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,5 +1,6 @@
 // Tests unmodified libmodbus on one line with two modules. Uses every function for which libmodbus has a
-// call. The expected values are from firmware/wire.md 7.
+// call. The expected values are from firmware/wire.md 7. The expected exceptions of the gateway are from
+// sim/docs/integrations.md.
 #include <gtest/gtest.h>
 #include <modbus/modbus.h>
 
@@ -193,12 +194,14 @@ TEST_P(Libmodbus, RejectedRequestsGetTheirExceptionAndDoNotChangeTheTimeout) {
       {EMBXILVAL, "10 address 0, rate code 0",
        [&](modbus_t* m) { return modbus_write_registers(m, kAddress, 2, words.data()); }},
   };
+  const Words inputs_timeout = registers(kInputs, kTimeout, 1);
   for (const Refused& refused : table) {
     errno = 0;
     EXPECT_EQ(refused.send(master_.at(refused.address)), -1) << refused.request;
     EXPECT_EQ(errno, refused.exception) << refused.request << ": " << modbus_strerror(errno);
   }
   EXPECT_EQ(registers(kOutputs, kTimeout, 1), Words{0xFF}) << "no rejected request may change the timeout";
+  EXPECT_EQ(registers(kInputs, kTimeout, 1), inputs_timeout) << "no rejected request may change the timeout";
 }
 
 TEST_P(Libmodbus, ATimeoutOfTheHostWatchdogBlocksTheOutputs) {

@@ -1,5 +1,6 @@
 // Tests unmodified mbpoll on one line with two modules. Uses every Modbus function that mbpoll supports. The
-// expected values are from firmware/wire.md 7.
+// expected values are from firmware/wire.md 7. The expected exceptions of the gateway are from
+// sim/docs/integrations.md.
 #include <gtest/gtest.h>
 
 #include <string>

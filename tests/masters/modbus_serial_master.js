@@ -74,7 +74,7 @@ function sends({ modbusTcp }, frame) {
 /**
  * Returns whether the library's own port delivers the reply when the reply is complete. Without Modbus TCP, the port
  * must calculate the length of the reply. It can do this for few functions, and not for reads of quantity 0. On a
- * serial line, the port delivers the reply to function 11 before the reply is complete. The header of Modbus TCP
+ * serial line, the port can deliver the reply to function 11 before the reply is complete. The header of Modbus TCP
  * contains the length.
  */
 function reachesOwnPort({ tty, modbusTcp }, frame) {

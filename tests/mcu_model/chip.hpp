@@ -18,16 +18,16 @@ struct Chip {
   unsigned clocks_after_gate;
   Instant cycle_at_reset;  ///< period of the internal oscillator: 12 MHz or 16 MHz
   std::uint32_t rcc_at_reset;
-  std::uint32_t rcc_kept;       ///< bits of RCC that must keep their value; bit 12 may change
+  std::uint32_t rcc_kept;       ///< bits of RCC that must keep their value
   std::uint32_t crystal_code;   ///< value of RCC field XTAL for the crystal on the board
   std::uint32_t crystal_field;  ///< mask of RCC field XTAL, shifted down
 };
 
 /// LM3S6965 on its evaluation board, with an 8 MHz crystal.
 inline constexpr Chip kLm3s6965{"LM3S6965",   7,     false, true, true, 3, Instant(83'333), 0x078E'3AD1U,
-                                0x000E'1000U, 0x0EU, 0xFU};
+                                0x000E'0000U, 0x0EU, 0xFU};
 /// TM4C123GH6PM on a LaunchPad, with a 16 MHz crystal.
-inline constexpr Chip kTm4c123{"TM4C123GH6PM", 6,     true, false, false, 5, Instant(62'500), 0x078E'3AD1U,
-                               0x0000'1000U,   0x15U, 0x1FU};
+inline constexpr Chip kTm4c123{"TM4C123GH6PM", 6, true,  false, false, 5, Instant(62'500),
+                               0x078E'3AD1U,   0, 0x15U, 0x1FU};
 
 }  // namespace ex9000::registers

@@ -93,7 +93,7 @@ SystemControl::Gate SystemControl::gate(unsigned index, unsigned bit) const {
 void SystemControl::write_rcc(std::uint32_t value) {
   const std::uint32_t changed = value ^ rcc_;
   const std::uint32_t crystal = chip_.crystal_field << kCrystalShift;
-  if ((changed & chip_.rcc_kept & ~(1U << 12U)) != 0) {
+  if ((changed & chip_.rcc_kept) != 0) {
     fault(kRcc, "bits of RCC that must keep their value change");
   }
   const std::uint32_t validated =

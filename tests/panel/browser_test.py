@@ -110,7 +110,8 @@ class Modules(Panel):
                 self.browser.until(pressed(DI3))
                 self.browser.key("-Space", "-Shift")
                 self.browser.until(f"!({pressed(DI3)})")
-        for name in "1 EX9042D-M: power", "1 EX9042D-M: INIT* to GND", "1 EX9042D-M: reset", "2 EX9052D-M: input DI0":
+        first = ("1 EX9042D-M: power", "1 EX9042D-M: INIT* to GND", "1 EX9042D-M: reset")
+        for name in *first, "2 EX9052D-M: input DI0", "2 EX9052D-M: input DI3", "2 EX9052D-M: reset":
             self.assertIn(name, seen)
         nameless = """return [...document.querySelectorAll('button, input, select, [role=img], [role=switch]')]
             .filter((each) => !(each.getAttribute('aria-label') || each.labels?.length || each.textContent.trim()))

@@ -6,7 +6,8 @@ from panel_page import Panel, pressed
 from simulator import Master, repeating, wait_until
 from web_socket import Page
 
-# The number of rows in the list, without notes. A note reports, for example, a delay of the host.
+# The number of rows that the page has made, without notes. The page makes rows only for the visible entries of the list
+# and some around them. A note reports, for example, a delay of the host.
 ROWS = "document.querySelectorAll('#filler .row:not([data-kind=note])').length"
 TALLY = "document.getElementById('tally').textContent"
 PAUSED = "document.getElementById('pause').getAttribute('aria-pressed') === 'true'"
@@ -171,7 +172,7 @@ class Bus(Panel):
         heard = []
         page.until(lambda message: heard.extend(entries_of(message)) or any("error" in each for each in heard))
         late = next(each for each in heard if "error" in each)
-        notes = [f"{each['began'] / 1e6:.6f}" for each in heard if each["began"] > late["began"]]
+        notes = [f"{each['began'] / 1e6:.6f}" for each in heard[: heard.index(late)] if each["began"] > late["began"]]
         self.assertTrue(notes)  # made during the frame, and received before it
         after = """const rows = [...document.querySelectorAll('#filler .row')];
             return rows.slice(rows.findIndex((row) => row.dataset.kind === 'error') + 1)

@@ -4,13 +4,13 @@ tests save pictures in build/panel."""
 import atexit
 import contextlib
 import functools
+import itertools
 import json
 import pathlib
 import tempfile
-import threading
 import unittest
 
-from simulator import Master, Simulator
+from simulator import Master, Simulator, repeating
 from webdriver import Browser
 
 PICTURES = pathlib.Path(__file__).resolve().parents[2] / "build/panel"
@@ -68,29 +68,26 @@ MANY = [
 @contextlib.contextmanager
 def both_lines_busy(simulator):
     """Runs a master on each line while the `with` block runs. The masters send their requests without pauses."""
-    over = threading.Event()
-    loads = [threading.Thread(target=keep_busy, args=(port, over)) for port in simulator.lines]
-    for load in loads:
-        load.start()
-    try:
-        yield
-    finally:
-        over.set()
-        for load in loads:
-            load.join()
+    with contextlib.ExitStack() as at_the_end:
+        masters = [Master(port) for port in simulator.lines]
+        for master in masters:
+            at_the_end.callback(master.close)
+        with repeating(*(requests_of(master) for master in masters)):
+            yield
 
 
-def keep_busy(port, over):
-    """Sends requests to the groups of four modules in turn until `over` is set: switches an output of the first module
-    of the group, and reads the inputs of the second."""
-    master = Master(port)
-    turn = 0
-    while not over.is_set():
+def requests_of(master):
+    """Returns a function that sends two requests to the next group of four modules: one switches an output of the first
+    module of the group, the other reads the inputs of the second."""
+    turns = itertools.count()
+
+    def send():
+        turn = next(turns)
         group = turn % 8 * 4
         master.coil(1 + group, turn // 8 % 13, turn // 104 % 2 == 0)
         master.ask(f"{2 + group:02X}0200000008", 6)
-        turn += 1
-    master.close()
+
+    return send
 
 
 class Panel(unittest.TestCase):

@@ -1,5 +1,6 @@
 """Runs ex9000-sim with its panel, and a master for Modbus RTU and DCON on one of its lines."""
 
+import concurrent.futures
 import contextlib
 import os
 import pathlib
@@ -128,18 +129,20 @@ class Master:
 
 
 @contextlib.contextmanager
-def repeating(do):
-    """Calls `do` repeatedly in a thread while the `with` block runs."""
+def repeating(*actions):
+    """Calls each of `actions` repeatedly in its own thread while the `with` block runs. Raises the exception of an
+    action after the block."""
     over = threading.Event()
 
-    def repeat():
+    def repeat(action):
         while not over.is_set():
-            do()
+            action()
 
-    thread = threading.Thread(target=repeat)
-    thread.start()
-    try:
-        yield
-    finally:
-        over.set()
-        thread.join()
+    with concurrent.futures.ThreadPoolExecutor() as threads:
+        runs = [threads.submit(repeat, action) for action in actions]
+        try:
+            yield
+        finally:
+            over.set()
+    for run in runs:
+        run.result()

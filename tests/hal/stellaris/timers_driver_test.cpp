@@ -223,7 +223,7 @@ TEST(Watchdog, IsLockedAgainstUnintendedRegisterWrites) {
   DriverBench bench;
   Watchdog::start();
   EXPECT_THROW(bench.mcu.write(WatchdogTimer::kBase + WatchdogTimer::kClear, 1), Fault);
-  EXPECT_THROW(bench.mcu.write(WatchdogTimer::kBase + WatchdogTimer::kControl, 0), Fault);
+  EXPECT_THROW(bench.mcu.write(WatchdogTimer::kBase + WatchdogTimer::kControl, 3), Fault);
 }
 
 // --- reason of a reset ---

@@ -19,8 +19,7 @@ class DconJudge {
   [[nodiscard]] bool checksum() const { return checksum_; }
   [[nodiscard]] std::uint8_t own_address() const { return own_; }
   /// Call this when the module begins the valid reply to `%`, except in INIT mode. `address`: the address
-  /// that
-  /// `%` sets.
+  /// that `%` sets.
   void answer_to(std::uint8_t address) { own_ = address; }
   /// Call this while `%` is being executed, because the module may already reply at `address`. Call this
   /// without a value when the module replies.

@@ -69,9 +69,8 @@ class ValueChanges {
   }
 
  private:
-  /// The greatest number of commands that take effect in one turn of the main loop: a broadcast whose store
-  /// ends, a second broadcast that has waited for this store, and a third frame whose silence ends in this
-  /// turn.
+  /// An upper bound for the number of commands that take effect in one turn of the main loop. A turn
+  /// completes the store of at most one broadcast, and then executes at most one waiting frame.
   static constexpr unsigned kMostInATurn = 3;
 
   struct Causes {

@@ -72,7 +72,7 @@ class Witness {
     std::uint64_t silent = 0;    ///< broadcasts and host OKs, which get no reply
     std::uint64_t host_oks = 0;  ///< the frames of `silent` that are host OKs
     std::uint64_t foreign = 0;
-    std::uint64_t storing = 0;  ///< the frames of `requests` and `silent` that store something
+    std::uint64_t storing = 0;  ///< the frames of `requests` and `silent` that may store something
   };
 
   Witness(const Model& model, ReportViolation report_violation)

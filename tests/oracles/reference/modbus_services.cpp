@@ -1,4 +1,4 @@
-// The functions of the reference that do not access coils, inputs or registers: 08, 11, 2B and 46, wire.md 7.
+// Functions 08, 11, 2B and 46 of the reference: wire.md 7.
 #include "tests/oracles/reference/hexadecimal.hpp"
 #include "tests/oracles/reference/modbus_refusal.hpp"
 #include "tests/oracles/reference/module.hpp"

@@ -322,8 +322,8 @@ Answer Module::on_bytes(const Bytes& bytes, LineFormat sent_in, Time now) {
   left_open_ = nullptr;
   const Stored before = stored_;
   const bool delayed = reply_delay() != Time(0);
-  // A byte is bad if its parity bit is wrong, or if the parity bit of the master is at the place of the stop
-  // bit and low.
+  // A byte is bad if the bit after its data bits differs from the bit that the module expects there: the
+  // correct parity bit, or the stop bit if the module uses no parity.
   std::vector<bool> bad;
   for (const std::uint8_t byte : bytes) {
     bad.push_back(ninth_bit(byte, sent_in) != ninth_bit(byte, format()));

@@ -226,9 +226,9 @@ bool Session::play_step(const Send& send) {
   // The 20 and 200 ms count from the end of the response delay, if the delay is longer than the turn-around.
   const Time delay = reference_.reply_delay() > turn_around ? reference_.reply_delay() : Time(0);
   const Time earliest = std::max(turn_around, delay);
-  // wire.md 7 allows 20 ms from the end of a Modbus frame, which is the end of its silence. Without a
-  // response delay, this limit is earlier: 20 ms after the last byte, or 5 ms after the silence if that is
-  // later.
+  // wire.md 7 allows 20 ms from the end of a Modbus frame, which is the end of its silence. If the response
+  // delay is not longer than the turn-around, the session allows less time: 20 ms after the last byte, or
+  // 5 ms after the silence if that is later.
   const Time answers = std::max<Time>(kAnswers + delay, turn_around + milliseconds(5));
 
   Answer answer;
