@@ -30,10 +30,28 @@ class CountTests(unittest.TestCase):
         self.assertEqual(count(log, "bus_test 1 FAILED ctest\n"), (5, 2, 1))
 
     def test_each_test_of_a_unittest_program_is_counted(self):
-        log = "1/1 Testing: bus_py\nRan 9 tests in 1 s\nFAILED (failures=1, errors=2, skipped=1)\n"
+        log = (
+            "1/1 Testing: bus_py\n"
+            "ERROR: test_a (bus_test.Bus.test_a)\n"
+            "FAIL: test_b (bus_test.Bus.test_b)\n"
+            "FAIL: test_b (bus_test.Ring.test_b)\n"
+            "Ran 9 tests in 1 s\n"
+            "FAILED (failures=2, errors=1, skipped=1)\n"
+        )
         self.assertEqual(count(log, "bus_py 1 FAILED ctest\n"), (5, 3, 1))
         log = "1/1 Testing: bus_py\nRan 9 tests in 1 s\nOK (skipped=2)\n"
         self.assertEqual(count(log, "bus_py 1 passed ctest\n"), (7, 0, 2))
+
+    def test_a_unittest_with_several_failed_subtests_counts_as_one_failed_test(self):
+        log = (
+            "1/1 Testing: bus_py\n"
+            "FAIL: test_a (bus_test.Bus.test_a) (rate=1200)\n"
+            "FAIL: test_a (bus_test.Bus.test_a) (rate=9600)\n"
+            "ERROR: setUpClass (bus_test.Ring)\n"
+            "Ran 2 tests in 1 s\n"
+            "FAILED (failures=2, errors=1)\n"
+        )
+        self.assertEqual(count(log, "bus_py 1 FAILED ctest\n"), (1, 2, 0))
 
     def test_a_part_that_fails_without_a_failed_test_counts_as_one_failed_test(self):
         log = "1/2 Testing: bus_test\nterminate called\n2/2 Testing: line_test\n[  PASSED  ] 5 tests.\n"
