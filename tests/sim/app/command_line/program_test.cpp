@@ -1,8 +1,10 @@
 // Tests the program as a process: for example its start, its end, and its messages about wrong arguments.
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <poll.h>
 #include <sys/ioctl.h>
 #include <sys/stat.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -93,7 +95,7 @@ TEST(Program, AFullDiskForStandardOutputIsReported) {
 
 /// Waits until at least 7/8 of a pipe is in use. The kernel may begin a new page of the pipe before the
 /// previous page is full, so the number of bytes in the pipe may never reach its capacity. Returns false if
-/// the pipe has not filled within 60 s, for example because the program hangs, or if FIONREAD fails.
+/// the wait takes longer than 60 s, for example because the program hangs, or if FIONREAD fails.
 bool wait_until_full(int pipe) {
   constexpr std::chrono::seconds kHang{60};
   const int capacity = fcntl(pipe, F_GETPIPE_SZ);
@@ -105,6 +107,18 @@ bool wait_until_full(int pipe) {
     std::this_thread::yield();
   }
   return true;
+}
+
+/// Sends a signal to a process of this test. Returns whether it ends within 60 s while nothing reads its
+/// output, in contrast to SimulatorProcess::end. `end` must be called after that.
+bool ends_unread(int pid, int signal) {
+  constexpr int kHangMilliseconds = 60'000;
+  const auto process = static_cast<int>(syscall(SYS_pidfd_open, pid, 0));
+  pollfd ended{process, POLLIN, 0};
+  kill(pid, signal);
+  const bool has_ended = poll(&ended, 1, kHangMilliseconds) == 1;
+  close(process);
+  return has_ended;
 }
 
 TEST(Program, ASignalEndsTheProgramIfThePipeOfItsLogIsFull) {
@@ -120,6 +134,7 @@ TEST(Program, ASignalEndsTheProgramIfThePipeOfItsLogIsFull) {
     const int pipe = open(out.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
     ASSERT_GE(pipe, 0);
     ASSERT_TRUE(wait_until_full(pipe));
+    EXPECT_TRUE(ends_unread(simulator.pid(), signal));
     EXPECT_EQ(simulator.end(signal), 0);
     close(pipe);
   }
@@ -143,6 +158,7 @@ TEST(Program, ASignalEndsTheProgramIfThePipeOfItsCaptureIsFull) {
     }
     master.send(requests);
     ASSERT_TRUE(wait_until_full(pipe));
+    EXPECT_TRUE(ends_unread(simulator.pid(), SIGTERM)) << threads;
     EXPECT_EQ(simulator.end(SIGTERM), 0) << threads;
     close(pipe);
   }

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Tests that a simulated module supports the reads and coil writes in the exports for Home Assistant, Node-RED and
-wb-mqtt-serial, and that these exports contain the coils that a master requires.
+wb-mqtt-serial. Also tests that these exports contain all coil writes of `coils_to_write`, and that the flows for
+Node-RED contain all reads of `ranges_to_read`.
 """
 
 import itertools
@@ -17,11 +18,11 @@ from program import describe, models_with_modbus
 NODE_RED = {"Coil": "coil", "Input": "discrete_input", "HoldingRegister": "holding", "InputRegister": "input"}
 WIREN_BOARD = {"coil": "coil", "discrete": "discrete_input", "holding": "holding", "input": "input"}
 
-# What Home Assistant and Node-RED call the frames that each option of the program selects.
+# The names of Home Assistant and Node-RED for the frames that each option of the program selects.
 HOME_ASSISTANT = {"--tcp": "rtuovertcp", "--modbus-tcp": "tcp"}
 NODE_RED_CLIENTS = {"--tcp": "TELNET", "--modbus-tcp": "DEFAULT"}
 
-# The number of outputs and the number of inputs of each model (wire.md section 1).
+# The number of outputs and the number of inputs of each -M model (wire.md section 1).
 CHANNELS = {
     "EX9042D-M": (13, 0),
     "EX9043D-M": (16, 0),
@@ -46,11 +47,16 @@ def coils_to_write(model):
 
 
 def ranges_to_read(model):
-    """Returns the first address and the size of each range that a flow for Node-RED must read (wire.md section 7)."""
+    """Returns the kind, the first address and the size of each range that a flow for Node-RED must read (wire.md
+    section 7)."""
     outputs, inputs = CHANNELS[model]
-    of_outputs = {(0x0000, outputs), (0x0080, outputs), (0x00A0, outputs)} if outputs else set()
-    of_inputs = {(0x0000, inputs), (0x0040, inputs), (0x0060, inputs)} if inputs else set()
-    return of_outputs | of_inputs | {(0x0104, 1), (0x010D, 1), (0x01E8, 1)}
+    rows = {("coil", 0x0104, 1), ("coil", 0x010D, 1), ("holding", 0x01E8, 1)}
+    if outputs:
+        rows |= {("coil", first, outputs) for first in (0x0000, 0x0080, 0x00A0)}
+    if inputs:
+        rows |= {("discrete_input", 0x0000, inputs), ("input", 0x0000, inputs)}
+        rows |= {("coil", first, inputs) for first in (0x0040, 0x0060)}
+    return rows
 
 
 class EveryMap(unittest.TestCase):
@@ -97,8 +103,9 @@ class EveryMap(unittest.TestCase):
                     self.assertEqual(client, (NODE_RED_CLIENTS[line.option], str(line.port)))
                 elif node["type"] == "modbus-read":
                     first, count = int(node["adr"]), int(node["quantity"])
-                    self.assertEqual(len(line.read(NODE_RED[node["dataType"]], first, count)), count)
-                    read.add((first, count))
+                    kind = NODE_RED[node["dataType"]]
+                    self.assertEqual(len(line.read(kind, first, count)), count)
+                    read.add((kind, first, count))
                 elif node["type"] == "inject":
                     self.assertIn(node["payload"], ["true", "false"])
                     on = node["payload"] == "true"

@@ -30,10 +30,19 @@ class Line:
         self.option = option
         command = [PROGRAM, f"{model}@01", option, "0", "--line", "instant"]
         self._program = subprocess.Popen(command, stdout=subprocess.PIPE, encoding="utf-8")
-        greeting = "".join(iter(self._program.stdout.readline, "press Ctrl-C to end\n"))
-        self.port = int(re.search(r"TCP 127\.0\.0\.1:(\d+)", greeting).group(1))
+        self.port = self._port()
         self._socket = socket.create_connection(("127.0.0.1", self.port), timeout=60)  # seconds; only detects a hang
         self._transaction = 0
+
+    def _port(self):
+        """Reads the greeting and returns the port in it."""
+        greeting = ""
+        while not greeting.endswith("press Ctrl-C to end\n"):
+            line = self._program.stdout.readline()
+            if not line:
+                raise ConnectionError(f"the simulator has ended: {greeting}")
+            greeting += line
+        return int(re.search(r"TCP 127\.0\.0\.1:(\d+)", greeting).group(1))
 
     def __enter__(self):
         return self
@@ -79,7 +88,10 @@ class Line:
         return self._receive(length)
 
     def _ask(self, function, first, value):
-        """Sends a request. Returns the data of the reply. Raises ValueError if the reply is wrong or an exception."""
+        """Sends a request. Returns the data of the reply.
+
+        Raises ValueError if the reply is an exception, or if its header, CRC, address or function is wrong.
+        """
         request = struct.pack(">BBHH", 1, function, first, value)
         reply = self._ask_modbus_tcp(request) if self.option == "--modbus-tcp" else self._ask_rtu(request)
         if reply[:2] != request[:2]:
@@ -87,12 +99,15 @@ class Line:
         return reply[2:]
 
     def read(self, kind, first, count=1):
-        """Returns bits or registers as numbers. Raises ValueError if the reply is wrong or an exception."""
+        """Returns bits or registers as numbers. Raises ValueError like `_ask`."""
         data = self._ask(FUNCTION_OF_READING[kind], first, count)[1:]
         if kind in ["coil", "discrete_input"]:
             return [data[bit // 8] >> bit % 8 & 1 for bit in range(count)]
         return list(struct.unpack(f">{count}H", data))
 
     def write_coil(self, address, on):
-        """Writes a coil. Raises ValueError if the reply is wrong or an exception."""
-        self._ask(5, address, 0xFF00 if on else 0x0000)
+        """Writes a coil. Raises ValueError like `_ask`, and if the reply has another address or value."""
+        value = 0xFF00 if on else 0x0000
+        reply = self._ask(5, address, value)
+        if reply != struct.pack(">HH", address, value):
+            raise ValueError(f"{reply.hex(' ')} in reply to a write of {value:04X} to coil {address:04X}")

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Tests that Node-RED and node-red-contrib-modbus support every property of the flows.
+"""Checks the properties of the nodes in the flows against node_red_contrib_modbus.json.
 
 Also checks the ids, wires and positions of the nodes.
 """

@@ -1,5 +1,5 @@
-// Tests scenarios, whose steps may use several modules and lines, `play` with files and folders, and the
-// syntax of steps.
+// Tests scenarios, `play` with files and folders, and the syntax of steps. The steps of a scenario may use
+// several modules and lines.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -91,7 +91,7 @@ TEST(Scenario, BytesReceivedOnALineThatIsNotSelectedAreDiscarded) {
   EXPECT_EQ(failure_of(talk + "line yard\nwait 31s\nline hall\nmodule 2\n> $02M\n< !029052\n"), "");
   EXPECT_EQ(failure_of(talk + "module 3\nwait 31s\nmodule 1\n> $01M\n< !019042D\n"), "");
   EXPECT_NE(failure_of(talk + "wait 31s\n").find("expected nothing, received '10"), std::string::npos);
-  // The choice of another module on the same line does not discard the received bytes.
+  // After the choice of another module on the same line, the late reply is still reported as unexpected.
   EXPECT_NE(failure_of("fault late-reply 100ms\n> $01M\nmodule 2\nwait 1s\n").find("received '!019042D"),
             std::string::npos);
 }
