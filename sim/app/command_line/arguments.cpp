@@ -71,12 +71,15 @@ void apply_writing(const WritingTexts& texts, Writing& writing) {
 /// Returns the prefix of the error message: the place in the bus file if `setup` contains it, otherwise the
 /// option of the command line, or `eeprom=` for this key of a module.
 std::string where(const SetupError& error, const Setup& setup) {
+  if (error.module) {
+    return setup.lines[*error.line].modules[*error.module].eeprom_place;
+  }
   const Places& places = error.line ? setup.lines[*error.line].places : setup.places;
   const auto place = places.find(error.key);
   if (place != places.end()) {
     return place->second + ": ";
   }
-  return error.key == "eeprom" ? "eeprom=" : "--" + error.key + ": ";
+  return "--" + error.key + ": ";
 }
 
 /// Returns how a message refers to a key and its value: as the key of the bus file if the bus file sets it,

@@ -433,6 +433,17 @@ TEST(BusFile, AnErrorFoundAfterTheFileIsParsedIsReported) {
       "ex9000-sim: --speed: step requires --control, because only the control socket advances the time\n");
 }
 
+TEST(BusFile, AnEepromFileWithAnotherUseIsReportedWithItsPlaceInTheFile) {
+  const system::Directory directory;
+  const std::string path = directory / "bus.json";
+  system::write_file(path,
+                     "{\"lines\": [{\"modules\": [{\"model\": \"EX9042D\"},\n{\"model\": \"EX9042D\", "
+                     "\"address\": \"02\", \"eeprom\": \"line1.tty\"}]}]}");
+  EXPECT_EQ(parse({path}).error, "ex9000-sim: " + path +
+                                     ":2: lines[0].modules[1].eeprom: line1.tty: is already used for "
+                                     "something else; name another path\n");
+}
+
 TEST(BusFile, AnErrorNamesTheConflictingKeyOrOption) {
   const system::Directory directory;
   const std::string path = directory / "bus.json";
@@ -473,6 +484,7 @@ TEST(BusFile, CanBeCombinedWithProgramOptionsButNotWithLineOptionsOrModules) {
   for (const std::vector<std::string>& more :
        std::vector<std::vector<std::string>>{{"--pty", "a"},
                                              {"--tcp", "1"},
+                                             {"--modbus-tcp", "1"},
                                              {"--serial", "a"},
                                              {"--baud", "9600"},
                                              {"--format", "8E1"},

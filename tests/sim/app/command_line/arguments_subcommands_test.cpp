@@ -144,12 +144,13 @@ TEST(Arguments, DescribeHasItsOwnHelp) {
 
 TEST(Arguments, VersionIsThatOfTheFirmware) { EXPECT_EQ(printed({"--version"}), "ex9000-sim D01.00\n"); }
 
-TEST(Arguments, ModelsAndExampleRejectOtherArgumentsAndVersionIgnoresThem) {
+TEST(Arguments, OptionsThatPrintRejectOtherArgumentsExceptVersion) {
   EXPECT_EQ(printed({"EX9042D", "--version"}), printed({"--version"}));
   expect_error({"--models", "EX9042D"}, "--models: only prints text", "leave out EX9042D");
   expect_error({"--example", "--log"}, "--example: only prints text", "leave out --log");
   expect_error({"--example", "--seed", "abc"}, "--example: only prints text", "leave out --seed");
   expect_error({"--models", "--example"}, "--models: only prints text", "leave out --example");
+  expect_error({"--schema", "EX9042D"}, "--schema: only prints text", "leave out EX9042D");
   expect_error({"--models", "play", "s.txt"}, "--models: only prints text", "leave out play");
   expect_error({"--example", "describe"}, "--example: only prints text", "leave out describe");
 }

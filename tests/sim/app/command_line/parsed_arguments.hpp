@@ -22,6 +22,7 @@ inline Parsed parse(const std::vector<const char*>& words) {
 inline void expect_error(const std::vector<const char*>& words, const std::string& wrong,
                          const std::string& mend) {
   const Parsed parsed = parse(words);
+  ASSERT_FALSE(parsed.error.empty());
   EXPECT_FALSE(parsed.setup);
   EXPECT_EQ(parsed.output, "");
   EXPECT_NE(parsed.exit_status, 0);

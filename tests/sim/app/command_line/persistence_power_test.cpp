@@ -1,6 +1,6 @@
-// Tests modules whose EEPROM is a file. The power fails, or the program is killed, at random times. The
-// module must execute each command that stores completely or not at all, and completely if it has replied to
-// the command (wire.md section 8).
+// Tests modules whose EEPROM is a file. The power fails, or the program is killed, at random times. Each
+// command that stores must take effect either completely or not at all. If the module has replied to the
+// command, the command must have taken effect completely (wire.md section 8).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -83,8 +83,8 @@ class PowerFailureChecker {
 
   [[nodiscard]] std::string module() const { return "EX9042D" + image_in(directory_); }
 
-  /// Expects that the module has executed the last command that stores completely or not at all, and
-  /// completely if `begin_cut` has received the reply. Call this after each start of the module.
+  /// Expects that the last command that stores has taken effect either completely or not at all, and
+  /// completely if the test has received the reply. Call this function after each start of the module.
   void check(Simulator& simulator) {
     Answers answers;
     for (const auto& [question, answer] : before_) {

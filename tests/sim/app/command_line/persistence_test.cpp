@@ -179,8 +179,9 @@ TEST(Persistence, AHostWatchdogTimeoutSurvivesARestart) {
 
 // --- images without valid settings (wire.md D8) ---
 
-/// Expects factory settings, a flashing LED, a remark in the greeting, and an unchanged file. Then stores a
-/// name, and expects that the LED is on, and that a restart keeps the name and gives no remark.
+/// Expects factory settings, a flashing LED, a greeting that mentions factory settings, and an unchanged
+/// file. Then stores a name, and expects that the LED is on. After a restart, expects the name, and a
+/// greeting that does not mention factory settings.
 void expect_factory_settings(const Directory& directory) {
   const std::string image = bytes_of_file(directory / "image");
   {
