@@ -100,11 +100,11 @@ bool Pty::visited() const {
 }
 
 void Pty::take_visit() {
-  const bool there = visited();
-  if (there && deserted_) {
+  const bool deserted = !visited();
+  if (deserted && !deserted_) {
     Slave(device_).forget_unread();
   }
-  deserted_ = !there;
+  deserted_ = deserted;
 }
 
 std::optional<std::uint32_t> Pty::baud() const {

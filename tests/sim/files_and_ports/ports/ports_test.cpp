@@ -121,7 +121,7 @@ TEST_P(Tcp, AFloodOfInvalidBytesDoesNotBlockTheLine) {
     flooder.send(std::vector<std::uint8_t>(20'000, 'x'));
   }
   SocketClient client(simulator.tcp_port());
-  // The request and the reply may collide with the bytes of `flooder`, so the client repeats the request.
+  // The reply may collide with the bytes of `flooder`, so the client repeats the request.
   EXPECT_NE(heard_by_asking_again(client, "\r$05M\r", "!059042D\r").find("!059042D\r"), std::string::npos);
 }
 
