@@ -48,8 +48,8 @@ class ModuleWire final : public Wire {
   [[nodiscard]] VirtualTime next() const { return late_.empty() ? kNever : late_.front().when; }
   void run();
   /// Makes all waiting bytes earlier by the same time, so that the first late reply begins now. Has no effect
-  /// if no byte waits, or if this reply has already begun on the wires. Bytes that the UART has not sent yet
-  /// keep their delay.
+  /// if no byte waits, or if this reply has already begun on the wires. The bytes that the UART has not sent
+  /// yet of a reply in progress become earlier by the same time.
   void end_first_delay();
   /// Drops all bytes that are not on the wires yet, and disables the driver if a late reply is on the wires.
   /// Call this when the module loses its supply or is reset.

@@ -92,10 +92,10 @@ bool Faults::remove(std::size_t number) {
   if (found == armed_.end()) {
     return false;
   }
-  const Fault removed = found->fault;
+  const Armed removed = *found;
   armed_.erase(found);
-  if (removed.trouble == Trouble::LateReply) {
-    release_late_replies(removed.module);
+  if (removed.fault.trouble == Trouble::LateReply && removed.occurrences_so_far != 0) {
+    release_late_replies(removed.fault.module);
   }
   change();
   act();
@@ -109,10 +109,11 @@ void Faults::remove_all() {
   act();
 }
 
-/// Sends the late replies of `only` now, or those of all modules if it is nullopt.
+/// Sends the late replies of the module `only` now, or those of all modules if it is nullopt. Does not send
+/// those of a module that another fault still delays.
 void Faults::release_late_replies(std::optional<std::size_t> only) {
   for (std::size_t i = 0; i < modules_.size(); ++i) {
-    if (only.value_or(i) == i) {
+    if (only.value_or(i) == i && !affected_by(Trouble::LateReply, i)) {
       modules_[i]->release_late_replies();
     }
   }

@@ -66,6 +66,28 @@ TEST(LateReply, IsSentImmediatelyIfItsFaultIsRemovedAndDoesNotDelayTheNextReply)
   }
 }
 
+TEST(LateReply, IsCompleteIfItsFaultIsRemovedWhileTheModuleReplies) {
+  FaultBench bench;
+  const std::size_t fault = bench.add("late-reply 1h");
+  bench.forget();
+  bench.send("$01M\r");
+  bench.run(5ms);  // the UART has sent a part of the reply
+  EXPECT_TRUE(bench.faults().remove(fault));
+  bench.run(50ms);
+  EXPECT_EQ(bench.heard(), kName + "\r");
+  EXPECT_EQ(bench.ask("$01M"), kName);
+}
+
+TEST(LateReply, IsNotSentIfAnotherFaultStillDelaysIt) {
+  FaultBench bench;
+  bench.add("late-reply 1h");
+  const std::size_t other = bench.add("late-reply 1s");
+  EXPECT_EQ(bench.ask("$01M"), "");
+  EXPECT_TRUE(bench.faults().remove(other));
+  bench.run(50ms);
+  EXPECT_EQ(bench.heard(), "");
+}
+
 TEST(LateReply, IsNotSentIfTheFaultOfAnotherModuleIsRemoved) {
   FaultBench bench({"EX9042D@01", "EX9042D@02"});
   bench.add("late-reply 1h", 1);
