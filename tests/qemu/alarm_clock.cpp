@@ -136,7 +136,7 @@ void AlarmClock::run_for(nanoseconds time) {
 nanoseconds AlarmClock::make_edges(Pin pin, std::uint32_t edges) {
   constexpr nanoseconds kEach{4'000};
   constexpr std::uint32_t kDirection = 0x400;
-  constexpr std::uint32_t kAtOnce = 200'000;  // 0.8 s, which does not trigger the watchdog
+  constexpr std::uint32_t kAtOnce = 200'000;  // less than 1 s, which does not trigger the watchdog
   const nanoseconds time = kEach * (std::int64_t{edges} + 1);
   while (edges != 0) {
     const std::uint32_t now = edges < kAtOnce ? edges : kAtOnce;

@@ -39,7 +39,8 @@ class AlarmClock {
   void set_up();
   /// Runs the machine for `time`, or for about 2.5 us if `time` is shorter.
   void run_for(std::chrono::nanoseconds time);
-  /// Runs the machine and generates `edges` edges at an input, about one every 4 us. Returns the duration.
+  /// Runs the machine and generates `edges` edges at an input, about one every 4 us. Returns the approximate
+  /// duration. Between `set_up` and this call, the machine must have run; otherwise edges are lost.
   std::chrono::nanoseconds make_edges(Pin pin, std::uint32_t edges);
 
   /// Makes the machine also stop before each store to these bytes of the bus. After this call only
@@ -47,7 +48,7 @@ class AlarmClock {
   void watch_stores(std::uint32_t address, std::uint32_t size);
   /// Runs the machine until the next watched store, but at most for `time`. If the previous call has returned
   /// true, this call ignores `time` and continues with the rest of the earlier time. Returns whether the
-  /// machine has stopped before a store.
+  /// machine has stopped before a store. Between `set_up` and the first call, the machine must have run.
   bool run_to_store(std::chrono::nanoseconds time);
 
   /// Halts the whole machine, for example for a reset. Before this call, only the processor waits. After this

@@ -111,9 +111,9 @@ void TimedModule::hold_memory(bool hold) {
 void TimedModule::send(const Bytes& bytes, SerialMode mode) {
   constexpr milliseconds kLongestHold{2};
   constexpr microseconds kSlice{200};
-  // On a real line a byte takes time, and the driver enable goes off soon after the last byte has arrived.
-  // Here the last byte arrives immediately, while the driver enable is still on. Therefore this function
-  // waits until the driver enable is off.
+  // On a real line, the driver enable goes off soon after the last byte of a reply has arrived at the master.
+  // Here, this byte arrives immediately, while the driver enable is still on. Therefore this function waits
+  // until the driver enable is off.
   constexpr milliseconds kLongestWait{100};
   const nanoseconds gives_up = now_ + kLongestWait;
   while (speaks() && now_ < gives_up) {

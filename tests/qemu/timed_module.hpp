@@ -35,7 +35,8 @@ class TimedModule : public EmulatedBoard {
   /// Sets the level of an input channel; 100 us pass. Ignores channels that the model does not have.
   void set_input(unsigned channel, bool level);
   /// Generates `count` pulses from the present level and back, one every 8 us. Has no effect without power,
-  /// or if the model does not have that channel.
+  /// or if the model does not have that channel. If the module has not run since its last start, edges are
+  /// lost.
   void pulse_input(unsigned channel, std::uint32_t count);
 
   /// Lets time pass. The image runs if the module is powered.
@@ -51,9 +52,10 @@ class TimedModule : public EmulatedBoard {
   /// `now()`.
   bool run_to_store(std::chrono::nanoseconds time) { return clock_->run_to_store(time); }
 
-  /// Runs until the watchdog (if `event` is `WATCHDOG`) or the image (if `event` is `SHUTDOWN`) is about to
-  /// reset the module. Throws std::runtime_error if this does not occur within `time`. Call `reset` before
-  /// the module runs again.
+  /// Runs until the watchdog or the image is about to reset the module. `event` is an event that the emulator
+  /// must then send: it sends `WATCHDOG` only for a reset by the watchdog, and `SHUTDOWN` for both resets.
+  /// Throws std::runtime_error if this event does not occur within `time`. Call `reset` before the module
+  /// runs again.
   void run_to_reset(const std::string& event, std::chrono::nanoseconds time);
 
   /// Waits up to 100 ms until the driver enable is off, then sends bytes in `mode`. Returns when the last

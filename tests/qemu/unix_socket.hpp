@@ -1,4 +1,5 @@
-// A listening UNIX socket and its connection. The emulator is started with its path and connects to it.
+// A listening UNIX socket and its connection. The command line of the emulator contains the path of the
+// socket, and the emulator connects to the socket.
 #pragma once
 
 #include <chrono>

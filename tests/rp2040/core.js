@@ -6,12 +6,13 @@ const FIRST_INTERRUPT = 16;
 const HARD_FAULT = 3;
 
 // - When an interrupt line becomes asserted, its interrupt becomes pending. The interrupt stays pending until the
-//   processor enters the handler. If the line is asserted when the handler returns, the interrupt becomes pending
-//   again.
+//   processor enters the handler, or until software clears it. If the line is asserted when the handler returns, the
+//   interrupt becomes pending again.
 // - A pending interrupt that the NVIC enables wakes a sleeping processor, even if the interrupt became pending before
 //   the sleep, and even if PRIMASK is set. If PRIMASK is set, the processor does not enter the handler.
 // - A pending SysTick wakes the processor too.
-// - A fault enters the HardFault handler. A fault in that handler stops the processor.
+// - The instructions UDF and BKPT enter the HardFault handler. In that handler, they stop the processor (lock-up). If
+//   rp2040js detects another fault, for example an access to an invalid address, it reports an error instead.
 class Processor {
   constructor(chip) {
     const { core } = chip;

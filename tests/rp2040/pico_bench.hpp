@@ -24,10 +24,11 @@ class PicoBench {
   explicit PicoBench(Memory memory = Memory::Flash) : memory_(memory) {}
 
   /// Provides a new board with the image of `model`. Its supply is off. Its memory holds `settings`, or no
-  /// settings if `settings` is null. If the memory is in the flash, its free sectors are marked as erased.
+  /// settings if `settings` is null. If the memory is in the flash, each sector without settings is marked as
+  /// erased.
   void begin_anew(const Model& model, const Settings* settings);
-  /// Provides a new board in the same way, but with `memory`, which has 384 bytes, as the content of its
-  /// memory. If `memory` is empty, the memory holds no settings.
+  /// Provides a new board in the same way, but with `memory` as the content of its memory. `memory` has at
+  /// least 384 bytes, or is empty. If it is empty, the memory holds no settings.
   void begin_anew(const Model& model, const play::Bytes& memory);
   /// Removes the marks of erased sectors from all sectors except the first, which contains the settings. The
   /// store in the flash then erases the other sectors, as on the first start of a module. First call

@@ -14,7 +14,7 @@ constexpr milliseconds kComingUp{100};
 /// The image processes a byte and updates its pins in less than this time.
 constexpr microseconds kSettling{100};
 constexpr microseconds kBetweenEdges{40};
-constexpr milliseconds kFlashes{600};  ///< a flashing LED changes within this time
+constexpr milliseconds kFlashes{600};  ///< an LED that flashes at 2 Hz changes within this time
 
 }  // namespace
 

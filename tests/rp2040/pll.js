@@ -1,6 +1,6 @@
-// Corrects the system PLL of rp2040js: the PLL requires power and a reference to lock, its settings cannot change while
-// it runs, and it cannot clock the system before it has locked or while its dividers have no power. Sources:
-// RP2040 data sheet, 2.18 (PLL), 2.15.3.2 (glitchless multiplexers).
+// Corrects the system PLL of rp2040js: the PLL requires power and a reference to lock, its control register and its
+// multiplier cannot change while it runs, and it cannot clock the system before it has locked or while its post
+// dividers have no power. Sources: RP2040 data sheet, 2.18 (PLL), 2.15.3.2 (glitchless multiplexers).
 "use strict";
 
 const CONTROL = 0x00;

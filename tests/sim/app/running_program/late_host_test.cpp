@@ -67,10 +67,11 @@ TEST(LateHost, ALateHostIsReportedWithItsDelay) {
 }
 
 TEST(LateHost, TwoRequestsReadInOnePieceAreReported) {
-  SimulatorProcess simulator({"EX9042D-M@01,protocol=modbus", "--tcp", "0"});
+  SimulatorProcess simulator({"EX9042D-M@01,protocol=modbus", "--tcp", "0", "--log"});
   SocketClient client(simulator.tcp_port());
   client.send(text_of(request(1)));
   EXPECT_EQ(client.receive_text(6).substr(0, 3), std::string("\x01\x01\x01", 3));
+  ASSERT_TRUE(simulator.wait_for("Read Coils, reply")) << simulator.output();
   EXPECT_EQ(simulator.output().find("read in one piece"), std::string::npos) << simulator.output();
   client.send(text_of(request(2)) + text_of(request(1)));
   EXPECT_TRUE(simulator.wait_for("two Modbus frames were read in one piece"));

@@ -191,7 +191,7 @@ TEST(Lines, FaultsAffectOnlyTheirOwnLine) {
   EXPECT_EQ(ask(hall, "$02M"), "!029055");
 }
 
-TEST(Lines, RunOnOneTwoOrEightThreadsWithLogCaptureAndCommands) {
+TEST(Lines, RunOnAtMostOneTwoOrEightThreadsWithLogCaptureAndCommands) {
   constexpr int kRequests = 50;
   for (const char* threads : {"1", "2", "8"}) {
     Lines lines(R"({"lines": [

@@ -203,7 +203,7 @@ TEST(EepromFile, AFileOfTheWrongSizeIsRefusedAndNotChanged) {
     const auto before = directory.contents();
     const std::string refused = refusal_of(directory / "a");
     expect_refused(refused, directory / "a");
-    EXPECT_NE(refused.find(std::to_string(size)), std::string::npos) << refused;
+    EXPECT_NE(refused.find("has " + std::to_string(size) + " bytes"), std::string::npos) << refused;
     EXPECT_EQ(directory.contents(), before) << size;
   }
 }
@@ -223,7 +223,6 @@ TEST(EepromFile, DirectoriesPipesAndDevicesAreRefusedWithoutBlocking) {
   const Directory directory;
   fs::create_directory(directory / "directory");
   ASSERT_EQ(mkfifo((directory / "fifo").c_str(), 0644), 0);
-  fs::create_symlink(directory / "nowhere", directory / "dangling");
   const auto before = directory.contents();
   for (const std::string& path : {directory / "directory", directory / "fifo", std::string("/dev/null"),
                                   std::string("/dev/zero"), std::string("/dev/full")}) {

@@ -409,7 +409,8 @@ TEST(ControlSocket, AProgramThatListensButAcceptsNothingIsNotReplaced) {
   ASSERT_EQ(listen(listener, 0), 0);
   const int waiting = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
   ASSERT_EQ(connect(waiting, name, sizeof address), 0);  // the queue of connections is full now
-  const Finished finished = run({simulator_path(), "EX9055D", "--control", "busy"}, directory.path());
+  const Finished finished =
+      run({"timeout", "60", simulator_path(), "EX9055D", "--control", "busy"}, directory.path());
   EXPECT_EQ(finished.status, 2);
   EXPECT_NE(finished.error.find("busy: another program listens there"), std::string::npos) << finished.error;
   close(waiting);

@@ -44,13 +44,30 @@ TEST(ControlLine, AnInvalidPositionIsRefused) {
 TEST(ControlLine, HelpAndTheHelpOptionNameTheseCommands) {
   ControlBench bench("EX9052D");
   const std::string text = bench.tell("help");
-  for (const char* command : {"power",  "reset",     "init",          "input",
-                              "pulse",  "inputs",    "outputs",       "led",
-                              "hang",   "status",    "fault FAULT",   "fault off K|all",
-                              "faults", "baud RATE", "format FORMAT", "sent",
-                              "list",   "help",      "quit",          "advance TIME [after N] [quiet]"}) {
-    EXPECT_TRUE(has(text, command)) << command;
-    EXPECT_TRUE(has(control_commands(), command)) << command;
+  for (const std::string form : {"N power on|off",
+                                 "N reset",
+                                 "N init on|off",
+                                 "N input C on|off",
+                                 "N pulse C [COUNT]",
+                                 "N inputs",
+                                 "N outputs",
+                                 "N timers",
+                                 "N filters",
+                                 "N led",
+                                 "N hang",
+                                 "N status",
+                                 "baud RATE",
+                                 "format FORMAT",
+                                 "sent",
+                                 "fault FAULT",
+                                 "fault off K|all",
+                                 "faults",
+                                 "list",
+                                 "help",
+                                 "quit",
+                                 "advance TIME [after N] [quiet]"}) {
+    EXPECT_TRUE(has(" " + text + ",", " " + form + ",")) << form << " in " << text;
+    EXPECT_TRUE(has("\n" + control_commands(), "\n  " + form + (form.size() < 19 ? " " : "\n"))) << form;
   }
 }
 

@@ -109,7 +109,9 @@ TEST(Gateway, AUnitOnALineOfAsciiModulesGetsException0A) {
   GatewayLine bench({"EX9042D@01", "EX9042D-M@02,protocol=ascii"});
   EXPECT_EQ(bench.reply(0x01, kReadOutputs), (Pdu{0x81, kPathUnavailable}));
   EXPECT_EQ(bench.reply(0x05, {0x46, 0x00}), (Pdu{0xC6, kPathUnavailable}));
-  EXPECT_FALSE(bench.ask(0x00, kOutput0On).pdu);
+  const GatewayLine::Result broadcast = bench.ask(0x00, kOutput0On);
+  EXPECT_TRUE(broadcast.answered);
+  EXPECT_FALSE(broadcast.pdu);
   EXPECT_EQ(bench.line.module(0).outputs(), 0);
 }
 
@@ -228,7 +230,7 @@ TEST(Gateway, AModuleThatStartsUpIsNotTreatedAsAnAsciiModule) {
   GatewayLine bench({"EX9042D-M@01"});
   bench.line.module(0).power(false);
   bench.line.module(0).power(true);
-  EXPECT_NE(bench.reply(0x01, kReadOutputs), (Pdu{0x81, kPathUnavailable}));
+  EXPECT_EQ(bench.reply(0x01, kReadOutputs), (Pdu{0x81, kNoReply}));
 }
 
 TEST(Gateway, AReplyAfterTheTimeoutIsNotTheReplyToTheNextRequest) {

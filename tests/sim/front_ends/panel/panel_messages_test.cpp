@@ -312,11 +312,14 @@ TEST(PanelMessages, ClosingAPageDoesNotUndoARefusedCommand) {
 TEST(PanelMessages, ARequestBeyondTheLimitOfUndoCommandsIsRejected) {
   PanelBench bench("EX9055D");
   auto page = bench.panel().viewer();
-  bool taken = true;
-  for (int i = 0; taken && i < 1000; ++i) {
-    taken = page->ask(R"({"id": 1, "do": "1 input 3 on", "undo": ")" + std::to_string(i) + "\"}");
+  const auto ask = [&page](int undo) {
+    return page->ask(R"({"id": 1, "do": "1 input 3 on", "undo": ")" + std::to_string(undo) + "\"}");
+  };
+  constexpr int kLimit = 256;
+  for (int i = 0; i < kLimit; ++i) {
+    ASSERT_TRUE(ask(i)) << i;
   }
-  EXPECT_FALSE(taken);
+  EXPECT_FALSE(ask(kLimit));
 }
 
 TEST(PanelMessages, InitIsATerminalOnModelsWithoutARearSwitch) {

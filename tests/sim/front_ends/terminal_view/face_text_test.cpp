@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <string>
 #include <vector>
@@ -58,14 +59,42 @@ TEST(FaceText, RelaysAreNumberedFromOne) {
   EXPECT_EQ(shown(bench)[1], "   RL      1  2  3  4  5  6  7  8");
 }
 
-TEST(FaceText, HasNoLineOf80OrMoreCharacters) {
+/// Expects that no line of the face has more than 80 characters.
+void expect_to_fit(ModuleBench& bench) {
+  for (const std::string& line : face_text(999, bench.module(), bench.now(), kPlainLamps)) {
+    EXPECT_LE(line.size(), 80U) << line;
+  }
+}
+
+TEST(FaceText, FitsIn80ColumnsInEachProtocolInInitModeAndWithoutPower) {
   for (const Model& model : kModels) {
-    ModuleBench bench(std::string(model.designation) + (model.inputs != 0 ? ",protocol=ascii" : "") +
-                      ",baud=115200,checksum=on,init=on");
-    for (const std::string& line : face_text(100, bench.module(), bench.now(), kPlainLamps)) {
-      EXPECT_LT(line.size(), 80U) << line;
+    std::vector<std::string> settings{"baud=115200,checksum=on"};
+    if (model.speaks_modbus()) {
+      settings = {"baud=115200,protocol=modbus", "baud=115200,protocol=ascii,checksum=on"};
+    }
+    for (const std::string& each : settings) {
+      ModuleBench bench(std::string(model.designation) + "," + each);
+      expect_to_fit(bench);
+      bench.module().set_init(true);
+      bench.module().reset();
+      bench.run(std::chrono::milliseconds(100));
+      expect_to_fit(bench);
+      bench.module().power(false);
+      expect_to_fit(bench);
     }
   }
+}
+
+TEST(FaceText, FitsIn80ColumnsWithTheHighestCountersOfEightInputs) {
+  ModuleBench bench("EX9052D");
+  for (unsigned input = 0; input < 8; ++input) {
+    bench.module().pulse_input(input, 0xFFFF);
+  }
+  const Lines lines = shown(bench);
+  EXPECT_TRUE(std::any_of(lines.begin(), lines.end(), [](const std::string& line) {
+    return line.find("65535 65535") != std::string::npos;
+  }));
+  expect_to_fit(bench);
 }
 
 TEST(FaceText, ShowsOutputsAsRoundLampsIfRequested) {

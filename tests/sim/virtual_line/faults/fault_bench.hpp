@@ -114,7 +114,8 @@ inline std::vector<VirtualTime> answers_of(FaultBench& bench, std::size_t positi
 }
 
 /// Sends `requests` requests to the module at `address`. Returns one character for each request: `x` for a
-/// good reply, `.` for no reply, `?` for a damaged reply.
+/// reply that begins with `!` and the address and has no byte with an error, `.` for no reply, `?` for any
+/// other reply.
 inline std::string answered(FaultBench& bench, unsigned requests, const std::string& address = "01") {
   std::string which;
   for (unsigned i = 0; i < requests; ++i) {
