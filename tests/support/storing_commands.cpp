@@ -126,8 +126,9 @@ std::vector<StoringCommand> modbus_commands(const Model& model) {
   const Change take_address = [](Settings& settings, std::uint16_t) { settings.address = kNewAddress; };
   add("05 protocol", needs_nothing, {0x05, 0x01, 0x00, 0x00, 0x00},
       [](Settings& settings, std::uint16_t) { settings.protocol = Protocol::Ascii; });
-  // The module also executes these requests as broadcasts, because they do not change the protocol, the
-  // counting edge, the address or the baud rate (wire.md section 7).
+  // The module also executes these requests as broadcasts. A broadcast never changes the protocol, the
+  // counting edge, the address or the baud rate (wire.md section 7), or an extension register that is stored
+  // (firmware/extensions.md).
   for (const std::string to : {"", "broadcast "}) {
     add(to + "05 watchdog on", needs_disabled, {0x05, 0x01, 0x04, 0xFF, 0x00},
         [](Settings& settings, std::uint16_t) { settings.watchdog_enabled = true; });

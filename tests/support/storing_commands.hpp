@@ -47,8 +47,8 @@ struct StoringCommand {
   }
 };
 
-/// Returns the commands for `model`, which must support both protocols, and one timeout of the host watchdog
-/// for each protocol.
+/// Returns the commands for `model`, and one timeout of the host watchdog for each protocol. `model` must
+/// support both protocols. It must have 16 outputs or none, and at least 8 inputs or none.
 std::vector<StoringCommand> storing_commands(const Model& model);
 
 /// Returns `text`, then the checksum of `text` if `checksum` is true, then CR.

@@ -12,7 +12,7 @@
 
 namespace ex9000::runner {
 
-/// Returns the transcripts of a file, one for each of its models. Throws like play::load. Also throws
+/// Returns the transcripts of a file, one for each of its `model:` lines. Throws like play::load. Also throws
 /// std::invalid_argument if the file is a scenario.
 inline std::vector<play::Transcript> load_transcripts(const std::string& path) {
   std::vector<play::Transcript> transcripts = play::load(path);

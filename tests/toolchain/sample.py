@@ -56,9 +56,11 @@ def check(
     options: str = "",
     compile_options: str = "",
     link_options: str = "",
+    not_in_script: str = "",
 ) -> Verdict:
     """Builds an image from the sources and runs check-image on it. Each source is a translation unit. Adds the vector
-    table to the first one, and also an empty interrupt handler if the first one does not contain `interrupt`."""
+    table to the first one, and also an empty interrupt handler if the first one does not contain `interrupt`. If
+    `not_in_script` is not empty, the linker script lacks the lines that contain this text."""
     vectors = VECTORS if "interrupt" in source else NO_INTERRUPT + VECTORS
     with tempfile.TemporaryDirectory(prefix="check-image-") as folder:
         objects = []
@@ -68,7 +70,10 @@ def check(
             objects.append(str(cpp.with_suffix(".cpp.o")))
             _run([*_COMPILE, *compile_options.split(), "-c", str(cpp), "-o", objects[-1]])
         image = str(Path(folder, "image.elf"))
-        _run([*_LINK, "-T", str(_HERE / "image.ld"), *objects, *link_options.split(), "-o", image])
+        lines = (_HERE / "image.ld").read_text(encoding="utf-8").splitlines(keepends=True)
+        script = Path(folder, "image.ld")
+        script.write_text("".join(line for line in lines if not not_in_script or not_in_script not in line), "utf-8")
+        _run([*_LINK, "-T", str(script), *objects, *link_options.split(), "-o", image])
         done = subprocess.run(
             [str(_TOOL), image, *objects, *options.split()],
             capture_output=True,

@@ -10,7 +10,7 @@ import unittest
 
 from parts import ROOT
 
-FILES = ("firmware/model/model.hpp", ".github/CHANGELOG.md", "toolchain/release")
+FILES = ("firmware/model/model.hpp", "toolchain/release")
 
 
 class Refusals(unittest.TestCase):
@@ -21,8 +21,10 @@ class Refusals(unittest.TestCase):
         for file in FILES:
             (self.tree / file).parent.mkdir(parents=True, exist_ok=True)
             shutil.copy(ROOT / file, self.tree / file)
+        (self.tree / ".github").mkdir()
         shutil.copytree(ROOT / "toolchain/release_parts", self.tree / "toolchain/release_parts")
         self.write("firmware/model/model.hpp", 'constexpr std::string_view kFirmwareVersion = "D01.07";\n')
+        self.write(".github/CHANGELOG.md", "# Changelog\n\n## Unreleased\n\n## 1.06 - 2026-01-02\n")
         self.git("init", "--quiet")
         self.git("add", ".")
         self.commit()
