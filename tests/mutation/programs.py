@@ -415,7 +415,7 @@ def areas():
     ]
     of_drivers = [hal, interleaved, sim, [players()], image_programs()]
     of_simulator = [LIBRARY_UNITS[name] for name in LIBRARIES["ex9000_command_line"] if name != "core"]
-    # Only a source in WHOLE includes this header in the simulator, so a unit of its test takes the place of the product.
+    # In the simulator, only a source in WHOLE includes this header. The units of its test replace the product.
     of_simulator += [unit for each in sim for unit in each.tests if "sim/front_ends/panel/loopback.hpp" in unit.files]
     return [
         Area("firmware", files("firmware/*.cpp", "firmware/*.hpp"), core + images, [[players()], of_core]),

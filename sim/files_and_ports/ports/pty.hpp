@@ -31,9 +31,9 @@ class Pty {
   [[nodiscard]] const std::string& link() const { return link_; }
   /// Returns the path of the slave, for example /dev/pts/5.
   [[nodiscard]] const std::string& device() const { return device_; }
-  /// Call this when a master has opened or closed the slave. When no master has it open any more, discards the
-  /// bytes that no master has read, as a serial port does: the next master must not receive a reply to the
-  /// previous one. Does not discard them if the next master has opened the slave before this call.
+  /// Call this when a master has opened or closed the slave. When no master has it open any more, discards
+  /// the bytes that no master has read, as a serial port does: the next master must not receive a reply to
+  /// the previous one. Does not discard them if the next master has opened the slave before this call.
   void take_visit();
   /// Returns whether a master has the slave open. If none has, do not write: the bytes would wait for the
   /// next master.

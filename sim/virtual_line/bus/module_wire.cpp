@@ -83,7 +83,8 @@ void ModuleWire::end_first_delay() {
   for (Late& late : late_) {
     late.when -= earlier_by;
   }
-  fate_.late_by = std::max(VirtualTime(0), fate_.late_by - earlier_by);  // for the rest of a reply in progress
+  fate_.late_by =
+      std::max(VirtualTime(0), fate_.late_by - earlier_by);  // for the rest of a reply in progress
 }
 
 void ModuleWire::abort() {

@@ -34,8 +34,7 @@ inline bool are_registers(Bytes request, Bytes reply) {
     return false;
   }
   const unsigned registers = request.word(4);
-  return registers >= 1 && registers <= 125 && reply.size == 3 + 2 * registers &&
-         reply[2] == 2 * registers;
+  return registers >= 1 && registers <= 125 && reply.size == 3 + 2 * registers && reply[2] == 2 * registers;
 }
 
 inline bool is_diagnosis(Bytes request, Bytes reply) {

@@ -32,7 +32,8 @@ TEST(Dcon, TheNextMasterDoesNotReceiveAnUnreadReply) {
     Terminal impatient(simulator.tty(), 9600);
     impatient.type("$05M\r");
     ASSERT_TRUE(simulator.wait_for("!05FIRST")) << simulator.output();
-    // The program answers this command after it has written the last byte of the reply to the pseudo-terminal.
+    // The program answers this command after it has written the last byte of the reply to the
+    // pseudo-terminal.
     control.ok("list");
   }
   // The program may answer the first command before it processes the end of the visit, but not the second.

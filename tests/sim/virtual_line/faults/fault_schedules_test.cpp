@@ -111,7 +111,7 @@ TEST(FaultsSchedule, AReplyFaultMayLastBeyondTheReply) {
   FaultBench bench;
   bench.add("lost-reply every 3rd reply for 100ms");
   const std::string which = answered(bench, 6);  // each request and the wait for its reply take about 55 ms
-  EXPECT_EQ(which, "xx..x.");  // the sixth reply is lost again
+  EXPECT_EQ(which, "xx..x.");                    // the sixth reply is lost again
 }
 
 TEST(FaultsSchedule, AReplyFaultHasItsProbabilityAndIsReproducibleFromTheSeed) {
