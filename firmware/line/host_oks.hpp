@@ -16,7 +16,7 @@ class HostOks {
  public:
   /// In ASCII, a host OK counts from its CR. In Modbus, it counts from the end of its silence. Exception: if
   /// the module's own reply begins and ends before the end of this silence, the host OK counts from the end
-  /// of the reply (wire.md D9).
+  /// of the reply (wire.md D9, D11).
   struct Times {
     Time first;
     Time last;

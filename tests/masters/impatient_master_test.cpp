@@ -98,7 +98,7 @@ TEST(ImpatientMaster, ARequestToAnotherModuleMayImmediatelyFollowAReply) {
 // At 1200 baud, the request takes 67 ms, T3.5 takes 32 ms and the reply takes 58 ms, so the reply ends
 // at 157 ms. The first request to module 02 begins at 175 ms, less than T3.5 later. Module 02 also receives
 // the reply, so it treats the reply and this request as one frame.
-TEST(ImpatientMaster, ARequestWithoutAGapIsLostIfGapsAreStrict) {
+TEST(ImpatientMaster, ARequestLessThanT35AfterAReplyIsLostIfGapsAreStrict) {
   SimulatorProcess simulator({"EX9042D-M@01,baud=1200", "EX9052D-M@02,baud=1200", "--tcp", "0",
                               "--strict-gaps", "--speed", "step", "--control", "ctl"});
   ControlClient control(simulator.directory() + "/ctl");

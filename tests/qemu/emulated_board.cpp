@@ -123,7 +123,7 @@ hal::SerialMode EmulatedBoard::mode() {
   const auto format = line_format_of(uart[3]);
   if (!format || (uart[3] & kUartFifosOn) != 0) {
     throw std::runtime_error("UART0: the line control register is " + std::to_string(uart[3]) +
-                             "; expected 8 data bits, and the FIFOs off");
+                             "; expected 8N1, 8N2, 8E1 or 8O1, and the FIFOs off");
   }
   return {board::kClock.frequency() / 16 * 64 / divisor, *format};
 }

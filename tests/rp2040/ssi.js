@@ -137,7 +137,8 @@ class Ssi extends BasePeripheral {
       this.pins.requestSelect(false);
     } else if (![BOTH_WAYS, EEPROM_READ].includes(this.mode) || ![8, 32].includes(this.frameBits)
       || (this.control & ~0x1f0300) !== 0) {
-      this.error(`control 0x${this.control.toString(16)} is not in this model; expected 8 or 32 bits`);
+      this.error(`control 0x${this.control.toString(16)} is not in this model; expected 8 or 32 bits, `
+        + "in both directions or as EEPROM read");
     }
   }
 

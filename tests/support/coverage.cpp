@@ -81,7 +81,8 @@ std::vector<unsigned> functions_of(modbus::Functions functions) {
 }  // namespace
 
 void Coverage::note(const Module& module, const play::Bytes& sent, const play::Bytes& heard) {
-  // Passes the bytes to a new assembler, which gives the same verdict as the assembler of the module.
+  // Passes the bytes to a new assembler. Its verdict is that of the module's assembler, unless the request
+  // has changed the address: the new assembler already uses the new address, so its verdict is then Foreign.
   const InForce& in_force = module.state().in_force;
   FrameQueue queue;
   Verdict verdict = Verdict::Open;

@@ -1,1 +1,1 @@
-"""Runs a module on a Pico in the npm package rp2040js and connects the module to a pseudo-terminal."""
+"""Runs a module on a Pico that the npm package rp2040js emulates, and connects the module to a pseudo-terminal."""

@@ -368,7 +368,7 @@ Parsed parse_arguments(int argc, const char* const* argv) {
                  "time")
       ->type_name("N|max|step");
   app.add_option("--threads", texts.threads,
-                 "run the lines of a bus file on N threads (default: one for each processor)")
+                 "run the lines of a bus file on at most N threads (default: one for each processor)")
       ->type_name("N");
   app.add_option("--for", texts.lasts, "end after this time on the lines, for example 10s or 24h")
       ->type_name("TIME");

@@ -142,7 +142,7 @@ bool EepromFile::write(std::uint16_t address, Bytes bytes) const {
 
 void EepromFile::lock() const {
   if (flock(file_.get(), LOCK_EX | LOCK_NB) != 0) {
-    refuse(errno == EWOULDBLOCK ? "is in use by another module; end that simulator or name another path"
+    refuse(errno == EWOULDBLOCK ? "is in use by another simulator; end that simulator or name another path"
                                 : reason() + "; name another path");
   }
 }

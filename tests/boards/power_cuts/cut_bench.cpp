@@ -20,7 +20,9 @@ constexpr milliseconds kStoresWithin{600};  // includes the wait until the host 
 constexpr milliseconds kFinishesAnUpdateWithin{200};
 constexpr std::uint16_t kDriven = 0xC35A;  // value of the outputs, set before the command that stores
 
-constexpr unsigned kWholeCopy = 20;  // in bytes; a write that invalidates a copy is shorter
+/// In bytes. A write of at least this size counts as a try to store. A write that invalidates a copy has 8
+/// bytes.
+constexpr unsigned kSmallestTry = 20;
 
 constexpr unsigned kWaysAByteIsLeft = 5;
 /// Returns one of the values that a byte may have if the power fails while the byte changes.
@@ -116,8 +118,9 @@ void CutBench::send(const Bytes& frame) {
   bench_.line.send(frame);
 }
 
-/// Waits for the reply and returns it. Returns an empty vector if no reply begins within kRepliesWithin after
-/// the end of the request.
+/// Waits until the request has been sent and its reply has ended, and returns the reply. Returns an empty
+/// vector if no reply has begun within kRepliesWithin after the end of the request or after the call,
+/// whichever is later.
 CutBench::Bytes CutBench::hear() {
   while (bench_.line.sending()) {
     bench_.run_for(microseconds(500));
@@ -264,7 +267,7 @@ void CutBench::finish_update() {
     bench_.run_for(milliseconds(1));
   }
   ASSERT_FALSE(has_unfinished_update(CutBench::contents())) << "the update is not finished";
-  bench_.run_for(milliseconds(10));  // the module reads back what it has stored
+  bench_.run_for(milliseconds(10));  // the driver polls until the EEPROM has ended its last write
 }
 
 Cuts CutBench::cut_while_finishing_update(const Contents& contents) {
@@ -327,7 +330,7 @@ Attempt CutBench::attempt(const Contents& contents, const Settings& before, cons
   bench_.run_for(kStoresWithin);
   attempt.tries = static_cast<unsigned>(std::count_if(
       eeprom.programmed().begin() + static_cast<std::ptrdiff_t>(had_programmed), eeprom.programmed().end(),
-      [](const EepromChip::Programmed& page) { return page.size >= kWholeCopy; }));
+      [](const EepromChip::Programmed& page) { return page.size >= kSmallestTry; }));
   attempt.spoiled = eeprom.spoiled() - had_spoiled;
   if (command.answered) {
     attempt.reply = hear();

@@ -83,19 +83,19 @@ std::vector<Scenario> scenarios() {
       dcon(
           "a frame after a frame without a reply", [](Bench& bench) { bench.bytes("#**\r"); },
           std::vector<Step>{silence} + dcon_name, {{"!019055\r"}, {}}, outputs_and_name),
-      dcon("a frame and the memory while storing", storing("~01ONEW\r", "!01\r"),
+      dcon("a frame, and then the end of a memory job, during a store", storing("~01ONEW\r", "!01\r"),
            frame("$01M\r", "!01NEW\r") + std::vector<Step>{memory_done}, {{"!01\r", "!01NEW\r"}},
            outputs_and_name),
-      dcon("the memory and a frame while storing", storing("~01ONEW\r", "!01\r"),
+      dcon("the ends of memory jobs, and then a frame, during a store", storing("~01ONEW\r", "!01\r"),
            std::vector<Step>{memory_done, memory_done, memory_done} + frame("$01M\r", "!01NEW\r"),
            {{"!01\r", "!01NEW\r"}, {"!01\r"}}, outputs_and_name),
-      dcon("a reply leaves while it is begun", asked("$01M\r", "!019055\r"),
-           {reply_byte_leaves, reply_byte_leaves, tick, reply_leaves, tick}, {{"!019055\r"}},
-           outputs_and_name),
-      dcon("a reply leaves, and the next request", replying("$01M\r", "!019055\r"),
+      dcon("bytes of a reply are sent while the main loop still starts this reply",
+           asked("$01M\r", "!019055\r"), {reply_byte_leaves, reply_byte_leaves, tick, reply_leaves, tick},
+           {{"!019055\r"}}, outputs_and_name),
+      dcon("a reply ends, and then the next request arrives", replying("$01M\r", "!019055\r"),
            std::vector<Step>{reply_leaves} + frame("@0103\r", ">\r"), {{"!019055\r", ">\r"}},
            outputs_and_name),
-      restless(dcon("the line falls silent with a request waiting",
+      restless(dcon("a reply ends while a request waits",
                     replying_with_one_more("~01ONEW\r", "!01\r", "$01M\r", "!01NEW\r"), {reply_leaves},
                     {{"!01\r", "!01NEW\r"}}, outputs_and_name)),
       dcon("edges while idle", nothing, edges, {{}}, inputs),
@@ -120,15 +120,16 @@ std::vector<Scenario> scenarios() {
       dcon("edges while storing", storing("~01ONEW\r", "!01\r"), edges + std::vector<Step>{memory_done},
            {{"!01\r"}}, inputs),
       dcon("ticks while idle", nothing, {tick, tick}, {{}}, outputs_and_name),
-      with_watchdog(dcon("two host OKs, one before and one after the expiry", until_expiry(Duration(500)),
-                         frame("~**\r", "host OK") + frame("~**\r", "host OK"), {{}}, restarted)),
+      with_watchdog(dcon("two host OKs, before and after the time at which the watchdog would expire",
+                         until_expiry(Duration(500)), frame("~**\r", "host OK") + frame("~**\r", "host OK"),
+                         {{}}, restarted)),
       with_watchdog(dcon("host OK while idle", nothing, frame("~**\r", "host OK"), {{}}, restarted)),
       with_watchdog(dcon("host OK after a frame without a reply", asked("#**\r", ""),
                          frame("~**\r", "host OK"), {{}}, restarted)),
       with_watchdog(dcon("host OK after a frame", asked("$01M\r", "!019055\r"), frame("~**\r", "host OK"),
                          {{"!019055\r"}}, no_matter)),
       with_watchdog(dcon(
-          "host OK while storing, the queue full",
+          "host OK while the module stores and the queue is full",
           [](Bench& bench) {
             storing("~01ONEW\r", "!01\r")(bench);
             bench.asks("$01M\r", "!01NEW\r");
@@ -140,16 +141,16 @@ std::vector<Scenario> scenarios() {
              frame(kRtuRead, kRtuReadOnReply), {{kRtuOn, kRtuReadOnReply}, {kRtuOn}}, outputs_and_name),
       modbus("a Modbus frame while storing", storing(kRtuStore, kRtuStore),
              rtu_read + std::vector<Step>{memory_done}, {{kRtuStore, kRtuReadReply}}, outputs_and_name),
-      modbus("a Modbus reply leaves, and the next request", replying(kRtuOn, kRtuOn),
+      modbus("a Modbus reply ends, and then the next request arrives", replying(kRtuOn, kRtuOn),
              std::vector<Step>{reply_leaves} + frame(kRtuRead, kRtuReadOnReply), {{kRtuOn, kRtuReadOnReply}},
              outputs_and_name),
-      restless(modbus("the Modbus line falls silent with a request waiting",
+      restless(modbus("a Modbus reply ends while a request waits",
                       replying_with_one_more(kRtuStore, kRtuStore, kRtuRead, kRtuReadReply), {reply_leaves},
                       {{kRtuStore, kRtuReadReply}}, outputs_and_name)),
       with_watchdog(
           modbus("Modbus host OK while idle", nothing, frame(kRtuHostOk, "host OK"), {{}}, modbus_restarted)),
       with_watchdog(modbus(
-          "Modbus host OK while storing, the queue full",
+          "Modbus host OK while the module stores and the queue is full",
           [](Bench& bench) {
             storing(kRtuStore, kRtuStore)(bench);
             bench.asks(kRtuRead, kRtuReadReply);

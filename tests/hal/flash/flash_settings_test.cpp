@@ -23,7 +23,8 @@ using hal::flash::Tear;
 constexpr unsigned kSeed = 1;
 constexpr std::uint64_t kReplyLimit = 200'000;  ///< us; wire.md sections 3 and 7
 
-static_assert(kStoredMemory == hal::flash::kStoreSize, "the store has the pages that the settings use");
+static_assert(kStoredMemory == hal::flash::kStoreSize,
+              "kStoreSize: differs from kStoredMemory; expected exactly the bytes that the settings use");
 
 /// A module's settings in a flash, from one reset to the next.
 class OnFlash {

@@ -9,7 +9,7 @@ namespace ex9000::reference {
 namespace {
 
 constexpr std::chrono::milliseconds kTimeoutUnit{100};  // wire.md 6: VV x 0.1 s
-/// Covers one tick, and the time until the module executes a received request.
+/// Covers one tick, and the time until the main loop executes a request after the silence at its end.
 constexpr std::chrono::milliseconds kTick{3};
 /// The longest silence that ends a Modbus frame: 32.08 ms at 1200 baud (wire.md 7), rounded up. The module
 /// judges an ASCII frame earlier.

@@ -289,7 +289,7 @@ bool Session::play_step(const Send& send) {
                       (behind_another ? kAnswersStoring : milliseconds(0));
   const Time after = began - sent;
   if (after < earliest - std::chrono::microseconds(2) || after > latest) {
-    return differs("; an answer after " + microseconds(earliest) + " to " + microseconds(latest),
+    return differs("; a reply after " + microseconds(earliest) + " to " + microseconds(latest),
                    "after " + microseconds(after));
   }
   return true;
