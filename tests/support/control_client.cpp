@@ -25,7 +25,7 @@ ControlClient::~ControlClient() { close(fd_); }
 
 void ControlClient::send(const std::string& bytes) {
   if (::send(fd_, bytes.data(), bytes.size(), MSG_NOSIGNAL) != static_cast<ssize_t>(bytes.size())) {
-    throw std::runtime_error("the simulator does not listen any more");
+    throw std::runtime_error("the simulator has closed the connection");
   }
 }
 

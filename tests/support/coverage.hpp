@@ -9,10 +9,10 @@
 
 namespace ex9000::runner {
 
-/// Each refusal, verdict, ASCII command and Modbus function has an id, for example `refusal/OutOfRange`,
-/// `verdict/Foreign`, `dcon/read-latches` or `modbus/08`. A row of the register map has an id for each
-/// function that can access it, for example `coil/outputs/05` or `register/address/06`. Host OK in Modbus has
-/// the id `register/host-ok`.
+/// Each ASCII command and Modbus function has an id, for example `dcon/read-latches` or `modbus/08`. Each
+/// refusal and verdict that the transcripts must reach has an id, for example `refusal/OutOfRange` or
+/// `verdict/Foreign`. A row of the register map has an id for each function that can access it, for example
+/// `coil/outputs/05` or `register/address/06`. Host OK in Modbus has the id `register/host-ok`.
 class Coverage {
  public:
   /// Records the verdict on the bytes `sent`, and the rows or the refusal that they reach. `module` must have

@@ -41,7 +41,8 @@ class TerminalPort final : public MasterPort {
   static constexpr std::chrono::seconds kHang{60};
   static std::vector<std::uint8_t> not_empty(std::vector<std::uint8_t> bytes) {
     if (bytes.empty()) {
-      throw std::runtime_error("the simulator has written bytes, and none came within 60 s");
+      throw std::runtime_error(
+          "the simulator has written bytes, but none has arrived within 60 s, or it has closed the port");
     }
     return bytes;
   }

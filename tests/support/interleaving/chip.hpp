@@ -26,7 +26,8 @@ struct Sent {
 };
 
 /// Simulates only the hardware. Stores the times of the next events; `kNever` if none is due. At `sent_due`,
-/// the owner must call `shift`. At each other time, it must call the interrupt handler. While `interrupts()`
+/// the owner must call `shift`. At each other time, the owner must set this time to `kNever` or to the next
+/// event, and call the interrupt handler. At `tick_due`, it must also increment `ticks`. While `interrupts()`
 /// is true, it must call the interrupt handler of the UART.
 class Chip final : public hal::bus::Peripherals {
  public:
