@@ -19,16 +19,24 @@ OPEN_LINES = """[...document.querySelectorAll(".line[open]:not([hidden]) .linena
     .map((each) => each.firstChild.textContent)"""
 
 
+def entering(words):
+    """Returns an expression that enters the words in the field `find`."""
+    return f"""((field) => {{ field.value = "{words}"; field.dispatchEvent(new Event("input")) }})(
+        document.getElementById("find"))"""
+
+
 class Plant(Panel):
     def setUp(self):
         super().setUp()
         self.simulator = self.bus(LINES)
         self.browser.open(self.simulator.address)
         self.browser.until(f"{SHOWN_LINES}.length === 7")
+        # The page can show the lines before the names of the modules have arrived.
+        self.browser.until(f"({entering('p6v9')}, {PLATES}.length === 1)")
+        self.find("")
 
     def find(self, words):
-        self.browser.run(f"""const field = document.getElementById("find"); field.value = "{words}";
-            field.dispatchEvent(new Event("input"))""")
+        self.browser.run(entering(words))
 
     def value(self, expression):
         return self.browser.run(f"return {expression}")

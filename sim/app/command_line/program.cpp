@@ -14,6 +14,7 @@
 #include "sim/app/command_line/arguments.hpp"
 #include "sim/app/command_line/play_record.hpp"
 #include "sim/app/command_line/standard_stream.hpp"
+#include "sim/app/exports/formats.hpp"
 #include "sim/app/play/play.hpp"
 #include "sim/app/running_program/running_program.hpp"
 #include "sim/app/running_program/stop_signals.hpp"
@@ -49,8 +50,8 @@ void run(const Setup& setup) {
   if (setup.watch) {
     terminal.emplace(STDOUT_FILENO, gives_up);
   }
-  RunningProgram running(io, setup, print_line, greet,
-                         terminal && terminal->is_open() ? &*terminal : nullptr);
+  RunningProgram running(io, setup, print_line, greet, terminal && terminal->is_open() ? &*terminal : nullptr,
+                         setup.panel ? json_of(all_models()) : "");
   running.start();
   if (setup.speed.max()) {
     running.run_unpaced();

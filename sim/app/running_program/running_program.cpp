@@ -7,7 +7,6 @@
 #include <thread>
 #include <utility>
 
-#include "sim/app/exports/formats.hpp"
 #include "sim/app/run_setup/paths_in_use.hpp"
 #include "sim/text/fail.hpp"
 
@@ -29,7 +28,7 @@ std::size_t threads_of(const Setup& setup) {
 }  // namespace
 
 RunningProgram::RunningProgram(boost::asio::io_context& io, Setup setup, Print print, Print greet,
-                               Terminal* terminal)
+                               Terminal* terminal, const std::string& models)
     : io_(io),
       setup_(std::move(setup)),
       print_(std::move(print)),
@@ -51,7 +50,7 @@ RunningProgram::RunningProgram(boost::asio::io_context& io, Setup setup, Print p
         setup_.speed.stepped(), [this, lead](const std::string& text) { print_line(lead + text); }));
   }
   open_control();
-  open_panel();
+  open_panel(models);
   watch_lines();
   open_capture();
 }
@@ -84,7 +83,7 @@ void RunningProgram::open_control() {
   });
 }
 
-void RunningProgram::open_panel() {
+void RunningProgram::open_panel(const std::string& models) {
   if (!setup_.panel) {
     return;
   }
@@ -103,9 +102,9 @@ void RunningProgram::open_panel() {
           boost::asio::dispatch(io_, [this, i, now, text] { panel_->note(i, now, text); });
         });
   }
-  with_place(place_of(setup_.places, "panel"), [this] {
-    panel_server_ = std::make_unique<PanelServer>(io_, setup_.panel->port, json_of(all_models()),
-                                                  static_cast<PanelSource&>(*this));
+  with_place(place_of(setup_.places, "panel"), [this, &models] {
+    panel_server_ =
+        std::make_unique<PanelServer>(io_, setup_.panel->port, models, static_cast<PanelSource&>(*this));
   });
 }
 

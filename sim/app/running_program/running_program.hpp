@@ -34,8 +34,10 @@ class RunningProgram : private PanelSource {
   /// or std::runtime_error with a one-line message. After an exception, everything is closed again, no new
   /// file remains, and the content of existing files is unchanged. `print` receives the log, the notes and
   /// the greeting; if the log is JSON, `greet` receives the greeting instead. `terminal` is used only if
-  /// `setup.watch` is true; see Watch. `io` and `terminal` must outlive this object.
-  RunningProgram(boost::asio::io_context& io, Setup setup, Print print, Print greet, Terminal* terminal);
+  /// `setup.watch` is true; see Watch. `models` is the content of the panel's /models.json. `io` and
+  /// `terminal` must outlive this object.
+  RunningProgram(boost::asio::io_context& io, Setup setup, Print print, Print greet, Terminal* terminal,
+                 const std::string& models);
   ~RunningProgram() override;
   RunningProgram(const RunningProgram&) = delete;
   RunningProgram& operator=(const RunningProgram&) = delete;
@@ -63,7 +65,7 @@ class RunningProgram : private PanelSource {
   void end_by_the_clock();
   void begin();
   void make_files_and_greet();
-  void open_panel();
+  void open_panel(const std::string& models);
   void open_capture();
   void watch_lines();
   void keep_watching();

@@ -60,7 +60,7 @@ TEST(Face, ShowsTheRemainingTimeOfATimedOutput) {
   EXPECT_EQ(face_of(bench).plate.timers[2], 0);
 }
 
-TEST(Face, WithoutPowerShowsOnlySwitchesInputsAndStoredSettings) {
+TEST(Face, WithoutPowerShowsSwitchesInputsAndStoredSettingsButNoFirmwareState) {
   ModuleBench bench("EX9055D@07");
   ASSERT_EQ(bench.ask("@0705"), ">");
   bench.module().set_input(0, true);

@@ -126,7 +126,7 @@ TEST_F(BusTest, AByteTakesElevenBitsInTheFormatsOtherThan8N1) {
       sender.send(bytes.data(), bytes.size());
       bus.run_for(std::chrono::seconds(2));
       ASSERT_EQ(listener.heard.size(), 100U) << baud;
-      // Receivers ignore a second stop bit, so they get the byte before it.
+      // Receivers ignore a second stop bit, so they get a byte at the end of its first stop bit.
       const double first = format == LineFormat::k8N2 ? 10e9 / baud : 11e9 / baud;
       EXPECT_NEAR(static_cast<double>(listener.heard.front().at.count()), first, 1.0) << baud;
       EXPECT_NEAR(static_cast<double>(listener.heard.back().at.count()), 99 * 11e9 / baud + first, 2.0)
