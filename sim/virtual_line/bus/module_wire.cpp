@@ -39,6 +39,7 @@ void ModuleWire::hand_on(What what, std::uint8_t byte, SerialMode mode) {
   }
   if (fate_.late_by == VirtualTime(0) && late_.empty()) {
     carry_out(what, byte, mode, reply_);
+    driving_late_ = driving_late_ && what != What::Off;  // `run` may have begun this reply as a late one
   } else {
     late_.push_back({clock_.virtual_now() + fate_.late_by, what, byte, mode, reply_});
   }

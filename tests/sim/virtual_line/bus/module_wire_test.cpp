@@ -91,6 +91,20 @@ TEST_F(ModuleWireTest, EndingTheDelaySendsALateReplyImmediately) {
   EXPECT_EQ(wires.happened.size(), 9U);
 }
 
+TEST_F(ModuleWireTest, AReplyWhoseDelayEndsWhenItBeginsIsNotLateAnyMore) {
+  watch();
+  fate.late_by = 1h;
+  run_until(5ms);
+  wire.drive(true);
+  wire.end_first_delay();
+  run_until(5ms);
+  wire.put('a', {9600});
+  run_until(6ms);
+  wire.drive(false);
+  EXPECT_FALSE(wire.sends_late());
+  EXPECT_EQ(wires.happened, (Happened{"5 on", "5 a 9600", "6 off"}));
+}
+
 TEST_F(ModuleWireTest, LimitsTheNumberOfStoredLateReplies) {
   watch();
   fate.late_by = 1h;
