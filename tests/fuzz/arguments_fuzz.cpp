@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "sim/app/bus_file/bus_file.hpp"
-#include "sim/app/command_line/arguments.hpp"
+#include "sim/app/main/arguments.hpp"
 #include "tests/fuzz/require.hpp"
 
 namespace ex9000::fuzz {

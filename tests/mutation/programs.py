@@ -414,7 +414,7 @@ def areas():
         if not file.startswith("hal/rp2040/") or any(file in unit.files for each in hal for unit in each.tests)
     ]
     of_drivers = [hal, interleaved, sim, [players()], image_programs()]
-    of_simulator = [LIBRARY_UNITS[name] for name in LIBRARIES["ex9000_command_line"] if name != "core"]
+    of_simulator = [LIBRARY_UNITS[name] for name in LIBRARIES["ex9000_main"] if name != "core"]
     # In the simulator, only a source in WHOLE includes this header. The units of its test replace the product.
     of_simulator += [unit for each in sim for unit in each.tests if "sim/front_ends/panel/loopback.hpp" in unit.files]
     return [

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/app/command_line/arguments.hpp"
+#include "sim/app/main/arguments.hpp"
 #include "tests/support/directory.hpp"
 #include "tests/support/refusal.hpp"
 

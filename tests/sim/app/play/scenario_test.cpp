@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "sim/app/bus_file/bus_file.hpp"
-#include "sim/app/command_line/play_record.hpp"
+#include "sim/app/main/play_record.hpp"
 #include "sim/app/play/bus_target.hpp"
 #include "sim/app/play/play.hpp"
 #include "sim/app/play/player.hpp"

@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <string>
 
-#include "tests/sim/app/command_line/persistent_simulator.hpp"
+#include "tests/sim/app/main/persistent_simulator.hpp"
 #include "tests/support/child_process.hpp"
 #include "tests/support/directory.hpp"
 #include "tests/support/simulator_process.hpp"

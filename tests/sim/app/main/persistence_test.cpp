@@ -11,7 +11,7 @@
 #include "firmware/model/baud.hpp"
 #include "sim/text/values.hpp"
 #include "tests/firmware/settings/stored_bytes.hpp"
-#include "tests/sim/app/command_line/persistent_simulator.hpp"
+#include "tests/sim/app/main/persistent_simulator.hpp"
 #include "tests/support/directory.hpp"
 
 namespace ex9000::system {

@@ -1,4 +1,4 @@
-#include "sim/app/command_line/standard_stream.hpp"
+#include "sim/app/main/standard_stream.hpp"
 
 #include <unistd.h>
 

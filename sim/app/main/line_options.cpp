@@ -1,9 +1,9 @@
-#include "sim/app/command_line/line_options.hpp"
+#include "sim/app/main/line_options.hpp"
 
 #include <cstddef>
 #include <utility>
 
-#include "sim/app/command_line/option_values.hpp"
+#include "sim/app/main/option_values.hpp"
 #include "sim/text/fail.hpp"
 #include "sim/text/values.hpp"
 

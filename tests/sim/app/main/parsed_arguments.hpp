@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/app/command_line/arguments.hpp"
+#include "sim/app/main/arguments.hpp"
 
 namespace ex9000::sim {
 

@@ -12,7 +12,7 @@
 #include <string>
 
 #include "tests/oracles/reference/hexadecimal.hpp"
-#include "tests/sim/app/command_line/persistent_simulator.hpp"
+#include "tests/sim/app/main/persistent_simulator.hpp"
 #include "tests/support/directory.hpp"
 
 namespace ex9000::system {

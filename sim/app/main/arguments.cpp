@@ -1,4 +1,4 @@
-#include "sim/app/command_line/arguments.hpp"
+#include "sim/app/main/arguments.hpp"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -6,10 +6,10 @@
 #include <utility>
 
 #include "sim/app/bus_file/bus_file.hpp"
-#include "sim/app/command_line/help.hpp"
-#include "sim/app/command_line/line_options.hpp"
-#include "sim/app/command_line/option_values.hpp"
 #include "sim/app/exports/describe.hpp"
+#include "sim/app/main/help.hpp"
+#include "sim/app/main/line_options.hpp"
+#include "sim/app/main/option_values.hpp"
 #include "sim/text/durations.hpp"
 #include "sim/text/fail.hpp"
 

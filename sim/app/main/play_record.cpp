@@ -1,4 +1,4 @@
-#include "sim/app/command_line/play_record.hpp"
+#include "sim/app/main/play_record.hpp"
 
 #include <utility>
 

@@ -1,5 +1,5 @@
 // Tests the command line of ex9000-sim: the modules and the options of a run.
-#include "sim/app/command_line/arguments.hpp"
+#include "sim/app/main/arguments.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/sim/app/command_line/parsed_arguments.hpp"
+#include "tests/sim/app/main/parsed_arguments.hpp"
 
 namespace ex9000::sim {
 namespace {

@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "sim/app/bus_file/bus_file.hpp"
-#include "sim/app/command_line/arguments.hpp"
 #include "sim/app/exports/formats.hpp"
+#include "sim/app/main/arguments.hpp"
 #include "sim/front_ends/control/control.hpp"
-#include "tests/sim/app/command_line/parsed_arguments.hpp"
+#include "tests/sim/app/main/parsed_arguments.hpp"
 
 namespace ex9000::sim {
 namespace {

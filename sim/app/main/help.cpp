@@ -1,4 +1,4 @@
-#include "sim/app/command_line/help.hpp"
+#include "sim/app/main/help.hpp"
 
 #include "sim/front_ends/control/control.hpp"
 #include "sim/virtual_line/faults/fault.hpp"
