@@ -1,6 +1,6 @@
 // Runs hal::Device on peripherals that are plain values, in virtual microseconds. The module of the simulator
-// also has a bus, logs and real ports, which makes it too slow: a fuzz target must run a hundred million
-// modules in about an hour.
+// also requires a bus, which makes it too slow: a fuzz target must run a hundred million modules in about an
+// hour.
 #pragma once
 
 #include <algorithm>
@@ -205,8 +205,8 @@ class LeanModule {
   LeanModule(const Model& model, ModuleObserver& observer, TimingAt timing_at)
       : model_(model), timing_at_(timing_at), around_(observer) {}
 
-  /// Switches the module on, or resets it. A reset interrupts a write in progress. Returns when the module
-  /// has started; aborts if this takes more than 100 ms.
+  /// Switches the module on. If it is on already, this is a power cycle, which interrupts a write in
+  /// progress. Returns when the module has started; aborts if this takes more than 100 ms.
   void reset() {
     if (device_) {
       board().memory.cut();

@@ -117,7 +117,9 @@ class FlashChip {
     }
     this.rejectSuspended(address, kind);
     if (kind === "program" ? bytes.length === 0 || bytes.length > PAGE - (address % PAGE) : bytes.length !== 0) {
-      throw new Error(`flash: ${kind} of ${bytes.length} bytes at ${address.toString(16)}`);
+      const expected = kind === "program" ? `1 to ${PAGE - (address % PAGE)}, up to the end of the page` : "none";
+      const place = `flash: ${kind} at 0x${address.toString(16)}`;
+      throw new Error(`${place}: has ${bytes.length} data bytes; expected ${expected}`);
     }
     this.run({ kind, address, bytes, sector: Math.floor(address / SECTOR), left: this.times[kind] });
   }

@@ -85,7 +85,7 @@ TEST(FaceText, FitsIn80ColumnsInEachProtocolInInitModeAndWithoutPower) {
   }
 }
 
-TEST(FaceText, FitsIn80ColumnsWithTheHighestCountersOfEightInputs) {
+TEST(FaceText, FitsIn80ColumnsWithFiveDigitCountersOfEightInputs) {
   ModuleBench bench("EX9052D");
   for (unsigned input = 0; input < 8; ++input) {
     bench.module().pulse_input(input, 0xFFFF);
