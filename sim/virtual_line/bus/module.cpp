@@ -138,8 +138,8 @@ void SimulatedModule::force_rate(std::uint32_t baud) {
   settle();
 }
 
-void SimulatedModule::release_late_replies() {
-  wire_.end_first_delay();
+void SimulatedModule::end_reply_delays(std::optional<std::size_t> fault) {
+  wire_.end_delays(fault);
   settle();
 }
 

@@ -67,8 +67,8 @@ class SimulatedModule final : public Station {
   void force_rate(std::uint32_t baud);
   /// Returns the rate and format in which the module receives; a rate of 0: it does not listen.
   [[nodiscard]] SerialMode mode() const { return mcu_ ? wire_.forced(mcu_->line.mode()) : SerialMode{}; }
-  /// See ModuleWire::end_first_delay.
-  void release_late_replies();
+  /// See ModuleWire::end_delays.
+  void end_reply_delays(std::optional<std::size_t> fault);
   /// See ModuleWire::Begins, ModuleWire::Ends and ModuleWire::OnTheWires.
   void watch_replies(ModuleWire::Begins begins, ModuleWire::Ends ends, ModuleWire::OnTheWires on_the_wires) {
     wire_.watch(std::move(begins), std::move(ends), std::move(on_the_wires));

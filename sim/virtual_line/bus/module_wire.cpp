@@ -21,8 +21,9 @@ void ModuleWire::drive(bool on) {
       tell(reply_, false);
     }
     forced_for_reply_ = forced_;
+    delay_ = fate_.late_by;
     if (!late_.empty()) {  // replies keep their order: a reply after a late one is late too
-      fate_.late_by = std::max(fate_.late_by, late_.back().when - clock_.virtual_now());
+      delay_ = std::max(delay_, late_.back().when - clock_.virtual_now());
     }
   }
   hand_on(on ? What::On : What::Off, 0, {});
@@ -37,11 +38,12 @@ void ModuleWire::hand_on(What what, std::uint8_t byte, SerialMode mode) {
   if (fate_.lost) {
     return;
   }
-  if (fate_.late_by == VirtualTime(0) && late_.empty()) {
+  const VirtualTime now = clock_.virtual_now();
+  if (delay_ == VirtualTime(0) && late_.empty()) {
     carry_out(what, byte, mode, reply_);
     driving_late_ = driving_late_ && what != What::Off;  // `run` may have begun this reply as a late one
   } else {
-    late_.push_back({clock_.virtual_now() + fate_.late_by, what, byte, mode, reply_});
+    late_.push_back({now, now + delay_, what, byte, mode, reply_, fate_});
   }
 }
 
@@ -76,16 +78,23 @@ void ModuleWire::run() {
   }
 }
 
-void ModuleWire::end_first_delay() {
-  if (late_.empty() || late_.front().what != What::On) {
-    return;
-  }
-  const VirtualTime earlier_by = late_.front().when - clock_.virtual_now();
+void ModuleWire::end_delays(std::optional<std::size_t> fault) {
+  VirtualTime free = clock_.virtual_now();  // when the replies before the next one have ended
+  std::optional<VirtualTime> delay;         // nullopt: of a reply that has begun on the wires
   for (Late& late : late_) {
-    late.when -= earlier_by;
+    if (late.what == What::On) {
+      if (fault.value_or(late.fate.delayed_by) == late.fate.delayed_by) {
+        // Keeps the time between this reply and the one before.
+        late.fate.late_by = delay.value_or(VirtualTime(0));
+      }
+      delay = std::max(late.fate.late_by, free - late.sent);
+    }
+    if (delay) {
+      late.when = late.sent + *delay;
+    }
+    free = std::max(free, late.when);
   }
-  fate_.late_by =
-      std::max(VirtualTime(0), fate_.late_by - earlier_by);  // for the rest of a reply in progress
+  delay_ = delay.value_or(delay_);  // if the UART still sends the last of these replies
 }
 
 void ModuleWire::abort() {

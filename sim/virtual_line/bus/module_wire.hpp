@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
+#include <optional>
 
 #include "hal/doubles/serial_line.hpp"
 #include "hal/doubles/virtual_clock.hpp"
@@ -21,6 +22,7 @@ using hal::doubles::Wire;
 struct ReplyFate {
   bool lost = false;
   VirtualTime late_by{0};
+  std::size_t delayed_by = 0;  ///< number of the fault that makes the reply late, from 1; 0: none
 };
 
 /// Passes on the bytes that a UART sends. Without a defect, the bytes and their times are unchanged.
@@ -47,10 +49,10 @@ class ModuleWire final : public Wire {
   [[nodiscard]] bool sends_late() const { return driving_late_; }
   [[nodiscard]] VirtualTime next() const { return late_.empty() ? kNever : late_.front().when; }
   void run();
-  /// Makes all waiting bytes earlier by the same time, so that the first late reply begins now. Has no effect
-  /// if no byte waits, or if this reply has already begun on the wires. The bytes that the UART has not sent
-  /// yet of a reply in progress become earlier by the same time.
-  void end_first_delay();
+  /// Ends the delay of all replies that `fault` (ReplyFate::delayed_by) makes late, or of all replies if
+  /// `fault` is nullopt. The first such reply begins now, or when the replies before it have ended; the next
+  /// ones follow it as the UART has sent them. A reply that has begun on the wires keeps its delay.
+  void end_delays(std::optional<std::size_t> fault);
   /// Drops all bytes that are not on the wires yet, and disables the driver if a late reply is on the wires.
   /// Call this when the module loses its supply or is reset.
   void abort();
@@ -65,11 +67,13 @@ class ModuleWire final : public Wire {
  private:
   enum class What { On, Byte, Off };
   struct Late {
-    VirtualTime when;
+    VirtualTime sent;  ///< time at which the UART did this
+    VirtualTime when;  ///< time at which it happens on the wires
     What what;
     std::uint8_t byte;
     SerialMode mode;
     std::uint64_t reply;
+    ReplyFate fate;
   };
 
   /// A reply is lost if `late_` has more entries than this when the reply begins, so that endless requests
@@ -92,6 +96,8 @@ class ModuleWire final : public Wire {
   Ends ends_;
   OnTheWires on_the_wires_;
   ReplyFate fate_;
+  VirtualTime delay_{
+      0};  ///< that of the reply in progress; longer than `fate_.late_by` if a late reply precedes
   std::uint64_t reply_ = 0;  ///< number of the reply that the UART sends, or has sent last
   std::uint32_t forced_ = 0;
   std::uint32_t forced_for_reply_ = 0;  ///< the forced rate for the whole reply

@@ -92,11 +92,8 @@ bool Faults::remove(std::size_t number) {
   if (found == armed_.end()) {
     return false;
   }
-  const Armed removed = *found;
   armed_.erase(found);
-  if (removed.fault.trouble == Trouble::LateReply && removed.occurrences_so_far != 0) {
-    release_late_replies(removed.fault.module);
-  }
+  end_reply_delays(number);
   change();
   act();
   return true;
@@ -104,18 +101,15 @@ bool Faults::remove(std::size_t number) {
 
 void Faults::remove_all() {
   armed_.clear();
-  release_late_replies(std::nullopt);
+  end_reply_delays(std::nullopt);
   change();
   act();
 }
 
-/// Sends the late replies of the module `only` now, or those of all modules if it is nullopt. Does not send
-/// those of a module that another fault still delays.
-void Faults::release_late_replies(std::optional<std::size_t> only) {
-  for (std::size_t i = 0; i < modules_.size(); ++i) {
-    if (only.value_or(i) == i && !affected_by(Trouble::LateReply, i)) {
-      modules_[i]->release_late_replies();
-    }
+/// Ends the delays of the replies that this fault makes late, or of all replies if `fault` is nullopt.
+void Faults::end_reply_delays(std::optional<std::size_t> fault) {
+  for (const auto& module : modules_) {
+    module->end_reply_delays(fault);
   }
 }
 
@@ -280,8 +274,9 @@ ReplyFate Faults::reply_begins(std::size_t module, std::uint64_t reply) {
   if (fate.lost) {
     reply_on_the_wires(module, reply, false);
   }
-  if (const Fault* late = active(Trouble::LateReply, module)) {
-    fate.late_by = late->time;
+  if (const Armed* late = active(Trouble::LateReply, module)) {
+    fate.late_by = late->fault.time;
+    fate.delayed_by = late->number;
   }
   return fate;
 }
@@ -337,10 +332,10 @@ void Faults::written(std::size_t module) {
 
 /// Returns a fault of this kind that affects the module at present, or null. If a reply triggered an
 /// occurrence, the occurrence affects only the module that sent the reply.
-const Fault* Faults::active(Trouble trouble, std::size_t module) const {
+const Faults::Armed* Faults::active(Trouble trouble, std::size_t module) const {
   for (const Armed& armed : armed_) {
     if (armed.fault.trouble == trouble && armed.occurs_at(module)) {
-      return &armed.fault;
+      return &armed;
     }
   }
   return nullptr;
@@ -358,8 +353,8 @@ const Fault* Faults::active_on_the_line(Trouble trouble) const {
 void Faults::take_effect() {
   set_powers();
   for (std::size_t i = 0; i < modules_.size(); ++i) {
-    const Fault* const wrong = active(Trouble::WrongRate, i);
-    modules_[i]->force_rate(wrong == nullptr ? 0 : wrong->baud);
+    const Armed* const wrong = active(Trouble::WrongRate, i);
+    modules_[i]->force_rate(wrong == nullptr ? 0 : wrong->fault.baud);
   }
   set_late_drivers();
   for (const std::size_t module : std::exchange(hanging_, {})) {
@@ -380,8 +375,8 @@ void Faults::set_powers() {
 
 void Faults::set_late_drivers() {
   for (std::size_t i = 0; i < modules_.size(); ++i) {
-    const Fault* const late = active(Trouble::LateDriver, i);
-    modules_[i]->release_driver_late(late == nullptr ? VirtualTime(0) : late->time);
+    const Armed* const late = active(Trouble::LateDriver, i);
+    modules_[i]->release_driver_late(late == nullptr ? VirtualTime(0) : late->fault.time);
   }
 }
 

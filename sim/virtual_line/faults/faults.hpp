@@ -95,7 +95,7 @@ class Faults final : public Station {
   void written(std::size_t module);
   void begin(Armed& armed, std::optional<std::size_t> reply_of);
   static void forget_others_of(Armed& armed, const Occurrence& latest);
-  void release_late_replies(std::optional<std::size_t> only);
+  void end_reply_delays(std::optional<std::size_t> fault);
   template <class Over>
   void end_occurrences(Armed& armed, Over over);
   void say(const Armed& armed, const std::string& what) const;
@@ -104,7 +104,7 @@ class Faults final : public Station {
   void prepare(Trouble trouble);
   void set_powers();
   void set_late_drivers();
-  [[nodiscard]] const Fault* active(Trouble trouble, std::size_t module) const;
+  [[nodiscard]] const Armed* active(Trouble trouble, std::size_t module) const;
   [[nodiscard]] const Fault* active_on_the_line(Trouble trouble) const;
   [[nodiscard]] bool affected_by(Trouble trouble, std::size_t module) const {
     return active(trouble, module) != nullptr;

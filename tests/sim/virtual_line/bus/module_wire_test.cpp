@@ -83,7 +83,7 @@ TEST_F(ModuleWireTest, EndingTheDelaySendsALateReplyImmediately) {
   reply(5ms, 'a');
   reply(10ms, 'b');
   run_until(20ms);
-  wire.end_first_delay();
+  wire.end_delays(std::nullopt);
   fate.late_by = 0ms;
   run_until(30ms);
   EXPECT_EQ(wires.happened, (Happened{"20 on", "20 a 9600", "21 off", "25 on", "25 b 9600", "26 off"}));
@@ -96,7 +96,7 @@ TEST_F(ModuleWireTest, AReplyWhoseDelayEndsWhenItBeginsIsNotLateAnyMore) {
   fate.late_by = 1h;
   run_until(5ms);
   wire.drive(true);
-  wire.end_first_delay();
+  wire.end_delays(std::nullopt);
   run_until(5ms);
   wire.put('a', {9600});
   run_until(6ms);
@@ -111,7 +111,7 @@ TEST_F(ModuleWireTest, LimitsTheNumberOfStoredLateReplies) {
   for (int i = 0; i < 30'000; ++i) {
     reply(5ms, 'a');
   }
-  wire.end_first_delay();
+  wire.end_delays(std::nullopt);
   run_until(2h);
   EXPECT_LT(wires.happened.size(), 66'000U);
   EXPECT_GT(wires.happened.size(), 65'000U);

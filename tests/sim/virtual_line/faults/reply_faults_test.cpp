@@ -78,14 +78,31 @@ TEST(LateReply, IsCompleteIfItsFaultIsRemovedWhileTheModuleReplies) {
   EXPECT_EQ(bench.ask("$01M"), kName);
 }
 
-TEST(LateReply, IsNotSentIfAnotherFaultStillDelaysIt) {
+TEST(LateReply, IsSentIfTheFaultThatDelaysItIsRemovedAlthoughAnotherFaultRemains) {
   FaultBench bench;
-  bench.add("late-reply 1h");
-  const std::size_t other = bench.add("late-reply 1s");
+  const std::size_t first = bench.add("late-reply 1h");
+  bench.add("late-reply 1s");
   EXPECT_EQ(bench.ask("$01M"), "");
-  EXPECT_TRUE(bench.faults().remove(other));
+  EXPECT_TRUE(bench.faults().remove(first));
   bench.run(50ms);
-  EXPECT_EQ(bench.heard(), "");
+  EXPECT_EQ(bench.heard(), kName + "\r");
+  EXPECT_EQ(bench.ask("$01M", 1100ms), kName);
+}
+
+TEST(LateReply, IsNotSentIfAFaultThatDoesNotDelayItIsRemoved) {
+  for (const char* delays : {"late-reply 1h", "late-reply 1h every 2nd reply"}) {
+    FaultBench bench;
+    const std::size_t other = bench.add("late-reply 10ms every 3rd reply");
+    bench.add(delays);
+    for (int i = 0; i < 4; ++i) {
+      bench.send("$01M\r");
+      bench.run(50ms);
+    }
+    bench.forget();
+    EXPECT_TRUE(bench.faults().remove(other));
+    bench.run(50ms);
+    EXPECT_EQ(bench.heard(), "") << delays;
+  }
 }
 
 TEST(LateReply, IsNotSentIfTheFaultOfAnotherModuleIsRemoved) {
