@@ -3,6 +3,7 @@
 
 #include <poll.h>
 
+#include <cerrno>
 #include <functional>
 
 namespace ex9000::sim {
@@ -18,7 +19,7 @@ inline bool wait_for_room(int descriptor, const GivesUp& gives_up) {
   // milliseconds, after which this function calls `gives_up` again.
   constexpr int kAskEvery = 100;
   pollfd ready{descriptor, POLLOUT, 0};
-  while (poll(&ready, 1, 0) == 0) {
+  for (int result = 0; (result = poll(&ready, 1, 0)) == 0 || (result < 0 && errno == EINTR);) {
     if (gives_up()) {
       return false;
     }

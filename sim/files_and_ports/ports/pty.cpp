@@ -44,9 +44,8 @@ void remove_stale(const std::string& link, const Claim& claim) {
   unlink(link.c_str());
 }
 
-/// Opens the slave briefly, for operations that work only there. The system reports this as if a master had
-/// opened the slave. Therefore create a Slave only before the device is watched (see Visits) or while a
-/// master has the slave open.
+/// Opens the slave briefly, for operations that work only there. If the device is watched, the system reports
+/// this as if a master had opened and closed the slave (see Visits).
 class Slave {
  public:
   explicit Slave(const std::string& device)
@@ -100,11 +99,19 @@ bool Pty::visited() const {
 }
 
 void Pty::take_visit() {
-  const bool deserted = !visited();
-  if (deserted && !deserted_) {
+  if (unread_ && !visited()) {
+    unread_ = false;
     Slave(device_).forget_unread();
   }
-  deserted_ = deserted;
+}
+
+std::size_t Pty::write(const std::vector<std::uint8_t>& bytes) {
+  if (!visited()) {
+    return 0;
+  }
+  unread_ = true;
+  const ssize_t written = ::write(master_fd(), bytes.data(), bytes.size());
+  return bytes.size() - (written < 0 ? 0 : static_cast<std::size_t>(written));
 }
 
 std::optional<std::uint32_t> Pty::baud() const {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "sim/files_and_ports/files/file_descriptor.hpp"
 #include "sim/files_and_ports/ports/claim.hpp"
@@ -25,7 +26,7 @@ class Pty {
   Pty(const Pty&) = delete;
   Pty& operator=(const Pty&) = delete;
 
-  /// Returns the simulator's end for reading and writing; non-blocking. Reading fails if no master has the
+  /// Returns the simulator's end for reading; non-blocking. Reading fails if no master has the
   /// slave open and all bytes have been read.
   [[nodiscard]] int master_fd() const { return master_.get(); }
   [[nodiscard]] const std::string& link() const { return link_; }
@@ -35,19 +36,23 @@ class Pty {
   /// the bytes that no master has read, as a serial port does: the next master must not receive a reply to
   /// the previous one. Does not discard them if the next master has opened the slave before this call.
   void take_visit();
-  /// Returns whether a master has the slave open. If none has, do not write: the bytes would wait for the
-  /// next master.
-  [[nodiscard]] bool visited() const;
+  /// Writes the bytes for the master, without blocking. The pseudo-terminal stores a limited number of bytes
+  /// that no master has read, for example about 20 KiB on Linux 6.18; further bytes are lost. Returns the
+  /// number of lost bytes. Writes nothing and returns 0 if no master has the slave open, because the bytes
+  /// would wait for the next master.
+  std::size_t write(const std::vector<std::uint8_t>& bytes);
 
   /// Returns the rate set on the slave, in bits per second; nullopt if it is not a known rate.
   [[nodiscard]] std::optional<std::uint32_t> baud() const;
 
  private:
+  [[nodiscard]] bool visited() const;
+
   std::string link_;
   Claim claim_;
   std::string device_;
   FileDescriptor master_;
-  bool deserted_ = true;  ///< at the last check, no master had the slave open
+  bool unread_ = false;  ///< bytes have been written, and `take_visit` has not discarded what is left of them
 };
 
 }  // namespace ex9000::sim

@@ -70,14 +70,6 @@ ssize_t PtyPort::take() {
   return size < 0 && errno == EAGAIN ? 0 : -1;
 }
 
-/// Writes the bytes. The pseudo-terminal stores a limited number of bytes that no master has read, for
-/// example about 20 KiB on Linux 6.18; further bytes are lost.
-std::size_t PtyPort::send(const std::vector<std::uint8_t>& bytes) {
-  if (!pty_.visited()) {
-    return 0;
-  }
-  const ssize_t written = write(pty_.master_fd(), bytes.data(), bytes.size());
-  return bytes.size() - (written < 0 ? 0 : static_cast<std::size_t>(written));
-}
+std::size_t PtyPort::send(const std::vector<std::uint8_t>& bytes) { return pty_.write(bytes); }
 
 }  // namespace ex9000::sim

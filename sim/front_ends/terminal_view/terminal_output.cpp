@@ -72,7 +72,7 @@ Screen TerminalOutput::screen() const {
 void TerminalOutput::write(const std::string& text) {
   waiting_ += text;
   flush();
-  while (waiting_.size() > kMostWaiting && wait_for_room(fd_, gives_up_)) {
+  while (waiting_.size() > kMostWaiting && !gives_up_() && wait_for_room(fd_, gives_up_)) {
     flush();
   }
 }
