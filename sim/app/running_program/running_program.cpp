@@ -90,7 +90,7 @@ void RunningProgram::open_panel(const std::string& models) {
   panel_ = std::make_unique<Panel>(
       [this](const std::string& command) { return carry_out(command); },
       [this](std::size_t line, RequestQueue::Request request) { ask(line, std::move(request)); },
-      setup_.speed.factor);
+      [this](const std::function<void()>& action) { threads_.pause_for(action); }, setup_.speed.factor);
   for (std::size_t i = 0; i < lines_.size(); ++i) {
     RunningLine& running = *lines_[i];
     panel_->add_line(running.introduced(), running.line(), [&running] { return running.pacer().present(); });
@@ -103,16 +103,9 @@ void RunningProgram::open_panel(const std::string& models) {
         });
   }
   with_place(place_of(setup_.places, "panel"), [this, &models] {
-    panel_server_ =
-        std::make_unique<PanelServer>(io_, setup_.panel->port, models, static_cast<PanelSource&>(*this));
+    panel_server_ = std::make_unique<PanelServer>(io_, setup_.panel->port, models, *panel_);
   });
 }
-
-void RunningProgram::look() {
-  threads_.pause_for([this] { panel_->look(); });
-}
-
-std::unique_ptr<PanelViewer> RunningProgram::viewer() { return panel_->viewer(); }
 
 void RunningProgram::watch_lines() {
   if (!watch_) {

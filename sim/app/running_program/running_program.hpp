@@ -26,7 +26,7 @@
 
 namespace ex9000::sim {
 
-class RunningProgram : private PanelSource {
+class RunningProgram {
  public:
   using Print = RunningLine::Print;
 
@@ -38,7 +38,7 @@ class RunningProgram : private PanelSource {
   /// `terminal` must outlive this object.
   RunningProgram(boost::asio::io_context& io, Setup setup, Print print, Print greet, Terminal* terminal,
                  const std::string& models);
-  ~RunningProgram() override;
+  ~RunningProgram();
   RunningProgram(const RunningProgram&) = delete;
   RunningProgram& operator=(const RunningProgram&) = delete;
 
@@ -69,10 +69,6 @@ class RunningProgram : private PanelSource {
   void open_capture();
   void watch_lines();
   void keep_watching();
-  // --- PanelSource ---
-  void look() override;
-  std::unique_ptr<PanelViewer> viewer() override;
-
   Control::Reply carry_out(const std::string& command);
   void ask(std::size_t line, RequestQueue::Request request);
   void answer(const std::string& command, const ControlSocket::Answer& answer);

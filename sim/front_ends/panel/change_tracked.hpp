@@ -19,9 +19,10 @@ class ChangeTracked {
       changed_ = look;
     }
   }
-  /// Returns whether the value has changed after look number `look`.
-  [[nodiscard]] bool has_changed_since(std::uint64_t look) const { return changed_ > look; }
-  [[nodiscard]] const Value& value() const { return *value_; }
+  /// Returns the value if it has changed after look number `look`, otherwise null.
+  [[nodiscard]] const Value* news_since(std::uint64_t look) const {
+    return changed_ > look ? &*value_ : nullptr;
+  }
 
  private:
   std::optional<Value> value_;

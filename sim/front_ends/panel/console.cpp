@@ -85,20 +85,15 @@ std::optional<ConsoleRequest> parse_console_request(const Message& message) {
   const auto is_unsigned = [&message](const char* key) {
     return message.contains(key) && message[key].is_number_unsigned();
   };
-  if (!message.is_object() || message.size() != 4 || !is_unsigned("id") || !is_unsigned("line") ||
-      !is_unsigned("address") || !message.contains("ask") || !message["ask"].is_string()) {
+  if (message.size() != 4 || !is_unsigned("id") || !is_unsigned("line") || !is_unsigned("address") ||
+      !message.contains("ask") || !message["ask"].is_string()) {
     return std::nullopt;
   }
-  ConsoleRequest request;
-  request.id = message["id"].get<std::uint64_t>();
-  request.line = message["line"].get<std::size_t>();
   const auto address = message["address"].get<std::uint64_t>();
   if (address > kLastRtuAddress) {
     return std::nullopt;
   }
-  request.address = static_cast<std::uint8_t>(address);
-  request.text = message["ask"].get<std::string>();
-  return request;
+  return ConsoleRequest{message["id"], message["line"], static_cast<std::uint8_t>(address), message["ask"]};
 }
 
 RequestQueue::Request frame_of(const ConsoleRequest& request) {

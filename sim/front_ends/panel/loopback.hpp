@@ -1,39 +1,27 @@
 // The names of this machine's loopback interface, as browsers write them.
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
-#include <iterator>
 #include <string>
 #include <string_view>
 
 namespace ex9000::sim {
 
-/// The names under which a browser on this machine may reach a server at a port. A request with any other
-/// name may come from a page of another site, even if that name resolves to this machine.
-class Loopback {
- public:
-  explicit Loopback(std::uint16_t port) : port_(":" + std::to_string(port)), is_usual_(port == kUsualPort) {}
+/// Returns whether `host`, the value of the Host header, is 127.0.0.1 or localhost with the port of the
+/// server. At port 80, which browsers omit, the name alone is accepted too. A request with any other name may
+/// come from a page of another site, even if that name resolves to this machine.
+inline bool is_loopback_host(std::string_view host, std::uint16_t port) {
+  constexpr std::uint16_t kUsualPort = 80;
+  const auto is_named = [host, port](const std::string& name) {
+    return host == name + ":" + std::to_string(port) || (port == kUsualPort && host == name);
+  };
+  return is_named("127.0.0.1") || is_named("localhost");
+}
 
-  /// Returns whether `host`, the value of the Host header, is one of these names with the port. At port 80,
-  /// the name alone is accepted too.
-  [[nodiscard]] bool is_host(std::string_view host) const {
-    return std::any_of(std::begin(kNames), std::end(kNames), [&](std::string_view name) {
-      return host == std::string(name) + port_ || (is_usual_ && host == name);
-    });
-  }
-  /// Returns whether `origin`, the value of the Origin header, belongs to a page of this server.
-  [[nodiscard]] bool is_origin(std::string_view origin) const {
-    constexpr std::string_view kScheme = "http://";
-    return origin.substr(0, kScheme.size()) == kScheme && is_host(origin.substr(kScheme.size()));
-  }
-
- private:
-  static constexpr std::string_view kNames[] = {"127.0.0.1", "localhost"};
-  static constexpr std::uint16_t kUsualPort = 80;  ///< the default port of HTTP, which browsers omit
-
-  std::string port_;
-  bool is_usual_;
-};
+/// Returns whether `origin`, the value of the Origin header, belongs to a page of the server at `port`.
+inline bool is_loopback_origin(std::string_view origin, std::uint16_t port) {
+  constexpr std::string_view kScheme = "http://";
+  return origin.substr(0, kScheme.size()) == kScheme && is_loopback_host(origin.substr(kScheme.size()), port);
+}
 
 }  // namespace ex9000::sim

@@ -144,33 +144,18 @@ Message message_of(const RecentTraffic::Entry& entry, std::uint64_t number, std:
   return message;
 }
 
-Message message_in(const std::string& text) { return Message::parse(text, nullptr, false); }
-
 std::optional<PageRequest> parse_page_request(const Message& message) {
-  constexpr std::size_t kLongest = 1000;
-  if (!message.is_object()) {
+  const auto is_command = [&message](const char* key) {
+    constexpr std::size_t kLongest = 1000;
+    return message.contains(key) && message[key].is_string() &&
+           message[key].get_ref<const std::string&>().size() <= kLongest;
+  };
+  const bool has_undo = message.contains("undo");
+  if (message.size() != (has_undo ? 3 : 2) || !message.contains("id") ||
+      !message["id"].is_number_unsigned() || !is_command("do") || (has_undo && !is_command("undo"))) {
     return std::nullopt;
   }
-  const auto id = message.find("id");
-  const auto command = message.find("do");
-  const auto undo = message.find("undo");
-  const bool undone = undo != message.end();
-  if (message.size() != (undone ? 3 : 2) || id == message.end() || !id->is_number_unsigned() ||
-      command == message.end() || !command->is_string() || (undone && !undo->is_string())) {
-    return std::nullopt;
-  }
-  PageRequest request{id->get<std::uint64_t>(), command->get<std::string>(), std::nullopt};
-  if (undone) {
-    request.undo = undo->get<std::string>();
-  }
-  if (request.command.size() > kLongest || (request.undo && request.undo->size() > kLongest)) {
-    return std::nullopt;
-  }
-  return request;
-}
-
-std::string text_of(const Message& message) {
-  return message.dump(-1, ' ', false, Message::error_handler_t::replace);
+  return PageRequest{message["id"], message["do"], message.value("undo", "")};
 }
 
 }  // namespace ex9000::sim

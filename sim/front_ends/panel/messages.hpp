@@ -37,17 +37,10 @@ Message message_of(const RecentTraffic::Entry& entry, std::uint64_t number, std:
 struct PageRequest {
   std::uint64_t id = 0;  ///< chosen by the page, for the reply
   std::string command;   ///< a command of the control socket
-  /// A command that undoes `command`. If `command` has succeeded, the program carries out `undo` when the
-  /// page disconnects, unless the page has already sent `undo`.
-  std::optional<std::string> undo;
+  std::string undo;      ///< a command that undoes `command`, see PanelViewer::ask; empty: none
 };
 
 /// Returns the request in `message`, or nullopt if `message` is not a valid request to carry out a command.
 std::optional<PageRequest> parse_page_request(const Message& message);
-
-/// Returns the message in `text`; a message that is not an object if `text` is not JSON.
-Message message_in(const std::string& text);
-/// Returns the text to send over the socket; invalid UTF-8 is replaced.
-std::string text_of(const Message& message);
 
 }  // namespace ex9000::sim

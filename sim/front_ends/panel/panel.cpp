@@ -39,7 +39,6 @@ constexpr std::size_t kMostAsked = 16;
 /// cannot distinguish an idle simulator from a simulator that does not respond.
 constexpr std::chrono::seconds kHeartbeat{1};
 
-/// Returns an id that distinguishes this run of the program from other runs.
 std::string random_id() {
   constexpr std::string_view kDigits = "0123456789abcdef";
   constexpr std::size_t kLength = 16;
@@ -76,24 +75,31 @@ struct Panel::Watched {
   RecentTraffic recent;
   ChangeTracked<SerialMode> mode;
   ChangeTracked<std::vector<Faults::Info>> faults;
-};
 
-struct Panel::State {
-  std::string run = random_id();
-  double speed = 1;
-  std::vector<Watched> lines;
-  std::uint64_t looks = 0;
+  /// Captures the present state. `look` is the number of this look.
+  void capture(std::uint64_t look) {
+    now = present();
+    for (Module& module : modules) {
+      const Face face = face_of(*module.module, line->clock().virtual_now());
+      module.plate.set(face.plate, look);
+      module.gathered.set(face.gathered, look);
+      module.guard.set(face.guard, look);
+      module.stored.set(face.stored, look);
+    }
+    mode.set(line->master().mode(), look);
+    const Faults* so_far = line->faults_so_far();
+    faults.set(so_far == nullptr ? std::vector<Faults::Info>() : so_far->list(), look);
+  }
 };
 
 class Panel::Viewer final : public PanelViewer {
  public:
   explicit Viewer(Panel& panel) : panel_(panel) {
-    for (const Watched& watched : state().lines) {
+    for (const Watched& watched : panel_.lines_) {
       next_entries_.push_back(watched.recent.first_of(0, most_frames()));
     }
   }
 
-  /// Undoes the actions that the page held active when it disconnected.
   ~Viewer() override {
     for (const std::string& undo : held_) {
       static_cast<void>(carry_out(undo));
@@ -101,19 +107,19 @@ class Panel::Viewer final : public PanelViewer {
   }
 
   bool ask(const std::string& text) override {
-    const Message message = message_in(text);
+    const Message message = Message::parse(text, nullptr, /*allow_exceptions=*/false);
     if (const std::optional<ConsoleRequest> request = parse_console_request(message)) {
       return ask_line(*request);
     }
     const std::optional<PageRequest> request = parse_page_request(message);
-    if (!request || (request->undo && held_.size() >= kMostHeld)) {
+    if (!request || (!request->undo.empty() && held_.size() >= kMostHeld)) {
       return false;
     }
     const std::string answer = carry_out(request->command);
     const bool ok = answer.rfind("ok", 0) == 0;
     held_.erase(request->command);
-    if (ok && request->undo) {
-      held_.insert(*request->undo);
+    if (ok && !request->undo.empty()) {
+      held_.insert(request->undo);
     }
     reply_ = Message{{"id", request->id}, {"ok", ok}, {"text", answer}};
     return true;
@@ -134,8 +140,8 @@ class Panel::Viewer final : public PanelViewer {
     Message lines = Message::array();
     Message frames = Message::array();
     bool news = false;
-    for (std::size_t i = 0; i < state().lines.size(); ++i) {
-      const Watched& watched = state().lines[i];
+    for (std::size_t i = 0; i < panel_.lines_.size(); ++i) {
+      const Watched& watched = panel_.lines_[i];
       for (std::size_t at = 0; at < watched.modules.size(); ++at) {
         Message module = news_of(watched.modules[at]);
         if (!module.is_null()) {
@@ -158,19 +164,19 @@ class Panel::Viewer final : public PanelViewer {
     if (!frames.empty()) {
       message["frames"] = std::move(frames);
     }
-    sent_look_ = state().looks;
+    sent_look_ = panel_.looks_;
     if (message.is_null()) {
       return "";
     }
     last_sent_at_ = now;
-    return text_of(message);
+    return message.dump(-1, ' ', false, Message::error_handler_t::replace);
   }
 
  private:
   /// Sends or rejects a request of the console; the answer follows in a later message. Returns false if the
   /// line does not exist.
   bool ask_line(const ConsoleRequest& request) {
-    if (request.line >= state().lines.size()) {
+    if (request.line >= panel_.lines_.size()) {
       return false;
     }
     if (asked_ >= kMostAsked) {
@@ -202,15 +208,14 @@ class Panel::Viewer final : public PanelViewer {
                : panel_.carry_out_(command).text;
   }
 
-  [[nodiscard]] State& state() const { return *panel_.state_; }
   [[nodiscard]] std::size_t most_frames() const {
-    return std::max(kFewestFrames, kMostFrames / std::max<std::size_t>(1, state().lines.size()));
+    return std::max(kFewestFrames, kMostFrames / panel_.lines_.size());
   }
 
   [[nodiscard]] Message hello() const {
     Message lines = Message::array();
     Message modules = Message::array();
-    for (const Watched& watched : state().lines) {
+    for (const Watched& watched : panel_.lines_) {
       for (const Module& module : watched.modules) {
         modules.push_back(plate_layout(module.module->model()));
         modules.back()["line"] = lines.size();
@@ -226,23 +231,23 @@ class Panel::Viewer final : public PanelViewer {
                        {"instant", watched.summary.instant},
                        {"ports", std::move(ports)}});
     }
-    return {{"version", kFirmwareVersion},   {"run", state().run},        {"speed", state().speed},
+    return {{"version", kFirmwareVersion},   {"run", panel_.run_},        {"speed", panel_.speed_},
             {"usualFaults", usual_faults()}, {"lines", std::move(lines)}, {"modules", std::move(modules)}};
   }
 
   [[nodiscard]] Message news_of(const Module& module) const {
     Message message;
-    if (module.plate.has_changed_since(sent_look_)) {
-      message["plate"] = message_of(module.plate.value());
+    if (const Plate* plate = module.plate.news_since(sent_look_)) {
+      message["plate"] = message_of(*plate);
     }
-    if (module.gathered.has_changed_since(sent_look_)) {
-      message["gathered"] = message_of(module.gathered.value(), module.module->model().inputs);
+    if (const InputRecords* gathered = module.gathered.news_since(sent_look_)) {
+      message["gathered"] = message_of(*gathered, module.module->model().inputs);
     }
-    if (module.guard.has_changed_since(sent_look_)) {
-      message["guard"] = message_of(module.guard.value());
+    if (const HostWatchdogState* guard = module.guard.news_since(sent_look_)) {
+      message["guard"] = message_of(*guard);
     }
-    if (module.stored.has_changed_since(sent_look_)) {
-      message["stored"] = message_of(module.stored.value());
+    if (const Stored* stored = module.stored.news_since(sent_look_)) {
+      message["stored"] = message_of(*stored);
     }
     return message;
   }
@@ -250,18 +255,18 @@ class Panel::Viewer final : public PanelViewer {
   [[nodiscard]] Message news_of(const Watched& watched) const {
     Message message;
     message["now"] = std::chrono::duration_cast<std::chrono::microseconds>(watched.now).count();
-    if (watched.mode.has_changed_since(sent_look_)) {
-      message["baud"] = watched.mode.value().baud;
-      message["format"] = line_format_text(watched.mode.value().format);
+    if (const SerialMode* mode = watched.mode.news_since(sent_look_)) {
+      message["baud"] = mode->baud;
+      message["format"] = line_format_text(mode->format);
     }
-    if (watched.faults.has_changed_since(sent_look_)) {
-      message["faults"] = message_of(watched.faults.value(), watched.first_module);
+    if (const auto* faults = watched.faults.news_since(sent_look_)) {
+      message["faults"] = message_of(*faults, watched.first_module);
     }
     return message;
   }
 
   Message frames_of(std::size_t line) {
-    const Watched& watched = state().lines[line];
+    const Watched& watched = panel_.lines_[line];
     const std::uint64_t first = watched.recent.first_of(next_entries_[line], most_frames());
     Message entries = Message::array();
     for (std::uint64_t number = first; number < watched.recent.end(); ++number) {
@@ -282,13 +287,13 @@ class Panel::Viewer final : public PanelViewer {
   std::chrono::steady_clock::time_point last_sent_at_;
 };
 
-Panel::Panel(CarryOut carry_out, Ask ask, double speed, WallClock wall_clock)
+Panel::Panel(CarryOut carry_out, Ask ask, Pause pause, double speed, WallClock wall_clock)
     : carry_out_(std::move(carry_out)),
       ask_(std::move(ask)),
+      pause_(std::move(pause)),
+      speed_(speed),
       wall_clock_(std::move(wall_clock)),
-      state_(std::make_unique<State>()) {
-  state_->speed = speed;
-}
+      run_(random_id()) {}
 
 Panel::~Panel() = default;
 
@@ -297,40 +302,31 @@ void Panel::add_line(const LineSummary& summary, const Line& line, std::function
   watched.summary = summary;
   watched.line = &line;
   watched.present = std::move(present);
-  for (const Watched& before : state_->lines) {
+  for (const Watched& before : lines_) {
     watched.first_module += before.modules.size();
   }
   watched.modules.resize(line.size());
   for (std::size_t i = 0; i < line.size(); ++i) {
     watched.modules[i].module = &line.module(i);
   }
-  state_->lines.push_back(std::move(watched));
+  lines_.push_back(std::move(watched));
 }
 
-void Panel::hear(std::size_t line, const Frame& frame) { state_->lines[line].recent.add({frame, {}}); }
+void Panel::hear(std::size_t line, const Frame& frame) { lines_[line].recent.add({frame, {}}); }
 
 void Panel::note(std::size_t line, VirtualTime now, const std::string& text) {
   Frame frame;
   frame.began = frame.ended = now;
-  state_->lines[line].recent.add({frame, text});
+  lines_[line].recent.add({frame, text});
 }
 
 void Panel::look() {
-  const std::uint64_t look = ++state_->looks;
-  for (Watched& watched : state_->lines) {
-    watched.now = watched.present();
-    const VirtualTime now = watched.line->clock().virtual_now();
-    for (Module& module : watched.modules) {
-      Face face = face_of(*module.module, now);
-      module.plate.set(face.plate, look);
-      module.gathered.set(face.gathered, look);
-      module.guard.set(face.guard, look);
-      module.stored.set(face.stored, look);
+  ++looks_;
+  pause_([this] {
+    for (Watched& watched : lines_) {
+      watched.capture(looks_);
     }
-    watched.mode.set(watched.line->master().mode(), look);
-    const Faults* faults = watched.line->faults_so_far();
-    watched.faults.set(faults == nullptr ? std::vector<Faults::Info>() : faults->list(), look);
-  }
+  });
 }
 
 std::unique_ptr<PanelViewer> Panel::viewer() { return std::make_unique<Viewer>(*this); }

@@ -3,21 +3,41 @@
 
 #include <chrono>
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "sim/front_ends/control/control.hpp"
-#include "sim/front_ends/panel/panel_server.hpp"
 #include "sim/line_monitor/frames/frame_watch.hpp"
 #include "sim/line_monitor/log/banner.hpp"
 #include "sim/virtual_line/line/line.hpp"
 
 namespace ex9000::sim {
 
+/// The panel's side of one open page.
+class PanelViewer {
+ public:
+  PanelViewer() = default;
+  PanelViewer(const PanelViewer&) = delete;
+  PanelViewer& operator=(const PanelViewer&) = delete;
+  virtual ~PanelViewer() = default;
+
+  /// Carries out a request of the page; a later call of `next` returns the reply. A request may contain a
+  /// command and a second command that undoes the first one. If the first command succeeds, the page holds
+  /// its action active until the page sends the second command. When this object is destroyed, it carries out
+  /// the second command of each active action. Returns false if `text` is not a valid request, or if the page
+  /// would hold too many actions active.
+  virtual bool ask(const std::string& text) = 0;
+  /// Returns the next message for the page: replies, the recent traffic, and the changes that Panel::look has
+  /// captured, each if the page has not received it yet. Returns an empty text if there is nothing to send.
+  virtual std::string next() = 0;
+};
+
 /// Viewers affect the lines only by the commands and requests that their pages send. Without viewers, the
 /// panel only stores the last frames and notes of each line.
-class Panel final : public PanelSource {
+class Panel {
  public:
   using CarryOut = std::function<Control::Reply(const std::string& command)>;
 
@@ -25,12 +45,16 @@ class Panel final : public PanelSource {
   /// uses this Panel.
   using Ask = std::function<void(std::size_t line, RequestQueue::Request request)>;
 
+  /// Calls `action` while no line runs.
+  using Pause = std::function<void(const std::function<void()>& action)>;
+
   using WallClock = std::function<std::chrono::steady_clock::time_point()>;
 
   /// `speed` is the ratio of the lines' time to the wall clock. `wall_clock` is the clock for the messages
   /// that pages get even if nothing has changed.
-  Panel(CarryOut carry_out, Ask ask, double speed, WallClock wall_clock = std::chrono::steady_clock::now);
-  ~Panel() override;
+  Panel(CarryOut carry_out, Ask ask, Pause pause, double speed,
+        WallClock wall_clock = std::chrono::steady_clock::now);
+  ~Panel();
   Panel(const Panel&) = delete;
   Panel& operator=(const Panel&) = delete;
 
@@ -41,20 +65,24 @@ class Panel final : public PanelSource {
   void hear(std::size_t line, const Frame& frame);
   void note(std::size_t line, VirtualTime now, const std::string& text);
 
-  // --- PanelSource ---
-  void look() override;
-  std::unique_ptr<PanelViewer> viewer() override;
+  /// Captures the present state for all viewers.
+  void look();
+  /// Returns the viewer for a page that has connected. This object must outlive the viewer.
+  std::unique_ptr<PanelViewer> viewer();
 
  private:
   struct Watched;
   struct Module;
-  struct State;
   class Viewer;
 
   CarryOut carry_out_;
   Ask ask_;
+  Pause pause_;
+  const double speed_;
   WallClock wall_clock_;
-  std::unique_ptr<State> state_;
+  const std::string run_;  ///< distinguishes this run of the program from other runs
+  std::vector<Watched> lines_;
+  std::uint64_t looks_ = 0;
 };
 
 }  // namespace ex9000::sim

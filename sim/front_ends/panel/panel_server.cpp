@@ -8,7 +8,7 @@
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket.hpp>
 #include <chrono>
-#include <list>
+#include <set>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
@@ -16,6 +16,7 @@
 #include "sim/files_and_ports/ports/listening.hpp"
 #include "sim/front_ends/panel/loopback.hpp"
 #include "sim/front_ends/panel/page_files.hpp"
+#include "sim/front_ends/panel/panel.hpp"
 
 namespace ex9000::sim {
 
@@ -54,16 +55,13 @@ constexpr std::string_view kTooManyRequestsResponse =
 std::string_view view_of(beast::string_view text) { return {text.data(), text.size()}; }
 
 using Request = http::request<http::empty_body>;
-using Response = http::response<http::string_body>;
 
 }  // namespace
 
 class PanelServer::Listener : public std::enable_shared_from_this<PanelServer::Listener> {
  public:
-  Listener(boost::asio::io_context& io, std::string models, PanelSource& source)
-      : acceptor_(io), next_try_(io), next_look_(io), models_(std::move(models)), source_(source) {}
-
-  void listen(std::optional<std::uint16_t> port) {
+  Listener(boost::asio::io_context& io, std::optional<std::uint16_t> port, std::string models, Panel& panel)
+      : acceptor_(io), next_try_(io), next_look_(io), models_(std::move(models)), panel_(panel) {
     error_code error = listen_at(acceptor_, here(port.value_or(kDefaultPort)));
     if (error && !port) {
       error = listen_at(acceptor_, here(0));
@@ -76,27 +74,27 @@ class PanelServer::Listener : public std::enable_shared_from_this<PanelServer::L
   }
 
   [[nodiscard]] std::uint16_t port() const { return port_; }
-  void accept();
-  /// Stops accepting connections and closes the open ones. After this call, the source may be destroyed.
+  void start() {
+    keep_accepting(acceptor_, next_try_,
+                   [self = shared_from_this()](tcp::socket socket) { self->admit(std::move(socket)); });
+  }
+  /// Stops accepting connections and closes the open ones. After this call, the panel may be destroyed.
   void stop();
 
  private:
   class Client;
 
-  void accept_later();
+  void admit(tcp::socket socket);
   [[nodiscard]] std::size_t pages() const;
-  void watch();
-  void look_later();
   void look();
 
   tcp::acceptor acceptor_;
   boost::asio::steady_timer next_try_;
   boost::asio::steady_timer next_look_;
   std::string models_;
-  PanelSource& source_;
+  Panel& panel_;
   std::uint16_t port_ = 0;
-  std::list<std::weak_ptr<Client>> clients_;
-  bool looking_ = false;
+  std::set<Client*> clients_;  ///< each adds and removes itself
   bool stopped_ = false;
 };
 
@@ -104,7 +102,12 @@ class PanelServer::Listener : public std::enable_shared_from_this<PanelServer::L
 class PanelServer::Listener::Client : public std::enable_shared_from_this<Client> {
  public:
   Client(std::shared_ptr<Listener> listener, tcp::socket socket)
-      : listener_(std::move(listener)), socket_(beast::tcp_stream(std::move(socket))) {}
+      : listener_(std::move(listener)), socket_(beast::tcp_stream(std::move(socket))) {
+    listener_->clients_.insert(this);
+  }
+  ~Client() { listener_->clients_.erase(this); }
+  Client(const Client&) = delete;
+  Client& operator=(const Client&) = delete;
 
   void read_request() {
     parser_.header_limit(kLongestHeader);
@@ -122,18 +125,16 @@ class PanelServer::Listener::Client : public std::enable_shared_from_this<Client
 
   /// Sends the next message for the page if there is one and the previous message has been sent.
   void tell() {
-    if (!viewer_ || writing_) {
+    if (!viewer_ || !outgoing_.empty()) {
       return;
     }
     outgoing_ = viewer_->next();
     if (outgoing_.empty()) {
       return;
     }
-    writing_ = true;
-    socket_.text(true);
     socket_.async_write(boost::asio::buffer(outgoing_),
                         [self = shared_from_this()](const error_code& error, std::size_t /*size*/) {
-                          self->writing_ = false;
+                          self->outgoing_.clear();
                           if (error) {
                             self->part();
                           } else if (self->answering_) {
@@ -169,14 +170,15 @@ class PanelServer::Listener::Client : public std::enable_shared_from_this<Client
   }
 
   void serve(const Request& request) {
-    const Loopback here(listener_->port());
+    const std::uint16_t port = listener_->port();
     const auto origin = request.find(http::field::origin);
     const bool has_origin = origin != request.end();
     const bool live = request.target() == "/live";
-    if (request.count(http::field::host) != 1 || !here.is_host(view_of(request[http::field::host]))) {
+    if (request.count(http::field::host) != 1 ||
+        !is_loopback_host(view_of(request[http::field::host]), port)) {
       answer(http::status::forbidden, "text/plain", "the host name must be 127.0.0.1 or localhost\n");
     } else if (request.count(http::field::origin) > 1 ||
-               (has_origin && !here.is_origin(view_of(origin->value()))) || (live && !has_origin)) {
+               (has_origin && !is_loopback_origin(view_of(origin->value()), port)) || (live && !has_origin)) {
       answer(http::status::forbidden, "text/plain", "requests from pages of other sites are not allowed\n");
     } else if (!is_fetched_by_us(request)) {
       answer(http::status::forbidden, "text/plain", "requests from other sites are not allowed\n");
@@ -272,21 +274,19 @@ class PanelServer::Listener::Client : public std::enable_shared_from_this<Client
         return;
       }
       if (!self->takes_a_page_) {
-        self->reject_page();
+        // A browser tells the page why a WebSocket was closed, but not why a WebSocket was rejected.
+        self->close(websocket::close_code::try_again_later, "too many pages are open already");
       } else {
         self->buffer_.clear();
-        self->viewer_ = self->listener_->source_.viewer();
-        self->listener_->watch();
+        self->viewer_ = self->listener_->panel_.viewer();
+        self->listener_->look();
         self->read_page_request();
       }
     });
   }
 
-  /// Closes the WebSocket after the server has accepted it. A browser tells the page why a WebSocket was
-  /// closed, but not why a WebSocket was rejected.
-  void reject_page() {
-    socket_.async_close({websocket::close_code::try_again_later, "too many pages are open already"},
-                        [self = shared_from_this()](const error_code& /*error*/) {});
+  void close(websocket::close_code code, const char* why) {
+    socket_.async_close({code, why}, [self = shared_from_this()](const error_code& /*error*/) {});
   }
 
   void read_page_request() {
@@ -296,7 +296,7 @@ class PanelServer::Listener::Client : public std::enable_shared_from_this<Client
         return;
       }
       self->answering_ = true;
-      if (!self->writing_) {
+      if (self->outgoing_.empty()) {
         self->answer_page_request();
       }
     });
@@ -311,8 +311,7 @@ class PanelServer::Listener::Client : public std::enable_shared_from_this<Client
     buffer_.clear();
     if (!viewer_ || !socket_.got_text() || !viewer_->ask(asked)) {
       viewer_.reset();
-      socket_.async_close({websocket::close_code::policy_error, "the message is not a valid request"},
-                          [self = shared_from_this()](const error_code& /*error*/) {});
+      close(websocket::close_code::policy_error, "the message is not a valid request");
       return;
     }
     listener_->look();
@@ -323,98 +322,49 @@ class PanelServer::Listener::Client : public std::enable_shared_from_this<Client
   websocket::stream<beast::tcp_stream> socket_;
   beast::flat_buffer buffer_{kLongestHeader + kLongestPageRequest};
   http::request_parser<http::empty_body> parser_;
-  Response response_;
+  http::response<http::string_body> response_;
   std::size_t drained_ = 0;
   bool takes_a_page_ = false;
   std::unique_ptr<PanelViewer> viewer_;
-  std::string outgoing_;
-  bool writing_ = false;
+  std::string outgoing_;    ///< the message that is being sent; empty: none
   bool answering_ = false;  ///< a request waits until the present message has been sent
 };
 
-void PanelServer::Listener::accept() {
-  acceptor_.async_accept([self = shared_from_this()](const error_code& error, tcp::socket socket) {
-    if (error == boost::asio::error::operation_aborted || self->stopped_) {
-      return;
-    }
-    if (error) {
-      self->accept_later();
-      return;
-    }
-    error_code ignored;
-    socket.set_option(tcp::no_delay(true), ignored);
-    self->clients_.remove_if([](const auto& client) { return client.expired(); });
-    if (self->clients_.size() - self->pages() < kMostRequests) {
-      const auto client = std::make_shared<Client>(self, std::move(socket));
-      self->clients_.push_back(client);
-      client->read_request();
-    } else {
-      socket.non_blocking(true, ignored);
-      socket.write_some(boost::asio::buffer(kTooManyRequestsResponse), ignored);
-    }
-    self->accept();
-  });
-}
-
-/// Accepts again after a delay. If the process has no free file descriptor, an immediate retry would use all
-/// of the processor's time.
-void PanelServer::Listener::accept_later() {
-  constexpr std::chrono::milliseconds kRetryDelay{100};
-  next_try_.expires_after(kRetryDelay);
-  next_try_.async_wait([self = shared_from_this()](const error_code& error) {
-    if (!error && !self->stopped_) {
-      self->accept();
-    }
-  });
+void PanelServer::Listener::admit(tcp::socket socket) {
+  if (stopped_) {
+    return;
+  }
+  error_code ignored;
+  socket.set_option(tcp::no_delay(true), ignored);
+  if (clients_.size() - pages() < kMostRequests) {
+    std::make_shared<Client>(shared_from_this(), std::move(socket))->read_request();
+  } else {
+    socket.non_blocking(true, ignored);
+    socket.write_some(boost::asio::buffer(kTooManyRequestsResponse), ignored);
+  }
 }
 
 std::size_t PanelServer::Listener::pages() const {
-  return static_cast<std::size_t>(std::count_if(clients_.begin(), clients_.end(), [](const auto& weak) {
-    const auto client = weak.lock();
-    return client && client->takes_a_page();
-  }));
+  return static_cast<std::size_t>(std::count_if(clients_.begin(), clients_.end(),
+                                                [](const Client* client) { return client->takes_a_page(); }));
 }
 
-/// Captures the present state immediately for a new page. If the state is not captured regularly yet, starts
-/// to capture it regularly.
-void PanelServer::Listener::watch() {
-  if (looking_) {
-    look();
-  } else {
-    looking_ = true;
-    look();
-    look_later();
-  }
-}
-
-void PanelServer::Listener::look_later() {
-  next_look_.expires_after(kLookEvery);
-  next_look_.async_wait([self = shared_from_this()](const error_code& error) {
-    if (error || self->stopped_) {
-      return;
-    }
-    self->look();
-    if (self->looking_) {
-      self->look_later();
-    }
-  });
-}
-
+/// While a page is open, captures the present state for the pages, now and at least every kLookEvery.
 void PanelServer::Listener::look() {
-  looking_ = false;
-  for (const auto& weak : clients_) {
-    const auto client = weak.lock();
-    looking_ = looking_ || (client && client->is_page());
-  }
-  if (!looking_) {
+  if (std::none_of(clients_.begin(), clients_.end(),
+                   [](const Client* client) { return client->is_page(); })) {
     return;
   }
-  source_.look();
-  for (const auto& weak : clients_) {
-    if (const auto client = weak.lock()) {
-      client->tell();
-    }
+  panel_.look();
+  for (Client* client : clients_) {
+    client->tell();
   }
+  next_look_.expires_after(kLookEvery);
+  next_look_.async_wait([self = shared_from_this()](const error_code& error) {
+    if (!error) {
+      self->look();
+    }
+  });
 }
 
 void PanelServer::Listener::stop() {
@@ -423,18 +373,14 @@ void PanelServer::Listener::stop() {
   acceptor_.close(ignored);
   next_look_.cancel(ignored);
   next_try_.cancel(ignored);
-  for (const auto& weak : clients_) {
-    if (const auto client = weak.lock()) {
-      client->part();
-    }
+  for (Client* client : clients_) {
+    client->part();
   }
 }
 
 PanelServer::PanelServer(boost::asio::io_context& io, std::optional<std::uint16_t> port, std::string models,
-                         PanelSource& source)
-    : listener_(std::make_shared<Listener>(io, std::move(models), source)) {
-  listener_->listen(port);
-}
+                         Panel& panel)
+    : listener_(std::make_shared<Listener>(io, port, std::move(models), panel)) {}
 
 PanelServer::~PanelServer() { listener_->stop(); }
 
@@ -442,6 +388,6 @@ std::string PanelServer::address() const {
   return "http://127.0.0.1:" + std::to_string(listener_->port()) + "/";
 }
 
-void PanelServer::start() { listener_->accept(); }
+void PanelServer::start() { listener_->start(); }
 
 }  // namespace ex9000::sim

@@ -2,7 +2,6 @@
 
 import {hexByte, make} from "/element.js";
 
-/// The maximum number of replies in the list.
 const mostReplies = 50;
 const intervals = [["200", "0.2 s"], ["1000", "1 s"], ["5000", "5 s"]];
 const everyModule = "all";
@@ -48,12 +47,12 @@ function dconItems(model, address) {
 
 export class Console {
   /// `several`: whether there are several lines. `index`: the position of the line, from 0. `modules`: {position,
-  /// model} of each module on the line. `stateOf(position)` returns the state of a module. `ask(request)` sends a
-  /// request, see Live.
-  constructor(line, {several, index}, modules, stateOf, ask) {
+  /// model} of each module on the line. `states`: the state of each module, by position. `ask(request)` sends a
+  /// request, see `send` in live.js.
+  constructor(line, {several, index}, modules, states, ask) {
     this.index = index;
     this.modules = modules;
-    this.stateOf = stateOf;
+    this.states = states;
     this.ask = ask;
     this.timer = null;
     const name = line.name || "the line";
@@ -78,35 +77,34 @@ export class Console {
   /// polling when the user closes the console.
   open() {
     if (!this.element.open) {
-      this.poll.checked = false;
-      this.schedule(0);
+      this.stop();
       return;
     }
     this.module.replaceChildren(...this.modules.map(({position, model}) => {
-      const {plate} = this.stateOf(position);
+      const {plate} = this.states[position];
       const address = plate?.listening ? ` at ${hexByte(plate.address)}` : "";
       return make("option", {value: String(position)}, `${position + 1} ${model}${address}`);
     }), make("option", {value: everyModule}, "all modules"));
     this.fillItems();
   }
 
-  get plate() { return this.stateOf(Number(this.module.value))?.plate; }
+  get plate() { return this.states[Number(this.module.value)]?.plate; }
 
   async fillItems() {
     const chosen = this.modules.find(({position}) => String(position) === this.module.value);
     const all = await described();
     const model = all.get(chosen?.model);
-    const plate = chosen && this.plate;
-    this.items = !model || !plate?.listening ? []
+    const {plate} = this;
+    const items = !model || !plate?.listening ? []
       : plate.protocol === "modbus" ? modbusItems(model) : dconItems(model, plate.address);
-    const hint = this.items.length ? "choose or type a request" : "type a request";
+    const hint = items.length ? "choose or type a request" : "type a request";
     this.item.replaceChildren(make("option", {value: ""}, hint),
-      ...this.items.map(({label}, index) => make("option", {value: String(index)}, label)));
+      ...items.map(({label, request}) => make("option", {value: request}, label)));
   }
 
   choose() {
     if (this.item.value !== "") {
-      this.text.value = this.items[Number(this.item.value)].request;
+      this.text.value = this.item.value;
     }
   }
 
@@ -152,8 +150,8 @@ export class Console {
     }, delay);
   }
 
-  /// Call this when the connection is lost.
-  lost() {
+  /// Stops polling.
+  stop() {
     this.poll.checked = false;
     this.schedule(0);
   }

@@ -4,77 +4,69 @@
 
 import {bit, hexByte, make, setAttribute, setText} from "/element.js";
 
+/// Returns [name, textOf] of each row in the list of settings. `textOf(settings, plate, guard)` returns the text of the
+/// row. `inputs` contains the label of each input.
+function settingRows(inputs) {
+  const listed = (labels) => labels.filter(Boolean).join(", ") || "none";
+  const rowsOfInputs = [
+    ["Counts", ({edge}) => `${edge} edges`],
+    ["Input filters", ({filters}) =>
+      listed(inputs.map((label, channel) => filters[channel] && `${label} ${filters[channel]} ms`))],
+    ["Inverted inputs", ({inverted}) => listed(inputs.filter((label, channel) => bit(inverted, channel)))],
+  ];
+  return [
+    ["Name", ({name}) => name],
+    ["Address", ({address}) => hexByte(address)],
+    ["Baud", ({baud}) => String(baud)],
+    ["Line format", ({format}) => format],
+    ["Protocol", ({protocol}) => protocol === "modbus" ? "Modbus RTU" : "ASCII"],
+    ["Checksum", ({checksum}) => checksum ? "on" : "off"],
+    ...inputs.length ? rowsOfInputs : [],
+    ["Response delay", ({responseDelay}) => `${responseDelay} ms`],
+    ["Host watchdog", ({watchdog, timeout}) =>
+      `${watchdog ? "enabled" : "disabled"}, ${(timeout / 10).toFixed(1)} s`],
+    ["Host watchdog restarted by", ({fedByRequests}) => fedByRequests ? "host OK and requests" : "host OK"],
+    ["Timeout status", ({timedOut}) => timedOut ? "set" : "clear"],
+    ["Reset status", (settings, {listening}, guard) =>
+      listening && guard?.resetStatus ? "reset since the last query" : "–"],
+    ["Module watchdog", (settings, {resets}) => `${resets} ${resets === 1 ? "reset" : "resets"}`],
+  ];
+}
+
 export class Drawer {
-  constructor(layout, title) {
+  /// `state`: the parts of the module's state that have arrived.
+  constructor(layout, title, state) {
+    this.state = state;
     this.values = layout.outputs.length ? this.valueTable(layout.outputs, title) : null;
     this.kept = make("h4", {});
-    this.settings = {};
-    this.copies = [1, 2, 3, 4].map(() => ({state: make("h4", {}), bytes: make("code", {})}));
-    const inputs = layout.inputs.length ? ["Counts", "Input filters", "Inverted inputs"] : [];
-    this.inputs = layout.inputs;
-    const names = ["Name", "Address", "Baud", "Line format", "Protocol", "Checksum", ...inputs, "Response delay",
-      "Host watchdog", "Host watchdog restarted by", "Timeout status", "Reset status", "Module watchdog"];
-    for (const name of names) {
-      this.settings[name] = make("dd", {});
-    }
-    this.element = make("details", {class: "drawer"},
+    this.copies = [1, 2, 3, 4].map(() => ({caption: make("h4", {}), bytes: make("code", {})}));
+    this.settings = settingRows(layout.inputs).map(([name, textOf]) => ({name, textOf, value: make("dd", {})}));
+    this.element = make("details", {class: "drawer", ontoggle: () => this.draw()},
       make("summary", {}, "Settings and values", make("span", {class: "hidden"}, ` of ${title}`)),
       make("div", {class: "drawerbody"}, ...(this.values ? [this.values.element] : []), this.kept,
-        make("dl", {}, ...names.flatMap((name) => [make("dt", {}, name), this.settings[name]])),
-        ...this.copies.map(({state, bytes}) => make("div", {class: "copy"}, state, bytes))));
-    this.element.addEventListener("toggle", () => this.draw());
+        make("dl", {}, ...this.settings.flatMap(({name, value}) => [make("dt", {}, name), value])),
+        ...this.copies.map(({caption, bytes}) => make("div", {class: "copy"}, caption, bytes))));
   }
 
-  /// Shows the state; parts that have not arrived yet are undefined.
-  show(plate, stored, guard) {
-    Object.assign(this, {plate, stored, guard});
-    this.draw();
-  }
-
-  /// Does nothing while the drawer is closed, or before the plate and the stored copies have arrived.
+  /// Shows the state. Does nothing while the drawer is closed, or before the plate and the stored copies have arrived.
   draw() {
-    if (!this.element.open || !this.stored || !this.plate) {
+    const {plate, stored, guard} = this.state;
+    if (!this.element.open || !stored || !plate) {
       return;
     }
-    const {plate, stored, guard} = this;
     const {settings} = stored;
     this.values?.show(plate.outputs, settings.powerOn, settings.safe);
     setText(this.kept, originOfSettings(stored));
-    const texts = {
-      "Name": settings.name,
-      "Address": hexByte(settings.address),
-      "Baud": String(settings.baud),
-      "Line format": settings.format,
-      "Protocol": settings.protocol === "modbus" ? "Modbus RTU" : "ASCII",
-      "Checksum": settings.checksum ? "on" : "off",
-      "Counts": `${settings.edge} edges`,
-      "Input filters": this.ofInputs((channel) => settings.filters[channel], (time) => ` ${time} ms`),
-      "Inverted inputs": this.ofInputs((channel) => bit(settings.inverted, channel), () => ""),
-      "Response delay": `${settings.responseDelay} ms`,
-      "Host watchdog": `${settings.watchdog ? "enabled" : "disabled"}, ${(settings.timeout / 10).toFixed(1)} s`,
-      "Host watchdog restarted by": settings.fedByRequests ? "host OK and requests" : "host OK",
-      "Timeout status": settings.timedOut ? "set" : "clear",
-      "Reset status": plate.listening && guard?.resetStatus ? "reset since the last query" : "–",
-      "Module watchdog": `${plate.resets} ${plate.resets === 1 ? "reset" : "resets"}`,
-    };
-    for (const [name, element] of Object.entries(this.settings)) {
-      setText(element, texts[name]);
+    for (const {textOf, value} of this.settings) {
+      setText(value, textOf(settings, plate, guard));
     }
-    this.copies.forEach(({state, bytes}, index) => {
+    this.copies.forEach(({caption, bytes}, index) => {
       const copy = stored.copies[index];
-      state.parentElement.hidden = copy.old && copyState(copy) === "blank";
+      caption.parentElement.hidden = copy.old && copyState(copy) === "blank";
       const name = copy.old ? "Copy of earlier firmware" : `Copy ${index + 1}`;
-      setText(state, `${name}: ${copyState(copy, index === stored.current)}`);
+      setText(caption, `${name}: ${copyState(copy, index === stored.current)}`);
       setText(bytes, copy.bytes.match(/../g).join(" "));
     });
-  }
-
-  /// Returns the label of each input for which `read` returns a value that is not 0 or false, followed by the text of
-  /// this value; "none" if there is no such input.
-  ofInputs(read, textOf) {
-    const labels = this.inputs.flatMap((label, channel) =>
-      read(channel) ? [`${label}${textOf(read(channel))}`] : []);
-    return labels.join(", ") || "none";
   }
 
   valueTable(outputs, title) {

@@ -32,30 +32,26 @@ export class Faults {
       ...modules.map(({position, model}) => make("option", {value: position}, `${position + 1} ${model}`)));
     return make("form", {class: "bar", onsubmit: async (event) => {
       event.preventDefault();
-      if (text.value.trim()) {
-        const module = whose.value === "" ? null : Number(whose.value);
-        if (await this.turn(text.value.trim(), module, true)) {
-          text.value = "";
-        }
+      const wanted = text.value.trim();
+      const module = whose.value === "" ? null : Number(whose.value);
+      if (wanted && await this.turn(wanted, module, true)) {
+        text.value = "";
       }
     }}, text, whose, make("button", {type: "submit"}, "Add"));
   }
 
-  key(text, module) { return `${module ?? ""} ${text}`; }
-
   /// Adds a fault to the list if it is not there yet, and returns its entry. The list keeps a fault that has ended, so
   /// that the user can switch it on again.
   learn(text, module) {
-    const key = this.key(text, module);
-    if (!this.known.has(key)) {
-      const shown = module === null ? text : `module ${module + 1}: ${text}`;
+    const shown = module === null ? text : `module ${module + 1}: ${text}`;
+    if (!this.known.has(shown)) {
       const knob = Switch.withKnob(`Fault ${shown}`, "slide", (on) => this.turn(text, module, on));
       const count = make("span", {class: "quiet"});
       const item = make("li", {}, knob.element, make("span", {"aria-hidden": "true"}, shown), count);
-      this.known.set(key, {knob, count, item, numbers: []});
+      this.known.set(shown, {knob, count, item, numbers: []});
       this.list.append(item);
     }
-    return this.known.get(key);
+    return this.known.get(shown);
   }
 
   /// Switches a fault on or off. Actions run one after the other, because a fault has no number until it has been
@@ -83,19 +79,14 @@ export class Faults {
   }
 
   show(faults) {
-    const on = new Map();
-    for (const fault of faults) {
-      this.learn(fault.text, fault.module);
-      const key = this.key(fault.text, fault.module);
-      on.set(key, [...on.get(key) ?? [], fault]);
-    }
-    for (const [key, {knob, count, item}] of this.known) {
-      const these = on.get(key) ?? [];
-      this.known.get(key).numbers = these.map((fault) => fault.number);
-      knob.show(these.length > 0);
-      setAttribute(item, "data-in-progress", these.some((fault) => fault.inProgress));
+    const entries = faults.map(({text, module}) => this.learn(text, module));
+    for (const entry of this.known.values()) {
+      const these = faults.filter((fault, index) => entries[index] === entry);
+      entry.numbers = these.map((fault) => fault.number);
+      entry.knob.show(these.length > 0);
+      setAttribute(entry.item, "data-in-progress", these.some((fault) => fault.inProgress));
       const occurrences = these.reduce((sum, fault) => sum + fault.soFar, 0);
-      setText(count, these.length ? `occurred ${occurrences}×` : "");
+      setText(entry.count, these.length ? `occurred ${occurrences}×` : "");
     }
   }
 }

@@ -25,10 +25,8 @@ export class FrameList {
 
   clear() {
     this.follows = true;
-    for (const row of this.made.values()) {
-      row.remove();
-    }
     this.made.clear();
+    this.filler.replaceChildren();
     this.stale = true;
   }
 
@@ -45,7 +43,6 @@ export class FrameList {
     }
   }
 
-  /// Draws the visible rows and some around them.
   draw(entries) {
     this.entries = entries;
     this.stale = false;

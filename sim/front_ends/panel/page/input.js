@@ -5,8 +5,7 @@ import {make, setAttribute, setText} from "/element.js";
 import {Switch} from "/switch.js";
 
 export class Input {
-  /// `tell(command, undo)` carries out a command of this module, see `tell` in live.js. `command` and `undo` do not
-  /// contain the module's number. `way()` returns the effect of a click without Shift or Alt: toggle, hold or pulse.
+  /// `tell` and `way`: see the constructor of Plate.
   constructor(title, label, channel, tell, way) {
     this.label = label;
     this.channel = channel;

@@ -8,25 +8,19 @@ export const mostUnfolded = 64;
 
 export class LineView {
   /// `modules`: {position, model} of each module. `count` selects the size of the plates: one, some or many. `open`:
-  /// whether the line is open at first. `newsOf(position)` returns the state of a module. `plateOf(position)` returns
+  /// whether the line is open at first. `states`: the state of each module, by position. `plateOf(position)` returns
   /// the plate of a module; the first call creates the plate.
-  constructor(line, modules, count, open, newsOf, plateOf) {
+  constructor(line, modules, count, open, states, plateOf) {
     this.line = line;
     this.modules = modules;
-    this.newsOf = newsOf;
+    this.states = states;
     this.plateOf = plateOf;
     this.plates = make("div", {class: "plates", "data-count": count});
     const ports = make("span", {class: "quiet"}, line.ports.join(", "));
     const size = make("span", {class: "quiet"}, `${modules.length} ${modules.length === 1 ? "module" : "modules"}`);
     this.element = make("details", {class: "line", ontoggle: () => this.fill()},
       make("summary", {}, make("h3", {class: "linename"}, line.name, " ", ports), " ", size), this.plates);
-    this.found = modules;
-    this.unfold(open);
-  }
-
-  unfold(open) {
-    this.element.open = open;
-    this.fill();
+    this.show(modules, open);
   }
 
   /// Shows the plates of the found modules if the line is open. A plate is created when it is shown for the first time.
@@ -45,15 +39,16 @@ export class LineView {
   }
 
   textOf({position, model}) {
-    const {plate, stored} = this.newsOf(position);
+    const {plate, stored} = this.states[position];
     const address = plate?.listening ? hexByte(plate.address) : "";
     return `${position + 1} ${model} ${address} ${stored?.settings.name ?? ""}`.toLowerCase();
   }
 
-  /// Shows only the plates of the modules in `found`, and hides the line if `found` is empty.
-  show(found) {
+  /// Shows only the plates of the modules in `found`, and hides the line if `found` is empty. Opens or folds the line.
+  show(found, open) {
     this.found = found;
     this.element.hidden = !found.length;
+    this.element.open = open;
     this.fill();
   }
 }

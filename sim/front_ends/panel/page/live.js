@@ -73,16 +73,14 @@ export class Live {
 
   /// Sends a request {line, address, ask} on a line; resolves to {ok, text, meaning, delay}. `meaning` and `delay`, in
   /// us, may be undefined.
-  ask(request) { return this.send(request); }
-
-  send(message) {
+  send(request) {
     if (this.socket?.readyState !== WebSocket.OPEN) {
       return Promise.resolve({ok: false, text: "error: there is no connection to the simulator"});
     }
     const id = ++this.asked;
     return new Promise((resolve) => {
       this.waiting.set(id, resolve);
-      this.socket.send(JSON.stringify({id, ...message}));
+      this.socket.send(JSON.stringify({id, ...request}));
     });
   }
 }

@@ -49,11 +49,8 @@ function begin(hello) {
   const wayOfClicks = () => document.querySelector("input[name=way]:checked").value;
   const plateOf = (position) => {
     const its = (command) => command && `${position + 1} ${command}`;
-    if (!plates[position]) {
-      plates[position] = new Plate(hello.modules[position], position,
-        (command, undo) => live.tell(its(command), its(undo)), wayOfClicks);
-      plates[position].show(states[position]);
-    }
+    plates[position] ??= new Plate(hello.modules[position], position, states[position],
+      (command, undo) => live.tell(its(command), its(undo)), wayOfClicks);
     return plates[position];
   };
   plates = [];
@@ -66,9 +63,8 @@ function begin(hello) {
     const modules = modulesOf[index];
     const faults = new Faults(line, {several, unfolded, usual: hello.usualFaults}, modules,
       (command) => live.tell(command));
-    const view = several ? new LineView(line, modules, count, unfolded, (position) => states[position], plateOf) : null;
-    const console = new Console(line, {several, index}, modules, (position) => states[position],
-      (request) => live.ask(request));
+    const view = several ? new LineView(line, modules, count, unfolded, states, plateOf) : null;
+    const console = new Console(line, {several, index}, modules, states, (request) => live.send(request));
     return {...line, modules, faults, view, console};
   });
   at("finder").hidden = !several;
@@ -95,32 +91,26 @@ function find() {
   const found = lines.map(({view}) => view.matches(words));
   const total = found.reduce((sum, modules) => sum + modules.length, 0);
   lines.forEach(({view, faults, console}, index) => {
-    view.show(found[index]);
+    view.show(found[index], found[index].length > 0 && total <= mostUnfolded);
     faults.element.hidden = console.element.hidden = !found[index].length;
-    view.unfold(found[index].length > 0 && total <= mostUnfolded);
   });
   setText(at("found"), words.length ? `${total} ${total === 1 ? "module" : "modules"} found` : "");
 }
 
 function show(message) {
-  for (const {module, ...news} of message.state?.modules ?? []) {
+  message.state?.modules.forEach(({module, ...news}) => {
     Object.assign(states[module], news);
     plates[module]?.show(news);
-  }
-  for (const [index, news] of (message.state?.lines ?? []).entries()) {
-    if (news.faults) {
-      lines[index].faults.show(news.faults);
+  });
+  message.state?.lines.forEach(({faults}, index) => {
+    if (faults) {
+      lines[index].faults.show(faults);
     }
-  }
+  });
   if (message.frames) {
     timeline.add(message.frames);
   }
-  for (const answer of message.answers ?? []) {
-    live.answer(answer);
-  }
-  if (message.reply) {
-    live.answer(message.reply);
-  }
+  [...message.answers ?? [], message.reply].filter(Boolean).forEach((reply) => live.answer(reply));
 }
 
 function take(message) {
@@ -129,9 +119,7 @@ function take(message) {
     begin(message.hello);
   }
   const when = performance.now();
-  for (const [index, news] of (message.state?.lines ?? []).entries()) {
-    clocks[index] = {showed: news.now, when};
-  }
+  message.state?.lines.forEach((line, index) => { clocks[index] = {showed: line.now, when}; });
   fresh.push(message);
   // The browser does not repaint a hidden page, so messages would accumulate.
   if (document.hidden && !due) {
@@ -160,7 +148,7 @@ function lost(why) {
   setText(at("lost"), why ? reasons[why] : "");
   if (why) {
     plates.forEach((plate) => plate.lost());
-    lines.forEach(({console}) => console.lost());
+    lines.forEach(({console}) => console.stop());
   }
 }
 

@@ -9,17 +9,19 @@ import {Switch} from "/switch.js";
 const edgeTerminals = ["DATA+", "DATA−", "+VS", "GND"];
 
 export class Plate {
-  /// `position` counts from 0. `tell(command, undo)` carries out a command of this module, see `tell` in live.js.
-  /// `command` and `undo` do not contain the module's number. `way()` returns the effect of a click on an input without
-  /// Shift or Alt: toggle, hold or pulse.
-  constructor(layout, position, tell, way) {
+  /// `position` counts from 0. `state` contains the parts of the module's state that have arrived, and the caller
+  /// updates it. `tell(command, undo)` carries out a command of this module, see `tell` in live.js. `command` and
+  /// `undo` do not contain the module's number. `way()` returns the effect of a click on an input without Shift or Alt:
+  /// toggle, hold or pulse.
+  constructor(layout, position, state, tell, way) {
     this.layout = layout;
-    this.position = position;
+    this.state = state;
     this.tell = tell;
     this.title = `${position + 1} ${layout.model}`;
     this.outputs = layout.outputs.map((label) => this.makeOutput(label));
     this.inputs = layout.inputs.map((label, channel) => new Input(this.title, label, channel, tell, way));
     this.element = this.build();
+    this.show(state);
   }
 
   build() {
@@ -37,7 +39,7 @@ export class Plate {
     this.guard = this.readout("Host watchdog", "wide");
     this.bar = make("span", {class: "countdown", "aria-hidden": "true"}, make("span"));
     this.guard.box.append(this.bar);
-    this.drawer = new Drawer(this.layout, this.title);
+    this.drawer = new Drawer(this.layout, this.title, this.state);
     const edge = this.layout.initTerminal ? ["INIT*", ...edgeTerminals] : edgeTerminals;
     return make("article", {class: "plate", "aria-label": this.title},
       make("div", {class: "head"},
@@ -83,23 +85,20 @@ export class Plate {
   /// Call this when the connection is lost.
   lost() { this.inputs.forEach((input) => input.lost()); }
 
-  /// Shows the changes in `news`, which may be empty.
+  /// Shows the parts of the state in `news`, which may be empty. `state` must contain these parts too.
   show(news) {
     if (news.plate) {
-      this.plate = news.plate;
       this.showPlate(news.plate);
     }
     if (news.gathered) {
-      this.showGathered(news.gathered);
-    }
-    if (news.guard) {
-      this.guardState = news.guard;
+      const {counters, high, low} = news.gathered;
+      this.inputs.forEach((input, channel) =>
+        input.showGathered(counters[channel], bit(high, channel), bit(low, channel)));
     }
     if (news.stored) {
-      this.stored = news.stored;
       setText(this.name, news.stored.settings.name);
     }
-    this.drawer.show(this.plate, this.stored, this.guardState);
+    this.drawer.draw();
   }
 
   showPlate(plate) {
@@ -128,21 +127,16 @@ export class Plate {
     this.inputs.forEach((input, channel) => input.show(bit(plate.inputs, channel)));
   }
 
-  showGathered(gathered) {
-    this.inputs.forEach((input, channel) => input.showGathered(gathered.counters[channel], bit(gathered.high, channel),
-      bit(gathered.low, channel)));
-  }
-
   /// Updates the readout and the countdown of the host watchdog. `now` is the time of the line's clock in us.
   tick(now) {
-    const guard = this.guardState;
+    const {plate, guard} = this.state;
     if (!guard) {
       return;
     }
     const total = guard.timeout * 1e5;
     const left = guard.expires === null ? 0 : Math.max(0, guard.expires - now);
     let text = "off";
-    if (!this.plate?.listening) {
+    if (!plate?.listening) {
       text = "––";
     } else if (guard.timedOut) {
       text = "timed out";

@@ -23,11 +23,12 @@ export class Strip {
     this.span = span;
     this.matches = matches;
     this.lines = [];
+    this.colours = {};
     this.span.addEventListener("change", () => { this.stale = true; });
     this.frame.addEventListener("scroll", () => { this.stale = true; }, {passive: true});
     new ResizeObserver(() => this.measure()).observe(this.canvas);
     const scheme = matchMedia("(prefers-color-scheme: dark)");
-    scheme.addEventListener("change", () => { this.colours = null; this.stale = true; });
+    scheme.addEventListener("change", () => { this.colours = {}; this.stale = true; });
     this.letMove();
     this.measure();
   }
@@ -50,10 +51,8 @@ export class Strip {
 
   letMove() {
     const move = (pixels) => {
-      if (this.paused) {
-        this.moved = Math.max(0, this.moved + pixels * this.span.value / this.canvas.clientWidth);
-        this.stale = true;
-      }
+      this.moved = Math.max(0, this.moved + pixels * this.span.value / this.canvas.clientWidth);
+      this.stale = true;
     };
     this.canvas.addEventListener("keydown", (event) => {
       const step = {ArrowLeft: 40, ArrowRight: -40, PageUp: 400, PageDown: -400}[event.key];
@@ -63,7 +62,7 @@ export class Strip {
       }
     });
     this.canvas.addEventListener("pointermove", (event) => {
-      if (event.buttons & 1) {
+      if (this.paused && event.buttons & 1) {
         move(event.movementX);
       }
     });
@@ -78,11 +77,7 @@ export class Strip {
   }
 
   colour(name) {
-    if (!this.colours) {
-      const style = getComputedStyle(document.documentElement);
-      this.colours = Object.fromEntries(["ink", "quiet", "edge", "plate", "master", "module", "bad", "note", "bar-ink",
-        "bad-ink"].map((each) => [each, style.getPropertyValue(`--${each}`).trim()]));
-    }
+    this.colours[name] ??= getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
     return this.colours[name];
   }
 

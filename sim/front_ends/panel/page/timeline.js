@@ -87,7 +87,7 @@ export class Timeline {
           fresh.push(this.prepared({...entry, line}));
         }
       }
-      this.next.set(line, entries[entries.length - 1].number + 1);
+      this.next.set(line, entries.at(-1).number + 1);
     }
     if (this.paused) {
       this.addWhilePaused(fresh);
@@ -111,14 +111,10 @@ export class Timeline {
   }
 
   prepared(entry) {
-    if (entry.missed) {
+    if (entry.note || entry.missed) {
       entry.from = this.who(entry.line);
       entry.said = "";
-      entry.means = `${entry.missed} ${entry.missed === 1 ? "row was" : "rows were"} left out here`;
-    } else if (entry.note) {
-      entry.from = this.who(entry.line);
-      entry.said = "";
-      entry.means = entry.note;
+      entry.means = entry.note ?? `${entry.missed} ${entry.missed === 1 ? "row was" : "rows were"} left out here`;
     } else {
       const sign = entry.station === 0 ? "▶" : entry.station === null ? "?" : "◀";
       entry.from = `${sign} ${this.who(entry.line, entry.station)}`;

@@ -8,28 +8,26 @@ namespace ex9000::sim {
 namespace {
 
 TEST(Loopback, AcceptsItsNamesOnlyWithThePort) {
-  const Loopback here(9042);
   for (const std::string name : {"127.0.0.1", "localhost"}) {
-    EXPECT_TRUE(here.is_host(name + ":9042"));
-    EXPECT_TRUE(here.is_origin("http://" + name + ":9042"));
-    EXPECT_FALSE(here.is_host(name));
-    EXPECT_FALSE(here.is_host(name + ":80"));
-    EXPECT_FALSE(here.is_origin("https://" + name + ":9042"));
+    EXPECT_TRUE(is_loopback_host(name + ":9042", 9042));
+    EXPECT_TRUE(is_loopback_origin("http://" + name + ":9042", 9042));
+    EXPECT_FALSE(is_loopback_host(name, 9042));
+    EXPECT_FALSE(is_loopback_host(name + ":80", 9042));
+    EXPECT_FALSE(is_loopback_origin("https://" + name + ":9042", 9042));
   }
-  EXPECT_FALSE(here.is_host("example.org:9042"));
+  EXPECT_FALSE(is_loopback_host("example.org:9042", 9042));
 }
 
 TEST(Loopback, AcceptsItsNamesWithOrWithoutThePortAtPort80) {
-  const Loopback here(80);
   for (const std::string name : {"127.0.0.1", "localhost"}) {
     for (const std::string port : {"", ":80"}) {
-      EXPECT_TRUE(here.is_host(name + port));
-      EXPECT_TRUE(here.is_origin("http://" + name + port));
+      EXPECT_TRUE(is_loopback_host(name + port, 80));
+      EXPECT_TRUE(is_loopback_origin("http://" + name + port, 80));
     }
-    EXPECT_FALSE(here.is_host(name + ":8080"));
-    EXPECT_FALSE(here.is_origin(name));
+    EXPECT_FALSE(is_loopback_host(name + ":8080", 80));
+    EXPECT_FALSE(is_loopback_origin(name, 80));
   }
-  EXPECT_FALSE(here.is_host("example.org"));
+  EXPECT_FALSE(is_loopback_host("example.org", 80));
 }
 
 }  // namespace

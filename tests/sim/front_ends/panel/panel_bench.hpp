@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
 #include <memory>
 #include <string>
 #include <utility>
@@ -22,7 +23,7 @@ class PanelBench : public ModuleBench {
                [this](std::size_t /*line*/, RequestQueue::Request request) {
                  line().requests().ask(std::move(request));
                },
-               1, [this] { return wall_clock_; }) {
+               [](const std::function<void()>& action) { action(); }, 1, [this] { return wall_clock_; }) {
     LineSummary introduced;
     introduced.name = "hall";
     introduced.tcp = "127.0.0.1:5020";

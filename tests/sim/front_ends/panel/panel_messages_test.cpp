@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <functional>
 #include <memory>
 #include <string>
 #include <utility>
@@ -125,7 +126,8 @@ class TwoLines {
   std::vector<std::unique_ptr<Line>> lines_ = make_lines();
   Control control_{{{"hall", *lines_[0]}, {"yard", *lines_[1]}}};
   Panel panel_{[this](const std::string& command) { return control_.carry_out(command); },
-               [](std::size_t /*line*/, const RequestQueue::Request& /*request*/) {}, 1,
+               [](std::size_t /*line*/, const RequestQueue::Request& /*request*/) {},
+               [](const std::function<void()>& action) { action(); }, 1,
                [] { return std::chrono::steady_clock::time_point(); }};
   std::unique_ptr<PanelViewer> viewer_;
   Message hello_;
@@ -207,7 +209,8 @@ TEST(PanelOfTwoLines, ANoteIsReportedWithItsLine) {
 
 TEST(PanelMessages, AMessageIsOneLineOfText) {
   PanelBench bench("EX9055D");
-  EXPECT_EQ(text_of(bench.look()).find('\n'), std::string::npos);
+  bench.panel().look();
+  EXPECT_EQ(bench.viewer().next().find('\n'), std::string::npos);
 }
 
 TEST(PanelMessages, FramesComeWithTimeStationBytesAndMeaning) {
@@ -332,19 +335,17 @@ TEST(PanelMessages, InitIsATerminalOnModelsWithoutARearSwitch) {
 }
 
 TEST(PanelMessages, AnInvalidRequestIsRejected) {
+  PanelBench bench("EX9055D");
   for (const std::string text :
        {"", "x", "[]", "{}", R"({"id":1})", R"({"id":1,"do":2})", R"({"id":-1,"do":"list"})",
         R"({"id":"1","do":"list"})", R"({"id":1,"do":"list","x":1})", R"({"id":1,"do":"list"} x)",
         R"({"id":1,"do":"list","undo":2})", R"({"id":1,"undo":"list"})", R"({"do":"list","undo":"list"})",
         R"({"id":1,"do":"list","undo":"list","x":1})"}) {
-    EXPECT_FALSE(parse_page_request(message_in(text))) << text;
+    EXPECT_FALSE(bench.viewer().ask(text)) << text;
   }
-  EXPECT_FALSE(parse_page_request(message_in(R"({"id":1,"do":")" + std::string(1001, 'x') + "\"}")));
-  EXPECT_FALSE(
-      parse_page_request(message_in(R"({"id":1,"do":"list","undo":")" + std::string(1001, 'x') + "\"}")));
-  const auto asked = parse_page_request(message_in(R"({"id":1,"do":"list"})"));
-  ASSERT_TRUE(asked);
-  EXPECT_EQ(asked->command, "list");
+  EXPECT_FALSE(bench.viewer().ask(R"({"id":1,"do":")" + std::string(1001, 'x') + "\"}"));
+  EXPECT_FALSE(bench.viewer().ask(R"({"id":1,"do":"list","undo":")" + std::string(1001, 'x') + "\"}"));
+  EXPECT_TRUE(bench.viewer().ask(R"({"id":1,"do":"list"})"));
 }
 
 }  // namespace
