@@ -17,11 +17,20 @@ using hal::doubles::VirtualTime;
 
 struct Unit {
   std::string_view name;
-  double nanoseconds;
+  std::int64_t nanoseconds;
 };
 
-constexpr std::array<Unit, 5> kUnits{{{"us", 1e3}, {"ms", 1e6}, {"s", 1e9}, {"min", 60e9}, {"h", 3600e9}}};
+constexpr std::int64_t kSecond = 1'000'000'000;
+constexpr std::array<Unit, 5> kUnits{
+    {{"us", 1'000}, {"ms", 1'000'000}, {"s", kSecond}, {"min", 60 * kSecond}, {"h", 3600 * kSecond}}};
 constexpr double kYear = 365.0 * 24 * 3600e9;
+
+/// Returns the time in the unit of `unit` nanoseconds, exact to the nanosecond. `unit` is a power of ten.
+std::string decimal_text(VirtualTime time, std::int64_t unit) {
+  std::string fraction = std::to_string(unit + time.count() % unit).substr(1);
+  fraction.resize(fraction.find_last_not_of('0') + 1);
+  return std::to_string(time.count() / unit) + (fraction.empty() ? "" : "." + fraction);
+}
 
 }  // namespace
 
@@ -31,7 +40,7 @@ VirtualTime parse_time(const std::string& text) {
   const auto [rest, error] = std::from_chars(text.data(), end, value, std::chars_format::fixed);
   const std::string_view unit(rest, static_cast<std::size_t>(end - rest));
   for (const Unit& known : kUnits) {
-    const double nanoseconds = value * known.nanoseconds;
+    const double nanoseconds = value * static_cast<double>(known.nanoseconds);
     if (error == std::errc() && unit == known.name && nanoseconds >= 0 && nanoseconds <= kYear) {
       return VirtualTime(std::llround(nanoseconds));
     }
@@ -40,25 +49,13 @@ VirtualTime parse_time(const std::string& text) {
 }
 
 std::string time_text(VirtualTime time) {
-  const auto unit = time < std::chrono::milliseconds(1) ? kUnits[0]
-                    : time < std::chrono::seconds(1)    ? kUnits[1]
-                                                        : kUnits[2];
-  std::ostringstream text;
-  text << std::fixed << std::setprecision(9) << static_cast<double>(time.count()) / unit.nanoseconds;
-  std::string digits = text.str();
-  digits.resize(digits.find_last_not_of('0') + 1);
-  if (digits.back() == '.') {
-    digits.pop_back();
-  }
-  return digits + std::string(unit.name);
+  const Unit& unit = time < std::chrono::milliseconds(1) ? kUnits[0]
+                     : time < std::chrono::seconds(1)    ? kUnits[1]
+                                                         : kUnits[2];
+  return decimal_text(time, unit.nanoseconds) + std::string(unit.name);
 }
 
-std::string seconds_text(VirtualTime time) {
-  constexpr std::int64_t kSecond = 1'000'000'000;
-  std::string fraction = std::to_string(kSecond + time.count() % kSecond).substr(1);
-  fraction.resize(fraction.find_last_not_of('0') + 1);
-  return std::to_string(time.count() / kSecond) + (fraction.empty() ? "" : "." + fraction);
-}
+std::string seconds_text(VirtualTime time) { return decimal_text(time, kSecond); }
 
 std::string stamp_text(VirtualTime time) {
   std::ostringstream text;

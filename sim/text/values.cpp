@@ -13,6 +13,7 @@ namespace ex9000::sim {
 
 namespace {
 
+constexpr const char* kHexDigits = "0123456789ABCDEFabcdef";
 /// In the order of LineFormat.
 constexpr std::array<std::string_view, 4> kLineFormats{"8N1", "8N2", "8E1", "8O1"};
 
@@ -30,11 +31,15 @@ std::optional<Number> number(const std::string& text, Format... format) {
   fail("'" + text + "': expected " + expected);
 }
 
-/// Returns the value of 1 to `most` hex digits; nullopt for any other text.
-std::optional<unsigned> hex_number(const std::string& text, std::size_t most) {
+/// Parses 1 to `most` hex digits. For any other text, throws a message that says what was `expected`.
+unsigned parse_hex(const std::string& text, std::size_t most, const std::string& expected) {
   constexpr int kHex = 16;
-  const bool digits = text.find_first_not_of("0123456789ABCDEFabcdef") == std::string::npos;
-  return digits && text.size() <= most ? number<unsigned>(text, kHex) : std::nullopt;
+  const bool digits = text.find_first_not_of(kHexDigits) == std::string::npos && text.size() <= most;
+  const auto value = digits ? number<unsigned>(text, kHex) : std::nullopt;
+  if (!value) {
+    expect(text, expected);
+  }
+  return *value;
 }
 
 }  // namespace
@@ -93,13 +98,11 @@ std::string mode_text(std::uint32_t baud, LineFormat format) {
 }
 
 std::uint32_t parse_baud_rate(const std::string& text) {
+  std::string rates;
   for (const std::uint32_t rate : kBaudRates) {
     if (text == std::to_string(rate)) {
       return rate;
     }
-  }
-  std::string rates;
-  for (const std::uint32_t rate : kBaudRates) {
     const char* const separator = rate == kBaudRates.back() ? " or " : ", ";
     rates += (rates.empty() ? "" : separator) + std::to_string(rate);
   }
@@ -107,36 +110,24 @@ std::uint32_t parse_baud_rate(const std::string& text) {
 }
 
 std::uint8_t parse_hex_byte(const std::string& text) {
-  const auto value = hex_number(text, 2);
-  if (!value) {
-    expect(text, "one or two hex digits");
-  }
-  return static_cast<std::uint8_t>(*value);
+  return static_cast<std::uint8_t>(parse_hex(text, 2, "one or two hex digits"));
 }
 
 std::uint16_t parse_hex_word(const std::string& text) {
   constexpr std::size_t kMostDigits = 4;
-  const auto value = hex_number(text, kMostDigits);
-  if (!value) {
-    expect(text, "one to four hex digits");
-  }
-  return static_cast<std::uint16_t>(*value);
+  return static_cast<std::uint16_t>(parse_hex(text, kMostDigits, "one to four hex digits"));
 }
 
 std::vector<std::uint8_t> parse_hex_bytes(const std::string& text) {
   std::string digits = text;
   const auto is_blank = [](char character) { return character == ' ' || character == '\t'; };
   digits.erase(std::remove_if(digits.begin(), digits.end(), is_blank), digits.end());
+  if (digits.empty() || digits.size() % 2 != 0 || digits.find_first_not_of(kHexDigits) != std::string::npos) {
+    expect(text, "pairs of hex digits, for example 010500FF");
+  }
   std::vector<std::uint8_t> bytes;
   for (std::size_t i = 0; i < digits.size(); i += 2) {
-    const auto value = i + 2 <= digits.size() ? hex_number(digits.substr(i, 2), 2) : std::nullopt;
-    if (!value) {
-      expect(text, "pairs of hex digits, for example 010500FF");
-    }
-    bytes.push_back(static_cast<std::uint8_t>(*value));
-  }
-  if (bytes.empty()) {
-    expect(text, "pairs of hex digits, for example 010500FF");
+    bytes.push_back(parse_hex_byte(digits.substr(i, 2)));
   }
   return bytes;
 }

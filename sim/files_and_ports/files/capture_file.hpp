@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/files_and_ports/files/file_descriptor.hpp"
 #include "sim/files_and_ports/files/wait_for_room.hpp"
 
 namespace ex9000::sim {
@@ -14,14 +15,9 @@ class CaptureFile {
  public:
   /// Creates the file if it is missing. An existing file keeps its content until `begin`. Throws
   /// std::invalid_argument with a one-line message if the file is not writable, if it is a regular file that
-  /// another simulator uses, or if it is a pipe without a reader. All messages begin with `place` and the
-  /// path.
+  /// another simulator uses, or if it is a pipe without a reader. All messages begin with `place` and `path`.
   CaptureFile(
-      std::string path, const std::string& place, GivesUp gives_up = [] { return false; });
-  /// Removes the file if the constructor has created it and `begin` has not been called.
-  ~CaptureFile();
-  CaptureFile(const CaptureFile&) = delete;
-  CaptureFile& operator=(const CaptureFile&) = delete;
+      const std::string& path, const std::string& place, GivesUp gives_up = [] { return false; });
 
   /// Deletes the content of a regular file. Throws std::runtime_error with a one-line message if this fails.
   void begin();
@@ -34,15 +30,10 @@ class CaptureFile {
   void append(const std::vector<std::uint8_t>& block);
 
  private:
-  [[noreturn]] void refuse(const std::string& why);
-
-  std::string path_;
   std::string where_;  ///< place and path, for messages
   GivesUp gives_up_;
-  int fd_ = -1;
+  FileDescriptor file_;
   bool regular_ = false;
-  bool made_ = false;
-  bool begun_ = false;
   bool given_up_ = false;
 };
 

@@ -61,16 +61,21 @@ class Draft {
   bool temporary_ = false;
 };
 
-/// Returns the reason why an open file cannot be an image; empty if it may be an image.
-std::string flaw_of(const struct stat& status) {
+/// Returns the mode of `file`, which has just been opened. Throws std::invalid_argument with a one-line
+/// message if the file is not open or is not an image. `access` completes the message.
+mode_t require_image(const FileDescriptor& file, const std::string& path, const char* access) {
+  struct stat status {};
+  if (!file.is_open() || fstat(file.get(), &status) != 0) {
+    fail(path + ": " + reason() + "; name a file that can be " + access);
+  }
   if (!S_ISREG(status.st_mode)) {
-    return "is not a regular file; name another path";
+    fail(path + ": is not a regular file; name another path");
   }
   if (status.st_size != static_cast<off_t>(kSize)) {
-    return "has " + std::to_string(status.st_size) + " bytes, but an image of the EEPROM has " +
-           std::to_string(kSize) + "; remove it or name another path";
+    fail(path + ": has " + std::to_string(status.st_size) + " bytes, but an image of the EEPROM has " +
+         std::to_string(kSize) + "; remove it or name another path");
   }
-  return "";
+  return status.st_mode;
 }
 
 /// Reads the image in `file`. Throws std::invalid_argument with a one-line message if reading fails.
@@ -89,13 +94,7 @@ std::optional<std::vector<std::uint8_t>> read_eeprom_file(const std::string& pat
   if (!file.is_open() && errno == ENOENT) {
     return std::nullopt;
   }
-  struct stat status {};
-  const std::string why = !file.is_open() || fstat(file.get(), &status) != 0
-                              ? reason() + "; name a file that can be read"
-                              : flaw_of(status);
-  if (!why.empty()) {
-    fail(path + ": " + why);
-  }
+  require_image(file, path, "read");
   return image_in(file, path);
 }
 
@@ -104,18 +103,16 @@ EepromFile::EepromFile(std::string path)
   if (!file_.is_open() && errno == ENOENT) {
     return;
   }
-  struct stat status {};
-  if (!file_.is_open() || fstat(file_.get(), &status) != 0) {
-    refuse(reason() + "; name a file that can be read and written");
-  }
-  if (const std::string why = flaw_of(status); !why.empty()) {
-    refuse(why);
-  }
+  const mode_t mode = require_image(file_, path_, "read and written");
   // A file without any write permission is protected; open() alone would let root write to it.
-  if ((status.st_mode & (S_IWUSR | S_IWGRP | S_IWOTH)) == 0) {
-    refuse("is read-only; make it writable with chmod u+w, or name another path");
+  if ((mode & (S_IWUSR | S_IWGRP | S_IWOTH)) == 0) {
+    fail(path_ + ": is read-only; make it writable with chmod u+w, or name another path");
   }
-  lock();
+  if (flock(file_.get(), LOCK_EX | LOCK_NB) != 0) {
+    fail(path_ + ": " +
+         (errno == EWOULDBLOCK ? "is in use by another simulator; end that simulator or name another path"
+                               : reason() + "; name another path"));
+  }
   found_ = image_in(file_, path_);
 }
 
@@ -127,7 +124,7 @@ void EepromFile::create(const std::vector<std::uint8_t>& image) {
     const std::string why =
         errno == EEXIST ? "another program has created the file, or the path is a link to a missing file"
                         : reason();
-    refuse("cannot be created: " + why + "; name a path that can be written");
+    fail(path_ + ": cannot be created: " + why + "; name a path that can be written");
   }
 }
 
@@ -139,14 +136,5 @@ bool EepromFile::write(std::uint16_t address, Bytes bytes) const {
   }
   return written >= 0;
 }
-
-void EepromFile::lock() const {
-  if (flock(file_.get(), LOCK_EX | LOCK_NB) != 0) {
-    refuse(errno == EWOULDBLOCK ? "is in use by another simulator; end that simulator or name another path"
-                                : reason() + "; name another path");
-  }
-}
-
-void EepromFile::refuse(const std::string& why) const { fail(path_ + ": " + why); }
 
 }  // namespace ex9000::sim

@@ -40,9 +40,6 @@ class EepromFile {
   [[nodiscard]] const std::string& path() const { return path_; }
 
  private:
-  [[noreturn]] void refuse(const std::string& why) const;
-  void lock() const;
-
   std::string path_;
   FileDescriptor file_;
   std::optional<std::vector<std::uint8_t>> found_;

@@ -8,12 +8,13 @@
 namespace ex9000::sim {
 
 /// Returns `path` with an absolute folder that contains no symbolic links, `.` or `..`: different spellings
-/// of the path of a file become equal. Does not follow a symbolic link at `path` itself.
+/// of the path of a file become equal. Does not follow a symbolic link at `path` itself. If the folder cannot
+/// be examined, for example because its symbolic links form a loop, returns the absolute path as it is.
 inline std::string one_spelling(const std::string& path) {
   std::error_code error;
   const std::filesystem::path absolute = std::filesystem::absolute(path, error);
   const std::filesystem::path folder = std::filesystem::weakly_canonical(absolute.parent_path(), error);
-  return (folder / absolute.filename()).string();
+  return (error ? absolute : folder / absolute.filename()).string();
 }
 
 }  // namespace ex9000::sim

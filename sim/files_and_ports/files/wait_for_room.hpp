@@ -19,11 +19,12 @@ inline bool wait_for_room(int descriptor, const GivesUp& gives_up) {
   // milliseconds, after which this function calls `gives_up` again.
   constexpr int kAskEvery = 100;
   pollfd ready{descriptor, POLLOUT, 0};
-  for (int result = 0; (result = poll(&ready, 1, 0)) == 0 || (result < 0 && errno == EINTR);) {
+  int result = poll(&ready, 1, 0);
+  while (result == 0 || (result < 0 && errno == EINTR)) {
     if (gives_up()) {
       return false;
     }
-    poll(&ready, 1, kAskEvery);
+    result = poll(&ready, 1, kAskEvery);
   }
   return true;
 }

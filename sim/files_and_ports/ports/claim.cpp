@@ -9,22 +9,12 @@
 
 namespace ex9000::sim {
 
-namespace {
-
-/// Returns a name that is equal for different spellings of `path` (see one_spelling), and short enough for a
-/// socket.
-std::string name_of(const std::string& path) {
-  return "ex9000-sim/" + std::to_string(std::hash<std::string>()(one_spelling(path)));
-}
-
-}  // namespace
-
 /// Uses an abstract socket: the kernel gives the name to only one socket at a time, and releases it when the
-/// socket is closed.
+/// socket is closed. The name contains a hash, because a path may be too long.
 Claim::Claim(const std::string& path) : socket_(socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
-  const std::string name = name_of(path);
+  const std::string name = "ex9000-sim/" + std::to_string(std::hash<std::string>()(one_spelling(path)));
   name.copy(address.sun_path + 1, sizeof address.sun_path - 1);
   const auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + name.size());
   if (held() && bind(socket_.get(), reinterpret_cast<const sockaddr*>(&address), size) != 0) {

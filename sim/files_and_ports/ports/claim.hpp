@@ -1,5 +1,4 @@
-// A lock for a path. A file at the path may remain after the process that created the file has ended, but the
-// lock does not remain.
+// A lock for a path.
 #pragma once
 
 #include <string>
@@ -8,10 +7,10 @@
 
 namespace ex9000::sim {
 
-/// At most one object in all processes holds the claim for a path. The destructor releases the claim. The
-/// system releases it too when the process ends, even if a signal kills the process. If a simulator has
-/// created the file at a path and no object holds the claim for the path, this simulator no longer uses the
-/// file. A claim works between processes of all users, but only within one network namespace.
+/// At most one object in all processes holds the claim for a path. The system releases the claim when the
+/// process ends, even if a signal kills the process: if no object holds the claim, a file that a simulator
+/// has created at the path is no longer in use. A claim works between processes of all users, but only within
+/// one network namespace.
 class Claim {
  public:
   explicit Claim(const std::string& path);

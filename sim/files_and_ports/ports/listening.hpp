@@ -9,28 +9,19 @@
 
 namespace ex9000::sim {
 
-/// Opens `acceptor` and listens on `endpoint`. If that fails, closes `acceptor` and returns the error.
+/// Opens `acceptor` and listens on `endpoint`. If that fails, returns the error and does not change
+/// `acceptor`.
 inline boost::system::error_code listen_at(boost::asio::ip::tcp::acceptor& acceptor,
                                            const boost::asio::ip::tcp::endpoint& endpoint) {
-  using boost::asio::ip::tcp;
-  boost::system::error_code error;
-  acceptor.open(endpoint.protocol(), error);
   // Connections of a process that has ended may still exist. They must not prevent this process from
   // listening.
-  if (!error) {
-    acceptor.set_option(tcp::acceptor::reuse_address(true), error);
+  constexpr bool kReuseAddress = true;
+  try {
+    acceptor = boost::asio::ip::tcp::acceptor(acceptor.get_executor(), endpoint, kReuseAddress);
+    return {};
+  } catch (const boost::system::system_error& error) {
+    return error.code();
   }
-  if (!error) {
-    acceptor.bind(endpoint, error);
-  }
-  if (!error) {
-    acceptor.listen(tcp::acceptor::max_listen_connections, error);
-  }
-  if (error) {
-    boost::system::error_code ignored;
-    acceptor.close(ignored);
-  }
-  return error;
 }
 
 /// Calls `admit` with the socket of each new connection until both `acceptor` and `next_try` are cancelled or

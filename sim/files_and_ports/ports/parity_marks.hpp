@@ -22,27 +22,13 @@ class ParityMarks {
   std::vector<Arrived> read(const std::uint8_t* bytes, std::size_t size) {
     std::vector<Arrived> arrived;
     for (std::size_t i = 0; i < size; ++i) {
-      const std::uint8_t byte = bytes[i];
-      switch (state_) {
-        case State::Plain:
-          if (byte == kMark) {
-            state_ = State::AfterMark;
-          } else {
-            arrived.push_back({byte, false});
-          }
-          break;
-        case State::AfterMark:
-          if (byte == 0) {
-            state_ = State::BeforeDamaged;
-          } else {
-            arrived.push_back({byte, false});
-            state_ = State::Plain;
-          }
-          break;
-        case State::BeforeDamaged:
-          arrived.push_back({byte, true});
-          state_ = State::Plain;
-          break;
+      if (state_ == State::Plain && bytes[i] == kMark) {
+        state_ = State::AfterMark;
+      } else if (state_ == State::AfterMark && bytes[i] == 0) {
+        state_ = State::BeforeDamaged;
+      } else {
+        arrived.push_back({bytes[i], state_ == State::BeforeDamaged});
+        state_ = State::Plain;
       }
     }
     return arrived;

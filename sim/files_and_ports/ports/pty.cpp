@@ -2,16 +2,17 @@
 
 #include <fcntl.h>
 #include <poll.h>
-#include <sys/stat.h>
 #include <termios.h>
 #include <unistd.h>
 
 #include <array>
-#include <climits>
 #include <cstdlib>
+#include <filesystem>
 #include <stdexcept>
+#include <system_error>
 #include <utility>
 
+#include "sim/files_and_ports/files/new_file.hpp"
 #include "sim/files_and_ports/ports/termios_rates.hpp"
 #include "sim/text/system_error.hpp"
 
@@ -19,11 +20,10 @@ namespace ex9000::sim {
 
 namespace {
 
-std::optional<std::string> link_target(const std::string& link) {
-  std::array<char, PATH_MAX> target{};
-  const ssize_t size = readlink(link.c_str(), target.data(), target.size() - 1);
-  return size < 0 ? std::nullopt
-                  : std::optional<std::string>(std::string(target.data(), static_cast<std::size_t>(size)));
+/// Returns the target of a symbolic link; empty if `link` is not one.
+std::string link_target(const std::string& link) {
+  std::error_code error;
+  return std::filesystem::read_symlink(link, error).string();
 }
 
 /// Removes a link to a pseudo-terminal at `link`. Throws if another simulator uses the path, or if any
@@ -32,12 +32,10 @@ void remove_stale(const std::string& link, const Claim& claim) {
   if (!claim.held()) {
     throw std::invalid_argument(link + ": another simulator is running there; end it or name another path");
   }
-  struct stat status {};
-  if (lstat(link.c_str(), &status) != 0) {
+  if (!is_there(link)) {
     return;
   }
-  const auto target = link_target(link);
-  if (!target || target->rfind("/dev/pts/", 0) != 0) {
+  if (link_target(link).rfind("/dev/pts/", 0) != 0) {
     throw std::invalid_argument(
         link + ": exists and is not a link to a pseudo-terminal; remove it or name another path");
   }

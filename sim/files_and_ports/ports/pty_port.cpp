@@ -70,6 +70,4 @@ ssize_t PtyPort::take() {
   return size < 0 && errno == EAGAIN ? 0 : -1;
 }
 
-std::size_t PtyPort::send(const std::vector<std::uint8_t>& bytes) { return pty_.write(bytes); }
-
 }  // namespace ex9000::sim

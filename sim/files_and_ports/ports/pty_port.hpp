@@ -24,7 +24,7 @@ class PtyPort final : public Port {
   void start(Received received) override;
   void resume() override;
   void read_waiting() override;
-  std::size_t send(const std::vector<std::uint8_t>& bytes) override;
+  std::size_t send(const std::vector<std::uint8_t>& bytes) override { return pty_.write(bytes); }
   [[nodiscard]] std::optional<std::uint32_t> baud() const override { return pty_.baud(); }
 
   [[nodiscard]] const Pty& pty() const { return pty_; }

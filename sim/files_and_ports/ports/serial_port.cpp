@@ -37,15 +37,16 @@ void ask_for_low_latency(int fd) {
   }
 }
 
+constexpr const char* kInUse = "is in use by another program; end that program or name another port";
+
 /// Configures the open port; throws if that fails.
-void set_up(int fd, const std::string& device, hal::SerialMode mode) {
-  const auto refuse = [&device](const std::string& why) { throw std::invalid_argument(device + ": " + why); };
+void set_up(int fd, hal::SerialMode mode) {
   termios before{};
   if (tcgetattr(fd, &before) != 0) {
-    refuse("is not a serial port; name one, for example /dev/ttyUSB0");
+    fail("is not a serial port; name one, for example /dev/ttyUSB0");
   }
   if (flock(fd, LOCK_EX | LOCK_NB) != 0 || ioctl(fd, TIOCEXCL) != 0) {
-    refuse("is in use by another program; end that program or name another port");
+    fail(kInUse);
   }
   termios settings = before;
   cfmakeraw(&settings);
@@ -60,8 +61,8 @@ void set_up(int fd, const std::string& device, hal::SerialMode mode) {
       tcgetattr(fd, &taken) != 0 || termios_rate(taken) != mode.baud ||
       ((taken.c_cflag ^ settings.c_cflag) & kTermiosFormat) != 0) {
     tcsetattr(fd, TCSANOW, &before);
-    refuse("cannot be set to " + mode_text(mode.baud, mode.format) +
-           "; choose another rate or format for the line");
+    fail("cannot be set to " + mode_text(mode.baud, mode.format) +
+         "; choose another rate or format for the line");
   }
   ask_for_low_latency(fd);
   tcflush(fd, TCIOFLUSH);
@@ -71,12 +72,9 @@ void set_up(int fd, const std::string& device, hal::SerialMode mode) {
 int open_port(const std::string& device, hal::SerialMode mode) {
   FileDescriptor port(open(device.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
   if (!port.is_open()) {
-    throw std::invalid_argument(device + ": " +
-                                (errno == EBUSY
-                                     ? "is in use by another program; end that program or name another port"
-                                     : reason() + "; name a serial port that can be read and written"));
+    fail(errno == EBUSY ? kInUse : reason() + "; name a serial port that can be read and written");
   }
-  set_up(port.get(), device, mode);
+  set_up(port.get(), mode);
   return port.release();
 }
 
@@ -84,7 +82,8 @@ int open_port(const std::string& device, hal::SerialMode mode) {
 
 SerialPort::SerialPort(boost::asio::io_context& io, const std::string& place, const std::string& device,
                        hal::SerialMode mode, bool echo)
-    : where_(place + device), descriptor_(io, with_place(place, [&] { return open_port(device, mode); })) {
+    : where_(place + device),
+      descriptor_(io, with_place(where_ + ": ", [&] { return open_port(device, mode); })) {
   if (echo) {
     echo_.emplace(mode);
   }

@@ -16,13 +16,6 @@ std::string text_of(const std::string& host, std::uint16_t port) {
   return (host.find(':') == std::string::npos ? host : "[" + host + "]") + ":" + std::to_string(port);
 }
 
-void prepare(tcp::socket& socket) {
-  boost::system::error_code ignored;
-  socket.set_option(tcp::no_delay(true), ignored);
-  socket.set_option(tcp::socket::keep_alive(true), ignored);
-  socket.non_blocking(true, ignored);
-}
-
 }  // namespace
 
 TcpListener::TcpListener(boost::asio::io_context& io, const TcpAddress& address)
@@ -40,7 +33,10 @@ TcpListener::TcpListener(boost::asio::io_context& io, const TcpAddress& address)
 
 void TcpListener::start(Admit admit) {
   admit_ = [admit = std::move(admit)](tcp::socket socket) {
-    prepare(socket);
+    boost::system::error_code ignored;
+    socket.set_option(tcp::no_delay(true), ignored);
+    socket.set_option(tcp::socket::keep_alive(true), ignored);
+    socket.non_blocking(true, ignored);
     admit(std::move(socket));
   };
   keep_accepting(acceptor_, next_try_, admit_);

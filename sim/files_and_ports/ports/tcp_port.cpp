@@ -49,12 +49,19 @@ void TcpPort::start(Received received) {
   listener_.start([this](tcp::socket socket) { admit(std::move(socket)); });
 }
 
+/// If the limit is reached, removes the lingering client that connected first. If no client lingers, refuses
+/// the new client.
 void TcpPort::admit(tcp::socket socket) {
-  make_room();
-  if (clients_.size() < kMostMasters) {
-    clients_.push_back(std::make_shared<Client>(io_, std::move(socket)));
-    read(clients_.back());
+  if (clients_.size() >= kMostMasters) {
+    const auto oldest =
+        std::find_if(clients_.begin(), clients_.end(), [](const auto& client) { return client->lingers; });
+    if (oldest == clients_.end()) {
+      return;
+    }
+    forget(ClientPointer(*oldest));
   }
+  clients_.push_back(std::make_shared<Client>(io_, std::move(socket)));
+  read(clients_.back());
 }
 
 /// Errors of a client are handled later, when the io_context runs.
@@ -78,18 +85,6 @@ boost::system::error_code TcpPort::take(Client& client) {
   return error;
 }
 
-/// If the limit is reached, removes the lingering client that connected first. Does nothing if no client
-/// lingers.
-void TcpPort::make_room() {
-  if (clients_.size() >= kMostMasters) {
-    const auto oldest =
-        std::find_if(clients_.begin(), clients_.end(), [](const auto& client) { return client->lingers; });
-    if (oldest != clients_.end()) {
-      forget(ClientPointer(*oldest));
-    }
-  }
-}
-
 void TcpPort::read(const ClientPointer& client) {
   if (client->reading || client->paused) {
     return;
@@ -104,10 +99,12 @@ void TcpPort::read(const ClientPointer& client) {
       return;  // the client was paused during the wait
     }
     const boost::system::error_code ended = error ? error : take(*client);
-    if (ended && ended != boost::asio::error::would_block) {
-      part_with(client, ended == boost::asio::error::eof);
-    } else {
+    if (!ended || ended == boost::asio::error::would_block) {
       read(client);
+    } else if (ended == boost::asio::error::eof) {
+      let_linger(client);
+    } else {
+      forget(client);
     }
   });
 }
@@ -121,13 +118,8 @@ void TcpPort::resume() {
   }
 }
 
-/// Removes a client whose connection has ended. If the client may still receive (`listens`), because it has
-/// closed its sending side without an error, the client stays for the linger time.
-void TcpPort::part_with(const ClientPointer& client, bool listens) {
-  if (!listens) {
-    forget(client);
-    return;
-  }
+/// Keeps a client that has closed its sending side for the linger time, because it may still receive.
+void TcpPort::let_linger(const ClientPointer& client) {
   client->lingers = true;
   if (!linger_) {
     return;

@@ -45,8 +45,7 @@ class TcpPort final : public Port {
 
   void read(const ClientPointer& client);
   [[nodiscard]] boost::system::error_code take(Client& client);
-  void make_room();
-  void part_with(const ClientPointer& client, bool listens);
+  void let_linger(const ClientPointer& client);
   void forget(const ClientPointer& client);
 
   boost::asio::io_context& io_;

@@ -19,9 +19,6 @@ class Visits final : public boost::asio::io_context::service {
 
   /// Called by boost::asio::use_service.
   explicit Visits(boost::asio::io_context& io);
-  ~Visits() override = default;
-  Visits(const Visits&) = delete;
-  Visits& operator=(const Visits&) = delete;
 
   /// Starts to watch `device`: after a process has opened or closed it, `visited` is called while the
   /// io_context runs, or by `take`. Returns the number of the watch. Throws std::runtime_error with a

@@ -9,18 +9,17 @@ FrameSpacing::FrameSpacing(Line& line) : line_(line) { line.bus().observe(*this)
 VirtualTime FrameSpacing::after_own() const { return last_byte_ + line_.rtu_silence(); }
 
 VirtualTime FrameSpacing::after_others(std::uint8_t address) const {
-  if (last_speaker_ > line_.size()) {  // a station that a fault has added; all modules receive its bytes
-    return is_for_modbus(address) ? last_byte_ + line_.rtu_separate() : VirtualTime(0);
+  if (last_speaker_ <= line_.size()) {  // otherwise a fault has added the station
+    const SimulatedModule& speaker = line_.module(last_speaker_ - 1);
+    if (!speaker.powered()) {
+      return VirtualTime(0);
+    }
+    const InForce& in_force = speaker.module().state().in_force;
+    if (in_force.protocol == Protocol::ModbusRtu) {
+      return in_force.address == address ? VirtualTime(0) : last_byte_ + line_.rtu_silence();
+    }
   }
-  const SimulatedModule& speaker = line_.module(last_speaker_ - 1);
-  if (!speaker.powered()) {
-    return VirtualTime(0);
-  }
-  const InForce& in_force = speaker.module().state().in_force;
-  if (in_force.protocol == Protocol::Ascii) {
-    return is_for_modbus(address) ? last_byte_ + line_.rtu_separate() : VirtualTime(0);
-  }
-  return in_force.address == address ? VirtualTime(0) : last_byte_ + line_.rtu_silence();
+  return is_for_modbus(address) ? last_byte_ + line_.rtu_separate() : VirtualTime(0);
 }
 
 /// Returns whether a frame that begins with this byte may be for a Modbus module.

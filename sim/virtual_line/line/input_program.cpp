@@ -161,14 +161,13 @@ void MovedInput::chatter(VirtualTime begins, bool level) {
     return;
   }
   const VirtualTime slot = program_.bounce / kChatters;
+  const auto less_than_half_a_slot = [&] {
+    return VirtualTime(chance_.number() % static_cast<std::uint64_t>(slot.count() / 2));
+  };
   for (unsigned i = 0; i < kChatters; ++i) {
-    const VirtualTime slot_begins = begins + slot * i;
-    const auto parts = VirtualTime(
-        1 + static_cast<std::int64_t>(chance_.number() % static_cast<std::uint64_t>(slot.count() / 2)));
-    const auto touches = VirtualTime(
-        1 + static_cast<std::int64_t>(chance_.number() % static_cast<std::uint64_t>(slot.count() / 2)));
-    moves_.push_back({slot_begins + parts, !level});
-    moves_.push_back({slot_begins + parts + touches - VirtualTime(1), level});
+    const VirtualTime parts = begins + slot * i + VirtualTime(1) + less_than_half_a_slot();
+    moves_.push_back({parts, !level});
+    moves_.push_back({parts + less_than_half_a_slot(), level});
   }
 }
 
@@ -177,7 +176,7 @@ void MovedInput::run() {
     module_.set_input(program_.channel, moves_.front().level);
     moves_.pop_front();
     if (moves_.empty() && again_ != kNever) {
-      plan(std::exchange(again_, kNever));
+      plan(again_);
     }
   }
   end_.run_at(moves_.empty() ? kNever : moves_.front().when);

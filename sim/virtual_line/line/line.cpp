@@ -5,12 +5,6 @@
 
 namespace ex9000::sim {
 
-namespace {
-
-constexpr std::chrono::milliseconds kComingUp{100};
-
-}  // namespace
-
 /// Bytes of one frame arrive without a gap, so a very short silence ends a frame with a correct CRC.
 LineTiming instantly(std::uint32_t /*baud*/, LineFormat /*format*/) {
   constexpr Duration kSilence(6);
@@ -37,6 +31,7 @@ Line::Line(const std::vector<ModuleSpec>& modules, LineKind kind, Master::Receiv
 }
 
 void Line::come_up() {
+  constexpr std::chrono::milliseconds kComingUp{100};
   for (const auto& module : modules_) {
     module->power(true);
   }
@@ -58,7 +53,6 @@ Faults& Line::faults() {
 RequestQueue& Line::requests() {
   if (!requests_) {
     requests_ = std::make_unique<RequestQueue>(*this);
-    master_.also_receive([this](std::uint8_t byte, ByteStatus status) { requests_->hear(byte, status); });
   }
   return *requests_;
 }

@@ -11,26 +11,16 @@
 
 namespace ex9000::sim {
 
-namespace {
-
-std::string upper(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
-  return text;
-}
-
-}  // namespace
-
 const Model& model_called(const std::string& name) {
-  const std::string wanted = upper(name);
-  const Model* model = find_model(wanted);
-  if (model == nullptr) {
-    model = find_model("EX" + wanted);
+  std::string wanted = name;
+  std::transform(name.begin(), name.end(), wanted.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  for (const std::string& designation : {wanted, "EX" + wanted}) {
+    if (const Model* model = find_model(designation)) {
+      return *model;
+    }
   }
-  if (model == nullptr) {
-    fail("'" + name + "' is not a model; 'ex9000-sim --models' lists all models");
-  }
-  return *model;
+  fail("'" + name + "' is not a model; 'ex9000-sim --models' lists all models");
 }
 
 ModuleSpec factory_fresh(const Model& model) {

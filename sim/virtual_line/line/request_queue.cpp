@@ -7,14 +7,9 @@
 
 namespace ex9000::sim {
 
-namespace {
-
-/// The maximum size of a frame in bytes: that of a Modbus RTU frame. DCON frames are shorter.
-constexpr std::size_t kLongestFrame = 256;
-
-}  // namespace
-
-RequestQueue::RequestQueue(Line& line) : line_(line), timer_(line.bus().attach(*this)) {}
+RequestQueue::RequestQueue(Line& line) : line_(line), timer_(line.bus().attach(*this)) {
+  line.master().also_receive([this](std::uint8_t byte, ByteStatus status) { hear(byte, status); });
+}
 
 void RequestQueue::ask(Request request) {
   const auto first = waiting_.begin() + (state_ == State::Idle ? 0 : 1);
@@ -76,6 +71,7 @@ void RequestQueue::send() {
 }
 
 void RequestQueue::hear(std::uint8_t byte, ByteStatus status) {
+  constexpr std::size_t kLongestFrame = 256;  // of Modbus RTU; DCON frames are shorter
   const VirtualTime now = line_.clock().virtual_now();
   const bool waits = state_ == State::WaitsForReply || state_ == State::Receives;
   if (!waits || now < sent_) {

@@ -49,15 +49,13 @@ class RequestQueue final : private Station {
     std::weak_ptr<void> owner;  ///< the client; must not be empty
   };
 
-  /// Attaches this object to the bus of `line`. This object must live as long as the bus is used.
+  /// Attaches this object to the bus and the master of `line`, and must live as long as they are used.
   explicit RequestQueue(Line& line);
   RequestQueue(const RequestQueue&) = delete;
   RequestQueue& operator=(const RequestQueue&) = delete;
 
   /// Sends the request when all earlier requests are done.
   void ask(Request request);
-  /// Call this for each byte that the master's end of the line receives.
-  void hear(std::uint8_t byte, ByteStatus status);
   /// Returns whether a request waits or is in progress.
   [[nodiscard]] bool busy() const { return state_ != State::Idle; }
 
@@ -71,6 +69,7 @@ class RequestQueue final : private Station {
   };
 
   void run() override;
+  void hear(std::uint8_t byte, ByteStatus status);
   void send_next();
   void send();
   [[nodiscard]] bool others_use_the_line() const;

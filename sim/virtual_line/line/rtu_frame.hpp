@@ -16,13 +16,11 @@ constexpr std::uint8_t kRtuException = 0x80;  ///< this bit of the function code
 
 /// Returns the frame with this address and PDU.
 inline std::vector<std::uint8_t> rtu_frame(std::uint8_t address, const std::vector<std::uint8_t>& pdu) {
-  std::vector<std::uint8_t> frame;
-  frame.reserve(pdu.size() + 3);
-  frame.push_back(address);
+  std::vector<std::uint8_t> frame{address};
   frame.insert(frame.end(), pdu.begin(), pdu.end());
-  const std::uint32_t crc = crc16({frame.data(), frame.size()}).value();
-  frame.push_back(static_cast<std::uint8_t>(crc));
-  frame.push_back(static_cast<std::uint8_t>(crc >> 8U));
+  const Crc16 crc = crc16({frame.data(), frame.size()});
+  frame.push_back(crc.low_byte());
+  frame.push_back(crc.high_byte());
   return frame;
 }
 
@@ -30,12 +28,10 @@ inline std::vector<std::uint8_t> rtu_frame(std::uint8_t address, const std::vect
 inline Bytes pdu_of(Bytes frame) { return frame.first(frame.size - 2).from(1); }
 
 /// Returns whether `frame` is a valid reply, perhaps an exception, to `request`. Both begin with the address
-/// and end with the CRC. `frame` must have at least 5 bytes and a correct CRC. The address and the function
-/// code must be those of the request; an exception also has the bit kRtuException, and a length of 5 bytes. A
-/// reply to a read (01 to 04) must have the byte count and the length that the request implies. A reply to a
-/// write (05, 06, 0F, 10) must have 8 bytes and repeat the first 6 bytes of the request (MODBUS Application
-/// Protocol V1.1b3, section 6). The rest of a reply to another function is not checked. These checks reject
-/// nearly all echoes of requests that read, and most late replies to other requests.
+/// and end with the CRC. Checks the CRC, the address, the function code, and the length of an exception. Of
+/// other replies to functions 01 to 06, 0F and 10, also checks the length, and the byte count or the repeated
+/// part of the request (MODBUS Application Protocol V1.1b3, section 6). These checks reject nearly all echoes
+/// of requests that read, and most late replies to other requests.
 inline bool is_rtu_reply(Bytes request, Bytes frame) {
   constexpr std::size_t kException = 5;        // size of an exception; no reply is shorter
   constexpr std::size_t kAddressAndCount = 8;  // minimum size of a request that reads or writes

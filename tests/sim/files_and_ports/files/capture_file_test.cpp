@@ -1,5 +1,5 @@
-// Tests the file of a capture: when the program creates, overwrites, removes or keeps a file, and when it
-// refuses a path or reports an error.
+// Tests the file of a capture: when the program creates or overwrites a file, and when it refuses a path or
+// reports an error.
 #include "sim/files_and_ports/files/capture_file.hpp"
 
 #include <fcntl.h>
@@ -62,21 +62,6 @@ TEST(CaptureFile, AnExistingFileIsNotOverwrittenBeforeTheCaptureBegins) {
   EXPECT_EQ(bytes_of_file(directory / "a"), "");
   file.append(block("one"));
   EXPECT_EQ(bytes_of_file(directory / "a"), "one");
-}
-
-TEST(CaptureFile, ANewFileIsRemovedIfTheCaptureDoesNotBegin) {
-  const Directory directory;
-  {
-    const CaptureFile file(directory / "a", kPlace);
-    EXPECT_TRUE(fs::exists(directory / "a"));
-  }
-  EXPECT_TRUE(fs::is_empty(directory.path()));
-}
-
-TEST(CaptureFile, IsKeptAfterTheCaptureHasBegun) {
-  const Directory directory;
-  { CaptureFile(directory / "a", kPlace).begin(); }
-  EXPECT_TRUE(fs::exists(directory / "a"));
 }
 
 TEST(CaptureFile, IsUsedByOneSimulatorAtATime) {
