@@ -33,7 +33,7 @@ class Product:
 
 
 COMPONENTS = (
-    Component("Boost", "Boost", "BSL-1.0", "libboost1.74-dev", "headers: Asio, Beast and what they include"),
+    Component("Boost", "Boost", "BSL-1.0", "libboost1.74-dev", "headers: Asio, Beast, text algorithms"),
     Component("CLI11", "CLI11", "BSD-3-Clause", "libcli11-dev", "headers: the command line"),
     Component("nlohmann-json", "JSON for Modern C++", _MIT, "nlohmann-json3-dev", "headers: JSON"),
     Component("libstdcxx", "libstdc++", _GCC_RUNTIME, "libstdc++-12-dev", "the C++ library of the host"),

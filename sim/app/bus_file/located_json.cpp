@@ -1,8 +1,12 @@
 #include "sim/app/bus_file/located_json.hpp"
 
-#include <stdexcept>
+#include <algorithm>
+#include <ios>
+#include <sstream>
 #include <utility>
 #include <vector>
+
+#include "sim/text/fail.hpp"
 
 namespace ex9000::sim {
 
@@ -10,69 +14,44 @@ namespace {
 
 using json = nlohmann::ordered_json;
 
-/// Iterates over the characters of a text and increments `*line` at the end of each line.
-class CountingIterator {
- public:
-  using difference_type = std::ptrdiff_t;
-  using value_type = char;
-  using pointer = const char*;
-  using reference = const char&;
-  using iterator_category = std::input_iterator_tag;
-
-  CountingIterator(const char* at, unsigned* line) : at_(at), line_(line) {}
-
-  reference operator*() const { return *at_; }
-  CountingIterator& operator++() {
-    *line_ += *at_ == '\n' ? 1U : 0U;
-    ++at_;
-    return *this;
-  }
-  bool operator==(const CountingIterator& other) const { return at_ == other.at_; }
-  bool operator!=(const CountingIterator& other) const { return at_ != other.at_; }
-
- private:
-  const char* at_;
-  unsigned* line_;
-};
-
 /// Records the line number of each value. A member of an object gets the line of its key, and an element of
 /// an array gets its own line. An element that is a number, true, false or null gets the line of the last
 /// string, bracket or brace before it, because the parser detects the end of a number only at the next
 /// character, which may be on a new line.
-class Locator final : public nlohmann::json_sax<json> {
+class Locator {
  public:
-  explicit Locator(const unsigned& line) : line_(line) {}
+  using Event = json::parse_event_t;
+
+  /// The parser reads `text` from `buffer`. Both must outlive this object.
+  Locator(const std::string& text, std::streambuf& buffer) : text_(text), buffer_(buffer) {}
 
   std::map<std::string, unsigned> lines;
 
-  bool null() override { return scalar(); }
-  bool boolean(bool /*value*/) override { return scalar(); }
-  bool number_integer(number_integer_t /*value*/) override { return scalar(); }
-  bool number_unsigned(number_unsigned_t /*value*/) override { return scalar(); }
-  bool number_float(number_float_t /*value*/, const string_t& /*text*/) override { return scalar(); }
-  bool string(string_t& value) override {
-    seen_ = line_;
-    reject_nul(value);
-    return scalar();
+  /// Returns the number of the line that the parser has reached.
+  unsigned line() {
+    const std::streamoff reached = buffer_.pubseekoff(0, std::ios::cur, std::ios::in);
+    line_ += static_cast<unsigned>(std::count(text_.begin() + reached_, text_.begin() + reached, '\n'));
+    reached_ = reached;
+    return line_;
   }
-  bool binary(binary_t& /*value*/) override { return scalar(); }
-  bool start_object(std::size_t /*elements*/) override { return open(false); }
-  bool end_object() override { return close(); }
-  bool start_array(std::size_t /*elements*/) override { return open(true); }
-  bool end_array() override { return close(); }
-  bool key(string_t& name) override {
-    seen_ = line_;
-    reject_nul(name);
-    open_.back().key = name;
-    if (!lines.emplace(member_of(open_.back().path, name), line_).second) {
-      throw std::invalid_argument(std::to_string(line_) + ": '" + name +
-                                  "' is given twice; leave out one of them");
+
+  /// Takes an event of the parser. `parsed` is the key or the value that the parser has read.
+  void take(Event event, const json& parsed) {
+    if (event != Event::value || parsed.is_string()) {
+      seen_ = line();
     }
-    return true;
-  }
-  bool parse_error(std::size_t /*position*/, const std::string& /*token*/,
-                   const nlohmann::detail::exception& error) override {
-    throw std::invalid_argument(located_message(error.what(), line_));
+    if (parsed.is_string()) {
+      reject_nul(parsed.get_ref<const std::string&>());
+    }
+    if (event == Event::key) {
+      add_key(parsed.get<std::string>());
+    } else if (event == Event::value) {
+      add_value();
+    } else if (event == Event::object_start || event == Event::array_start) {
+      open(event == Event::array_start);
+    } else {
+      open_.pop_back();
+    }
   }
 
  private:
@@ -83,64 +62,63 @@ class Locator final : public nlohmann::json_sax<json> {
     std::string key;
   };
 
-  /// Turns a message of the parser into `LINE: what is wrong`. The message is either
-  /// `[json.exception.parse_error.101] parse error at line 3, column 5: syntax error while ...` or, for other
-  /// errors, `[json.exception.out_of_range.406] number overflow ...`.
-  static std::string located_message(const std::string& text, unsigned line) {
-    const std::string lead = "] parse error at line ";
-    const auto at = text.find(lead);
-    if (at == std::string::npos) {
-      return std::to_string(line) + ": " + text.substr(text.find("] ") + 2);
-    }
-    const auto first = at + lead.size();
-    return text.substr(first, text.find(',', first) - first) + text.substr(text.find(": ", first));
-  }
+  [[noreturn]] void refuse(const std::string& what) const { fail(std::to_string(seen_) + ": " + what); }
 
   /// Rejects a text that contains NUL, because the operating system would end a path there.
   void reject_nul(const std::string& text) const {
     if (text.find('\0') != std::string::npos) {
-      throw std::invalid_argument(std::to_string(line_) + ": a text contains NUL; leave out \\u0000");
+      refuse("a text contains NUL; leave out \\u0000");
     }
   }
 
-  std::string place() {
-    if (open_.empty()) {
-      return "";
+  void add_key(const std::string& key) {
+    open_.back().key = key;
+    if (!lines.emplace(member_of(open_.back().path, key), seen_).second) {
+      refuse("'" + key + "' is given twice; leave out one of them");
     }
-    Open& around = open_.back();
-    return around.is_array ? element_of(around.path, around.next++) : member_of(around.path, around.key);
   }
 
-  bool scalar() {
-    lines.emplace(place(), seen_);
-    return true;
+  /// Records the line of the next value, and returns the path of the value.
+  std::string add_value() {
+    std::string path;
+    if (!open_.empty()) {
+      Open& around = open_.back();
+      path = around.is_array ? element_of(around.path, around.next++) : member_of(around.path, around.key);
+    }
+    lines.emplace(path, seen_);
+    return path;
   }
 
-  bool open(bool is_array) {
+  void open(bool is_array) {
     // No bus file requires more levels than kDeepest. Without this limit, a deeply nested file would take
     // much memory, because this class stores the whole path of each value.
     constexpr std::size_t kDeepest = 16;
     if (open_.size() == kDeepest) {
-      throw std::invalid_argument(std::to_string(line_) +
-                                  ": has too many levels of lists and objects; see 'ex9000-sim --schema'");
+      refuse("has too many levels of lists and objects; see 'ex9000-sim --schema'");
     }
-    seen_ = line_;
-    const std::string path = place();
-    lines.emplace(path, line_);
-    open_.push_back({path, is_array, 0, ""});
-    return true;
+    open_.push_back({add_value(), is_array, 0, ""});
   }
 
-  bool close() {
-    seen_ = line_;
-    open_.pop_back();
-    return true;
-  }
-
-  const unsigned& line_;
-  unsigned seen_ = 1;
+  const std::string& text_;
+  std::streambuf& buffer_;
+  std::streamoff reached_ = 0;
+  unsigned line_ = 1;
+  unsigned seen_ = 1;  ///< line of the last key, string, bracket or brace
   std::vector<Open> open_;
 };
+
+/// Turns a message of the parser into `LINE: what is wrong`. The message is either
+/// `[json.exception.parse_error.101] parse error at line 3, column 5: syntax error while ...` or, for other
+/// errors, `[json.exception.out_of_range.406] number overflow ...`.
+std::string located_message(const std::string& text, unsigned line) {
+  const std::string lead = "] parse error at line ";
+  const auto at = text.find(lead);
+  if (at == std::string::npos) {
+    return std::to_string(line) + ": " + text.substr(text.find("] ") + 2);
+  }
+  const auto first = at + lead.size();
+  return text.substr(first, text.find(',', first) - first) + text.substr(text.find(": ", first));
+}
 
 }  // namespace
 
@@ -153,11 +131,18 @@ std::string element_of(const std::string& path, std::size_t index) {
 }
 
 LocatedJson parse_located(const std::string& text) {
-  unsigned line = 1;
-  Locator locator(line);
-  json::sax_parse(CountingIterator(text.data(), &line), CountingIterator(text.data() + text.size(), &line),
-                  &locator);
-  return {json::parse(text), std::move(locator.lines)};
+  std::istringstream stream(text);
+  Locator locator(text, *stream.rdbuf());
+  const auto take = [&locator](int /*depth*/, json::parse_event_t event, const json& parsed) {
+    locator.take(event, parsed);
+    return true;
+  };
+  try {
+    json value = json::parse(stream, take);
+    return {std::move(value), std::move(locator.lines)};
+  } catch (const json::exception& error) {
+    fail(located_message(error.what(), locator.line()));
+  }
 }
 
 }  // namespace ex9000::sim

@@ -17,13 +17,10 @@ bool Node::flag() const {
 }
 
 std::string Node::number_or_text() const {
-  if (value_->is_number_unsigned()) {
-    return std::to_string(value_->get<std::uint64_t>());
-  }
-  if (!value_->is_string()) {
+  if (!value_->is_number_unsigned() && !value_->is_string()) {
     refuse("expected a whole number");
   }
-  return value_->get<std::string>();
+  return value_->is_number_unsigned() ? value_->dump() : text();
 }
 
 std::string Node::flag_or_text() const {

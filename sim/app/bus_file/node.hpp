@@ -47,8 +47,7 @@ class Node {
     }
   }
 
-  /// Calls `take(element)` for each element of this list. Adds the place of the element to an error of `take`
-  /// that has no place yet. Reports an error if this value is not a list.
+  /// Calls `take(element)` for each element of this list. Reports errors in the same way as `members`.
   template <class Take>
   void elements(Take take) const {
     if (!value_->is_array()) {

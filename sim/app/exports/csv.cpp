@@ -1,3 +1,5 @@
+#include <boost/algorithm/string/replace.hpp>
+
 #include "firmware/dcon/commands.hpp"
 #include "sim/app/exports/access.hpp"
 #include "sim/app/exports/formats.hpp"
@@ -31,11 +33,7 @@ std::string quoted_cell(const std::string& text) {
   if (text.find_first_of(",\"\r\n") == std::string::npos) {
     return text;
   }
-  std::string quoted = "\"";
-  for (const char character : text) {
-    quoted += character == '"' ? std::string("\"\"") : std::string(1, character);
-  }
-  return quoted + "\"";
+  return '"' + boost::replace_all_copy(text, "\"", "\"\"") + '"';
 }
 
 std::string line(const Row& row) {

@@ -1,8 +1,5 @@
 #include "sim/app/exports/describe.hpp"
 
-#include <stdexcept>
-#include <utility>
-
 #include "firmware/settings/settings.hpp"
 #include "firmware/table.hpp"
 #include "sim/app/exports/formats.hpp"
@@ -24,12 +21,8 @@ struct Format {
   std::string (*of_module)(const Model& model, const NetworkAddress& network_address) = nullptr;
 };
 
-std::string markdown(const Models& models) {
-  return models.size() == 1 ? markdown_of(*models.front()) : markdown_of_all();
-}
-
 constexpr auto kFormats = table<Format>({
-    {"markdown", markdown, nullptr, nullptr},
+    {"markdown", markdown_of, nullptr, nullptr},
     {"json", json_of, nullptr, nullptr},
     {"csv", csv_of, nullptr, nullptr},
     {"home-assistant", nullptr, nullptr, home_assistant_hub},
@@ -37,23 +30,19 @@ constexpr auto kFormats = table<Format>({
     {"wb-mqtt-serial", nullptr, wb_mqtt_serial_template, nullptr},
 });
 
-[[noreturn]] void reject(const std::string& argument, const std::string& what) {
-  throw std::invalid_argument(argument + ": " + what);
-}
-
 const Format& format_called(const std::string& name) {
   for (const Format& format : kFormats) {
     if (name == format.name) {
       return format;
     }
   }
-  reject("--format " + name, "expected " + describe_formats());
+  fail("--format " + name + ": expected " + describe_formats());
 }
 
 std::uint8_t parse_modbus_address(const std::string& text) {
   const std::uint8_t address = with_place("--address ", [&] { return parse_hex_byte(text); });
   if (!is_modbus_address(address)) {
-    reject("--address " + text, "expected a Modbus address, hex 01 to F7");
+    fail("--address " + text + ": expected a Modbus address, hex 01 to F7");
   }
   return address;
 }
@@ -62,7 +51,7 @@ TcpAddress parse_master_address(const std::string& option, const std::string& te
   TcpAddress tcp = with_place(option + " ", [&] { return parse_tcp_address(text); });
   const std::string of_hosts = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789.-_:%";
   if (tcp.port == 0 || tcp.host.find_first_not_of(of_hosts) != std::string::npos) {
-    reject(option + " " + text, "expected HOST:PORT of a simulator, for example 127.0.0.1:5020");
+    fail(option + " " + text + ": expected HOST:PORT of a simulator, for example 127.0.0.1:5020");
   }
   return tcp;
 }
@@ -73,7 +62,7 @@ NetworkAddress parse_network_address(const DescribeTexts& texts) {
     network_address.address = parse_modbus_address(*texts.address);
   }
   if (texts.tcp && texts.modbus_tcp) {
-    reject("--modbus-tcp", "cannot be combined with --tcp; leave out one of them");
+    fail("--modbus-tcp: cannot be combined with --tcp; leave out one of them");
   }
   if (texts.tcp) {
     network_address.tcp = parse_master_address("--tcp", *texts.tcp);
@@ -87,24 +76,24 @@ NetworkAddress parse_network_address(const DescribeTexts& texts) {
 
 /// Rejects --address, --tcp and --modbus-tcp, which are valid only with a format that sets `of_module`.
 void refuse_place(const DescribeTexts& texts) {
-  for (const auto& [option, given] :
-       {std::pair("--address", texts.address.has_value()), std::pair("--tcp", texts.tcp.has_value()),
-        std::pair("--modbus-tcp", texts.modbus_tcp.has_value())}) {
-    if (given) {
-      reject(option, "--format " + texts.format + " has no such option; leave it out");
-    }
+  const std::string option = texts.address      ? "--address"
+                             : texts.tcp        ? "--tcp"
+                             : texts.modbus_tcp ? "--modbus-tcp"
+                                                : "";
+  if (!option.empty()) {
+    fail(option + ": --format " + texts.format + " has no such option; leave it out");
   }
 }
 
 const Model& modbus_model(const DescribeTexts& texts) {
   if (texts.model.empty()) {
-    reject("--format " + texts.format, "requires a MODEL, for example 'describe EX9042D-M'");
+    fail("--format " + texts.format + ": requires a MODEL, for example 'describe EX9042D-M'");
   }
   const Model& model = model_called(texts.model);
   if (!model.speaks_modbus()) {
-    reject(std::string(model.designation) + " --format " + texts.format,
-           "the model does not support Modbus; name a model that --models lists with Modbus RTU, or use "
-           "--format json");
+    fail(std::string(model.designation) + " --format " + texts.format +
+         ": the model does not support Modbus; name a model that --models lists with Modbus RTU, or use "
+         "--format json");
   }
   return model;
 }

@@ -3,19 +3,28 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "firmware/model/model.hpp"
-#include "sim/app/exports/models.hpp"
 #include "sim/files_and_ports/ports/tcp_address.hpp"
 
 namespace ex9000::sim {
 
+/// The models that a description covers: one or more.
+using Models = std::vector<const Model*>;
+
+inline Models all_models() {
+  Models models;
+  for (const Model& model : kModels) {
+    models.push_back(&model);
+  }
+  return models;
+}
+
 // The commands and registers, generated from the firmware's tables.
 
-/// Returns Markdown that describes all models: the generated section of firmware/registers.md.
-std::string markdown_of_all();
-/// Returns Markdown that describes one model.
-std::string markdown_of(const Model& model);
+/// Returns Markdown, for people. For all models, it is the generated section of firmware/registers.md.
+std::string markdown_of(const Models& models);
 
 /// Returns JSON, for programs: an object with the firmware's version and, under `models`, one object for each
 /// model with its properties, DCON commands, Modbus functions and Modbus map. Counts, codes and addresses are
@@ -29,12 +38,11 @@ std::string csv_of(const Models& models);
 
 // Configurations for other tools. `model` must support Modbus.
 
-/// The addresses that a tool requires to reach a module: the simulator's host and TCP port, and the module's
-/// Modbus address.
+/// The addresses that a tool requires to reach a module.
 struct NetworkAddress {
-  TcpAddress tcp{"127.0.0.1", 5020};
-  std::uint8_t address = 0x01;  ///< 1 to 247
-  bool modbus_tcp = false;      ///< the port uses Modbus TCP; false: the port passes RTU frames
+  TcpAddress tcp{"127.0.0.1", 5020};  ///< of the simulator
+  std::uint8_t address = 0x01;        ///< Modbus address of the module, 1 to 247
+  bool modbus_tcp = false;            ///< the port uses Modbus TCP; false: the port passes RTU frames
 };
 
 /// Returns YAML for Home Assistant's modbus integration: a hub with the model's switches (if it has outputs),

@@ -25,8 +25,6 @@ constexpr unsigned kWaitMilliseconds = 33;
 /// The values of input_type, in the order of the enumeration Table.
 constexpr std::array<const char*, 4> kInputTypes{"coil", "discrete_input", "input", "holding"};
 
-const char* input_type(Table table) { return kInputTypes[static_cast<std::size_t>(table)]; }
-
 class Hub {
  public:
   Hub(const Model& model, const NetworkAddress& network_address)
@@ -68,23 +66,27 @@ class Hub {
     std::string text;
     for (const Shown& shown : shown_by(model_)) {
       for (unsigned index = 0; shown.role == Role::Button && index < shown.width; ++index) {
-        text += "#   " + shown.name_of(index) + ": modbus.write_coil with hub: " + key_ +
-                ", slave: " + std::to_string(network_address_.address) +
-                ", address: " + std::to_string(shown.first + index) + ", state: true\n";
+        text += "#   " + shown.name_of(index) + ": " + action("coil", shown.first + index, "state: true");
       }
     }
     return text;
   }
 
  private:
+  /// Returns a call of an action that writes the coil or the register at `address`.
+  [[nodiscard]] std::string action(const std::string& kind, unsigned address,
+                                   const std::string& value) const {
+    return "modbus.write_" + kind + " with hub: " + key_ +
+           ", slave: " + std::to_string(network_address_.address) + ", address: " + std::to_string(address) +
+           ", " + value + "\n";
+  }
+
   /// Returns a call of an action that writes the item `id` of the register map.
   [[nodiscard]] std::string write(const std::string& kind, std::string_view id,
                                   const std::string& value) const {
     const std::vector<MapRow> map = register_map(model_);
     const auto row = std::find_if(map.begin(), map.end(), [id](const MapRow& each) { return each.id == id; });
-    return "#   modbus.write_" + kind + " with hub: " + key_ +
-           ", slave: " + std::to_string(network_address_.address) +
-           ", address: " + std::to_string(row->first) + ", " + value + "\n";
+    return "#   " + action(kind, row->first, value);
   }
 
   [[nodiscard]] Json entity(const Shown& shown, unsigned index, unsigned seconds) const {
@@ -96,61 +98,47 @@ class Hub {
             {"scan_interval", seconds}};
   }
 
-  [[nodiscard]] Json toggle(const Shown& shown, unsigned index) const {
-    Json entity = this->entity(shown, index, kOftenSeconds);
-    entity["write_type"] = "coil";
-    // Without `verify`, the switch would show the last command, even after a timeout of the host watchdog or
-    // a write by another master.
-    entity["verify"] = {{"input_type", "coil"}, {"address", shown.first + index}};
-    return entity;
-  }
-
-  [[nodiscard]] Json binary_sensor(const Shown& shown, unsigned index) const {
-    Json entity = this->entity(shown, index, shown.role == Role::Input ? kOftenSeconds : kSeldomSeconds);
-    entity["input_type"] = input_type(shown.table);
-    if (shown.role == Role::Problem) {
-      entity["device_class"] = "problem";
-    }
-    return entity;
-  }
-
-  [[nodiscard]] Json counter(const Shown& shown, unsigned index) const {
-    Json entity = this->entity(shown, index, kOftenSeconds);
-    entity["input_type"] = input_type(shown.table);
-    entity["data_type"] = "uint16";
-    entity["state_class"] = "total_increasing";
-    return entity;
-  }
-
-  [[nodiscard]] Json duration(const Shown& shown, unsigned index) const {
-    Json entity = this->entity(shown, index, kSeldomSeconds);
-    entity["input_type"] = input_type(shown.table);
-    entity["data_type"] = "uint16";
-    entity["scale"] = 0.1;
-    entity["precision"] = 1;
-    entity["device_class"] = "duration";
-    entity["unit_of_measurement"] = "s";
-    return entity;
-  }
-
+  /// Adds an entity to the list of its platform. Items with the roles Preset and Button have no entity: a
+  /// dashboard should not change the presets, and the integration has no buttons.
   void add(const Shown& shown, unsigned index, Json& hub) const {
+    const auto add_to = [&](const char* platform, unsigned seconds, const Json& more) {
+      Json entity = this->entity(shown, index, seconds);
+      entity.update(more);
+      hub[platform].push_back(entity);
+    };
+    const Json input_type = kInputTypes[static_cast<std::size_t>(shown.table)];
     switch (shown.role) {
       case Role::Output:
-        hub["switches"].push_back(toggle(shown, index));
+        // Without `verify`, the switch would show the last command, even after a timeout of the host watchdog
+        // or a write by another master.
+        add_to(
+            "switches", kOftenSeconds,
+            {{"write_type", "coil"}, {"verify", {{"input_type", "coil"}, {"address", shown.first + index}}}});
         break;
       case Role::Input:
+        add_to("binary_sensors", kOftenSeconds, {{"input_type", input_type}});
+        break;
       case Role::State:
+        add_to("binary_sensors", kSeldomSeconds, {{"input_type", input_type}});
+        break;
       case Role::Problem:
-        hub["binary_sensors"].push_back(binary_sensor(shown, index));
+        add_to("binary_sensors", kSeldomSeconds, {{"input_type", input_type}, {"device_class", "problem"}});
         break;
       case Role::Counter:
-        hub["sensors"].push_back(counter(shown, index));
+        add_to("sensors", kOftenSeconds,
+               {{"input_type", input_type}, {"data_type", "uint16"}, {"state_class", "total_increasing"}});
         break;
       case Role::Tenths:
-        hub["sensors"].push_back(duration(shown, index));
+        add_to("sensors", kSeldomSeconds,
+               {{"input_type", input_type},
+                {"data_type", "uint16"},
+                {"scale", 0.1},
+                {"precision", 1},
+                {"device_class", "duration"},
+                {"unit_of_measurement", "s"}});
         break;
-      case Role::Preset:  // settings that a dashboard should not change
-      case Role::Button:  // the integration has no buttons
+      case Role::Preset:
+      case Role::Button:
         break;
     }
   }
@@ -161,9 +149,7 @@ class Hub {
 };
 
 std::string head(const Model& model, const NetworkAddress& network_address) {
-  const std::string who =
-      std::string(model.designation) + " at address " + hex_byte_text(network_address.address);
-  return "# " + who +
+  return "# " + std::string(model.designation) + " at address " + hex_byte_text(network_address.address) +
          ", for Home Assistant's modbus integration. In configuration.yaml:\n"
          "#   modbus: !include modbus.yaml\n"
          "# Put further modules on the same line under this hub: Home Assistant does not load a second hub "

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <boost/algorithm/string/replace.hpp>
 #include <string_view>
 #include <vector>
 
@@ -26,12 +27,8 @@ constexpr const char* kNone = "-";
 std::string code(std::string_view text) { return "`" + std::string(text) + "`"; }
 
 /// Escapes each pipe, because a pipe would end the cell even inside backticks. Returns `-` for an empty text.
-std::string escaped_cell(std::string_view text) {
-  std::string escaped;
-  for (const char character : text) {
-    escaped += character == '|' ? std::string("\\|") : std::string(1, character);
-  }
-  return escaped.empty() ? kNone : escaped;
+std::string escaped_cell(const std::string& text) {
+  return text.empty() ? kNone : boost::replace_all_copy(text, "|", "\\|");
 }
 
 std::string table_line(const Cells& cells) {
@@ -43,11 +40,7 @@ std::string table_line(const Cells& cells) {
 }
 
 std::string table_head(const Cells& titles) {
-  std::string rule = "|";
-  for (std::size_t i = 0; i < titles.size(); ++i) {
-    rule += "---|";
-  }
-  return table_line(titles) + rule + "\n";
+  return table_line(titles) + "|" + joined(Cells(titles.size(), "---"), "|") + "|\n";
 }
 
 std::string hex_word(unsigned value) { return "0x" + hex_word_text(value); }
@@ -57,6 +50,11 @@ std::string range_text(const std::string& first, const std::string& last) {
 }
 
 // --- which models ---
+
+template <class Has>
+bool any_has(const Models& models, Has has) {
+  return std::any_of(models.begin(), models.end(), [&](const Model* model) { return has(*model); });
+}
 
 struct Kind {
   const char* name;
@@ -155,14 +153,7 @@ std::string dcon_notes(const Models& models) {
 /// Formats a reply as code, and alternatives, for example `!AA10 or !AA11`, as separate pieces of code.
 /// Returns `-` for an empty text.
 std::string reply_code(std::string_view reply) {
-  constexpr std::string_view kOr = " or ";
-  const auto at = reply.find(kOr);
-  if (reply.empty()) {
-    return kNone;
-  }
-  return at == std::string_view::npos
-             ? code(reply)
-             : code(reply.substr(0, at)) + std::string(kOr) + reply_code(reply.substr(at + kOr.size()));
+  return reply.empty() ? kNone : boost::replace_all_copy(code(reply), " or ", "` or `");
 }
 
 std::string commands_table(const Models& models) {
@@ -206,28 +197,16 @@ std::string functions_table(const Models& models) {
   return text;
 }
 
-std::string map_line(const MapRow& row) {
-  return table_line({row.area->name, range_text(hex_word(row.first), hex_word(row.last)),
-                     range_text(plc_number(*row.area, row.first), plc_number(*row.area, row.last)),
-                     hex_text(row.functions, ", "), access_text(row.reads, row.writes),
-                     std::string(row.range), std::string(row.meaning)});
-}
-
 std::string map_table(const Model& model) {
   std::string text =
       table_head({"table", "address", "PLC number", "functions", "access", "may be written", "what it is"});
   for (const MapRow& row : register_map(model)) {
-    text += map_line(row);
+    text += table_line({row.area->name, range_text(hex_word(row.first), hex_word(row.last)),
+                        range_text(plc_number(*row.area, row.first), plc_number(*row.area, row.last)),
+                        hex_text(row.functions, ", "), access_text(row.reads, row.writes),
+                        std::string(row.range), std::string(row.meaning)});
   }
   return text;
-}
-
-std::string map_notes() {
-  return "Addresses count from 0, as on the line; PLC numbers count from 1 after the digit of their table. "
-         "Writes store their values in the EEPROM, except writes that set outputs, and writes that clear "
-         "latches, counters or the count of timeouts. "
-         "Writes that drive outputs get exception 04 while the timeout status is set. "
-         "Baud codes are those of `CC` above.\n";
 }
 
 /// The models that have the same map, and this map.
@@ -254,7 +233,12 @@ std::vector<SharedMap> shared_maps(const Models& models) {
 }
 
 std::string maps_text(const Models& models) {
-  std::string text = map_notes();
+  std::string text =
+      "Addresses count from 0, as on the line; PLC numbers count from 1 after the digit of their table. "
+      "Writes store their values in the EEPROM, except writes that set outputs, and writes that clear "
+      "latches, counters or the count of timeouts. "
+      "Writes that drive outputs get exception 04 while the timeout status is set. "
+      "Baud codes are those of `CC` above.\n";
   for (const SharedMap& map : shared_maps(models)) {
     text += models.size() > 1 ? "\n#### " + joined(map.models, ", ") + "\n" : "";
     text += "\n" + map.table;
@@ -273,15 +257,12 @@ std::string commands_and_registers(const Models& models) {
 
 }  // namespace
 
-std::string markdown_of_all() {
-  const Models models = all_models();
-  return "### Models\n\n" + models_table(models) + commands_and_registers(models);
-}
-
-std::string markdown_of(const Model& model) {
-  const Models models{&model};
-  return "## " + std::string(model.designation) + ": " + std::string(model.description) + "\n\n" +
-         models_table(models) + commands_and_registers(models);
+std::string markdown_of(const Models& models) {
+  const Model& first = *models.front();
+  const std::string heading =
+      models.size() == 1 ? "## " + std::string(first.designation) + ": " + std::string(first.description)
+                         : "### Models";
+  return heading + "\n\n" + models_table(models) + commands_and_registers(models);
 }
 
 }  // namespace ex9000::sim

@@ -118,14 +118,25 @@ class Flow {
     read["showErrors"] = true;
     read["wires"] = {{id("show " + name)}, Json::array()};
     nodes_.push_back(read);
-    add_debug(name, std::string(shown.name), 2);
+    nodes_.push_back(debug(name, std::string(shown.name)));
     ++row_;
   }
 
+  /// Adds a node that writes the item, a node that shows what is written and, in a row for each of `values`,
+  /// a node that sends this value to the node that writes.
   void add_write(const Shown& shown, unsigned index,
                  const std::vector<std::pair<const char*, bool>>& values) {
     const std::string key = shown.key_of(index);
-    const unsigned top = row_;
+    Json write = node("write " + key, "modbus-write", 1);
+    write["name"] = shown.name_of(index);
+    write["unitid"] = std::to_string(network_address_.address);
+    write["dataType"] = data_type(shown.table);
+    write["adr"] = std::to_string(shown.first + index);
+    write["quantity"] = "1";
+    write["server"] = id("client");
+    write["showErrors"] = true;
+    write["wires"] = {{id("show " + key)}, Json::array()};
+    const Json show = debug(key, shown.name_of(index));
     for (const auto& [word, value] : values) {
       Json inject = node("inject " + key + word, "inject", 0);
       inject["name"] = word;
@@ -136,31 +147,20 @@ class Flow {
       nodes_.push_back(inject);
       ++row_;
     }
-    const unsigned below = row_;
-    row_ = top;
-    Json write = node("write " + key, "modbus-write", 1);
-    write["name"] = shown.name_of(index);
-    write["unitid"] = std::to_string(network_address_.address);
-    write["dataType"] = data_type(shown.table);
-    write["adr"] = std::to_string(shown.first + index);
-    write["quantity"] = "1";
-    write["server"] = id("client");
-    write["showErrors"] = true;
-    write["wires"] = {{id("show " + key)}, Json::array()};
     nodes_.push_back(write);
-    add_debug(key, shown.name_of(index), 2);
-    row_ = below;
+    nodes_.push_back(show);
   }
 
-  void add_debug(const std::string& of, const std::string& name, unsigned column) {
-    Json debug = node("show " + of, "debug", column);
+  /// Returns a node that shows the values of the node `of`.
+  [[nodiscard]] Json debug(const std::string& of, const std::string& name) const {
+    Json debug = node("show " + of, "debug", 2);
     debug["name"] = name;
     debug["active"] = true;
     debug["tosidebar"] = true;
     debug["complete"] = "payload";
     debug["targetType"] = "msg";
     debug["wires"] = Json::array();
-    nodes_.push_back(debug);
+    return debug;
   }
 
   std::string module_;

@@ -4,14 +4,6 @@ namespace ex9000::sim {
 
 namespace {
 
-modbus::Functions functions_of(const modbus::BitRow& row) { return row.functions; }
-
-/// Returns the functions that can access the row. Only the row of host OK lists no functions, because the
-/// firmware detects a host OK without kWordRegisters. Masters send a host OK with function 03 or 04.
-modbus::Functions functions_of(const modbus::WordRow& row) {
-  return row.functions != 0 ? row.functions : modbus::kReadHoldingRegisters | modbus::kReadInputRegisters;
-}
-
 std::vector<std::uint8_t> function_codes(modbus::Functions functions) {
   std::vector<std::uint8_t> codes;
   for (std::uint8_t function = 0; function < 16; ++function) {
@@ -28,7 +20,9 @@ std::vector<std::uint8_t> function_codes(modbus::Functions functions) {
 template <class Register>
 void add_row(const Model& model, const Area& area, const Register& entry, std::vector<MapRow>& map) {
   const auto& row = entry.row;
-  const modbus::Functions functions = functions_of(row);
+  // Only the row of host OK lists no functions, because the firmware detects a host OK without
+  // kWordRegisters. Masters send a host OK with function 03 or 04.
+  const modbus::Functions functions = row.functions != 0 ? row.functions : modbus::kReadRegisters;
   const bool reads = (functions & area.reads) != 0;
   const bool writes = (functions & area.writes) != 0;
   if (!meets(model, row.needs) || (!reads && !writes)) {

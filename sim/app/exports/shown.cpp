@@ -1,6 +1,7 @@
 #include "sim/app/exports/shown.hpp"
 
 #include <algorithm>
+#include <boost/algorithm/string/case_conv.hpp>
 #include <optional>
 
 #include "firmware/table.hpp"
@@ -116,11 +117,8 @@ std::vector<Shown> shown_by(const Model& model) {
 }
 
 std::string model_key(const Model& model) {
-  std::string key;
-  for (const char character : model.designation) {
-    const bool upper = character >= 'A' && character <= 'Z';
-    key += character == '-' ? '_' : static_cast<char>(upper ? character - 'A' + 'a' : character);
-  }
+  std::string key = boost::to_lower_copy(std::string(model.designation));
+  std::replace(key.begin(), key.end(), '-', '_');
   return key;
 }
 

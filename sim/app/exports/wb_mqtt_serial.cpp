@@ -15,14 +15,13 @@ using Json = nlohmann::ordered_json;
 /// The values of reg_type, in the order of the enumeration Table.
 constexpr std::array<const char*, 4> kRegisterTypes{"coil", "discrete", "input", "holding"};
 
-const char* register_type(Table table) { return kRegisterTypes[static_cast<std::size_t>(table)]; }
-
 /// The silence between two frames at the factory baud rate, in microseconds: 3.5 characters of 11 bits.
 constexpr unsigned kSilenceMicroseconds = 38'500'000 / baud_rate(kFactoryBaudCode);
 
 Json channel(const Shown& shown, unsigned index) {
-  Json channel{
-      {"name", shown.name_of(index)}, {"id", shown.key_of(index)}, {"reg_type", register_type(shown.table)}};
+  Json channel{{"name", shown.name_of(index)},
+               {"id", shown.key_of(index)},
+               {"reg_type", kRegisterTypes[static_cast<std::size_t>(shown.table)]}};
   // wb-mqtt-serial must not poll the coils of buttons, because most of these coils are write-only.
   channel[shown.role == Role::Button ? "write_address" : "address"] = shown.first + index;
   switch (shown.role) {

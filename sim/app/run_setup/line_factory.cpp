@@ -5,19 +5,9 @@
 
 namespace ex9000::sim {
 
-namespace {
-
-LineKind kind_of(const LineSetup& setup) {
-  if (setup.instant) {
-    return kInstant;
-  }
-  return setup.strict_gaps ? kStrictlyPaced : kPaced;
-}
-
-}  // namespace
-
 std::unique_ptr<Line> make_line(const LineSetup& setup, Master::Receive receive) {
-  return std::make_unique<Line>(setup.modules, kind_of(setup), std::move(receive));
+  const LineKind kind = setup.instant ? kInstant : setup.strict_gaps ? kStrictlyPaced : kPaced;
+  return std::make_unique<Line>(setup.modules, kind, std::move(receive));
 }
 
 SerialMode first_mode(const LineSetup& setup, const Line& line) {
@@ -33,7 +23,6 @@ void begin_programs(Line& line, const LineSetup& setup) {
   }
   const VirtualTime now = line.clock().virtual_now();
   for (Fault fault : setup.faults) {
-    // A fault whose time has passed while the modules started up takes effect now.
     if (fault.schedule.when == Schedule::When::At) {
       fault.schedule.time = std::max(fault.schedule.time, now);
     }

@@ -2,16 +2,14 @@
 
 #include <sys/stat.h>
 
-#include <filesystem>
 #include <optional>
 
+#include "sim/files_and_ports/files/one_spelling.hpp"
 #include "sim/text/fail.hpp"
 
 namespace ex9000::sim {
 
 namespace {
-
-namespace fs = std::filesystem;
 
 /// Returns whether both paths name the same file. Compares the inodes, or the paths if at least one of the
 /// files does not exist.
@@ -21,11 +19,7 @@ bool are_one(const std::string& a, const std::string& b) {
   if (stat(a.c_str(), &of_a) == 0 && stat(b.c_str(), &of_b) == 0) {
     return of_a.st_dev == of_b.st_dev && of_a.st_ino == of_b.st_ino;
   }
-  std::error_code unknown_a;
-  std::error_code unknown_b;
-  const fs::path path_a = fs::weakly_canonical(fs::absolute(a, unknown_a), unknown_a);
-  const fs::path path_b = fs::weakly_canonical(fs::absolute(b, unknown_b), unknown_b);
-  return !unknown_a && !unknown_b && path_a == path_b;
+  return one_spelling(a) == one_spelling(b);
 }
 
 }  // namespace

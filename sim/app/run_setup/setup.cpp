@@ -14,16 +14,20 @@ namespace ex9000::sim {
 
 namespace {
 
+void reject_empty(std::optional<std::size_t> line, const std::string& key,
+                  const std::optional<std::string>& path) {
+  if (path && path->empty()) {
+    throw SetupError(line, key, "is empty; name a path");
+  }
+}
+
 void check(const LineSetup& line, std::size_t position) {
   const auto wrong = [position](const std::string& key, const std::string& what,
                                 const std::string& value = "") {
     throw SetupError(position, key, what, value);
   };
-  for (const auto& [key, path] : {std::pair("pty", line.pty), std::pair("serial", line.serial)}) {
-    if (path && path->empty()) {
-      wrong(key, "is empty; name a path");
-    }
-  }
+  reject_empty(position, "pty", line.pty);
+  reject_empty(position, "serial", line.serial);
   const auto is_printable = [](unsigned char character) { return std::isgraph(character) != 0; };
   if (!std::all_of(line.name.begin(), line.name.end(), is_printable)) {
     wrong("name", "expected one word of ASCII characters, for 'line NAME' on the control socket",
@@ -31,21 +35,21 @@ void check(const LineSetup& line, std::size_t position) {
   }
   if (line.serial && !line.first_port().empty()) {
     wrong("serial",
-          "cannot be combined with {pty}, {tcp} or {modbus-tcp}, because the master is on the serial "
-          "line; leave out one of them");
+          "cannot be combined with {pty}, {tcp} or {modbus-tcp}, because the master is on the serial line; "
+          "leave out one of them");
   }
   if (line.echo && !line.serial) {
     wrong("echo", "requires {serial}; add it, or leave this out");
   }
   if (line.instant && line.serial) {
     wrong("line",
-          "instant cannot be combined with {serial}, because bytes on a serial line take time; leave out one "
-          "of them");
+          "instant cannot be combined with {serial}, because bytes on a serial line take time; "
+          "leave out one of them");
   }
   if (line.instant && line.strict_gaps) {
     wrong("strict-gaps",
-          "cannot be combined with {line instant}, because that line has no gaps to check; leave out one of "
-          "them");
+          "cannot be combined with {line instant}, because that line has no gaps to check; "
+          "leave out one of them");
   }
 }
 
@@ -79,8 +83,8 @@ void check_speed(const Setup& setup) {
   for (const LineSetup& line : setup.lines) {
     if (line.serial && !(setup.speed.paced() && setup.speed.factor == 1)) {
       wrong(
-          "cannot be combined with {serial}, because a serial line follows the wall clock; leave out one of "
-          "them");
+          "cannot be combined with {serial}, because a serial line follows the wall clock; "
+          "leave out one of them");
     }
     if (setup.speed.max() && !line.first_port().empty()) {
       wrong("max cannot be combined with {" + line.first_port() +
@@ -93,8 +97,7 @@ void check_speed(const Setup& setup) {
   if (setup.speed.stepped() && setup.panel) {
     wrong(
         "step cannot be combined with {panel}, because the panel shows time that follows the wall clock; "
-        "leave out one of "
-        "them");
+        "leave out one of them");
   }
   if (setup.speed.max() && setup.control) {
     wrong("max cannot be combined with {control}; leave out one of them");
@@ -149,12 +152,8 @@ void check(const Setup& setup) {
         "cannot be combined with {log json}, because both write to standard output; leave out one of them");
   }
   check_speed(setup);
-  if (setup.control && setup.control->empty()) {
-    throw SetupError(std::nullopt, "control", "is empty; name a path");
-  }
-  if (setup.capture && setup.capture->empty()) {
-    throw SetupError(std::nullopt, "capture", "is empty; name a path");
-  }
+  reject_empty(std::nullopt, "control", setup.control);
+  reject_empty(std::nullopt, "capture", setup.capture);
   Once files("two modules cannot share a file; name one for each", one_spelling);
   Once ports("two lines cannot share a port; name one for each", one_spelling);
   Once addresses("two ports cannot share an address; name one for each");
@@ -202,8 +201,7 @@ std::optional<PanelSetup> parse_panel(const std::string& text) {
   }
   PanelSetup panel;
   if (!text.empty()) {
-    constexpr std::uint16_t kLastPort = 65535;
-    const auto port = whole_number(text, kLastPort);
+    const auto port = whole_number(text, std::numeric_limits<std::uint16_t>::max());
     if (!port) {
       fail("'" + text + "': expected a port from 0 to 65535 (0: any free port), or off");
     }

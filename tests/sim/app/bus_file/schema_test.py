@@ -123,7 +123,7 @@ class BusFileSchema(unittest.TestCase):
     def test_the_schema_accepts_the_example(self):
         self.assertTrue(schema_accepts(json.loads(run("--example").stdout)))
 
-    def test_this_file_has_a_value_for_every_key(self):
+    def test_the_table_of_valid_values_has_every_key_of_the_schema(self):
         for place, properties in (("", SCHEMA), ("lines[0]", SCHEMA["$defs"]["line"]),
                                   ("lines[0].modules[0]", SCHEMA["$defs"]["module"])):
             self.assertEqual(set(RIGHT[place]), set(properties["properties"]), place)

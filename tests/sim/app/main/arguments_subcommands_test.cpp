@@ -93,12 +93,12 @@ TEST(Arguments, ModelsPrintsOneLineForEachModelAndMentionsModbusRtu) {
 }
 
 TEST(Arguments, DescribePrintsAllModelsInMarkdownByDefault) {
-  EXPECT_EQ(printed({"describe"}), markdown_of_all());
-  EXPECT_EQ(printed({"describe", "--format", "markdown"}), markdown_of_all());
+  EXPECT_EQ(printed({"describe"}), markdown_of(all_models()));
+  EXPECT_EQ(printed({"describe", "--format", "markdown"}), markdown_of(all_models()));
 }
 
 TEST(Arguments, DescribeAcceptsAModelNameInAnyCaseWithOrWithoutEx) {
-  const std::string text = markdown_of(*find_model("EX9052D-M"));
+  const std::string text = markdown_of({find_model("EX9052D-M")});
   for (const char* name : {"EX9052D-M", "ex9052d-m", "9052D-M", "9052d-m"}) {
     EXPECT_EQ(printed({"describe", name}), text) << name;
   }
