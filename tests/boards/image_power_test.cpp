@@ -88,7 +88,7 @@ class CutModule {
     }
     if (command_.init == Init::Tied) {
       module_.set_init(true);
-      module_.run_for(milliseconds(25));  // debounce time of INIT*, wire.md D13
+      module_.run_for(milliseconds(25));  // a change of INIT* takes effect within 20 ms: wire.md D13
     }
     done_ = command_.done_to(before_, module_.outputs());
     module_.hear(module_.mode());

@@ -34,6 +34,7 @@ class Board {
     this.masterFormat = FORMATS["8N1"];
     this.master = new Sender(this.time, (level) => this.masterDrives(level), () => this.sendNext());
     this.listener = new Receiver(this.time, (character) => this.hear(character));
+    this.listener.bitTime = this.masterBitTime;
     this.stopWanted = false;
     this.watched = null;
     this.counts = { timeouts: 0, requests: 0, lost: 0, early: 0, late: 0, shorts: 0, drives: 0, framing: 0,
@@ -107,6 +108,7 @@ class Board {
   end() {
     this.clock.end();
     this.chip = null;
+    this.driverOn = false;
     this.flash.interrupt();
     this.eeprom.reset();
     for (let number = 0; number < PINS; number += 1) {

@@ -173,7 +173,9 @@ class Watchdog extends BasePeripheral {
 
   trigger(reason) {
     if ((this.psm.wdsel & ALL_BUT_OSCILLATORS) !== ALL_BUT_OSCILLATORS) {
-      this.error("this reset leaves parts of the chip as they are");
+      const wdsel = this.psm.wdsel.toString(16);
+      const all = ALL_BUT_OSCILLATORS.toString(16);
+      this.error(`WDSEL is 0x${wdsel}, so this reset omits parts of the chip; expected all bits of 0x${all}`);
     }
     this.reset(reason);
   }

@@ -86,7 +86,11 @@ ChildProcess::~ChildProcess() {
 bool ChildProcess::read_more() {
   constexpr int kHangMilliseconds = 60'000;  // only detects a program that hangs
   pollfd ready{out_, POLLIN, 0};
-  return poll(&ready, 1, kHangMilliseconds) == 1 && append_from(out_, output_);
+  if (poll(&ready, 1, kHangMilliseconds) != 1) {
+    kill(pid_, SIGKILL);  // a hanging program would keep `wait` waiting
+    return false;
+  }
+  return append_from(out_, output_);
 }
 
 bool ChildProcess::wait_for(const std::string& text, unsigned times) {

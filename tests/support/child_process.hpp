@@ -23,7 +23,7 @@ class ChildProcess {
 
   [[nodiscard]] int pid() const { return pid_; }
   /// Reads the output until it contains `text` at least `times` times. Returns false if the program ends
-  /// earlier, or if it prints nothing for 60 s.
+  /// earlier. Kills a program that prints nothing for 60 s, and returns false.
   bool wait_for(const std::string& text, unsigned times = 1);
   /// Returns all output that has been read so far.
   [[nodiscard]] const std::string& output() const { return output_; }
@@ -31,8 +31,8 @@ class ChildProcess {
   /// Sends `signal` and waits until the program ends. Returns its exit status, or 128 plus the number of the
   /// signal that has ended it.
   int end(int signal);
-  /// Waits until the program ends. Returns the same value as `end`. Call neither `end` nor `wait` again after
-  /// one of them has returned.
+  /// Waits until the program ends. Kills a program that prints nothing for 60 s. Returns the same value as
+  /// `end`. Call neither `end` nor `wait` again after one of them has returned.
   int wait();
 
  private:

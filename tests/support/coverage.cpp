@@ -81,9 +81,8 @@ std::vector<unsigned> functions_of(modbus::Functions functions) {
 }  // namespace
 
 void Coverage::note(const Module& module, const play::Bytes& sent, const play::Bytes& heard) {
-  // Passes the bytes to a new assembler. Its verdict can differ from that of the module's assembler. For
-  // example, if the request has changed the address, the new assembler already uses the new address, so its
-  // verdict is Foreign. If the transcript waits in the middle of a frame, `sent` is only a part of the frame.
+  // Passes the bytes to a new assembler. Its verdict can differ from that of the module's assembler. If the
+  // transcript waits in the middle of a frame, `sent` is only a part of the frame.
   const InForce& in_force = module.state().in_force;
   FrameQueue queue;
   Verdict verdict = Verdict::Open;
@@ -106,6 +105,9 @@ void Coverage::note(const Module& module, const play::Bytes& sent, const play::B
     if (verdict == Verdict::Open) {
       verdict = assembler.silence(queue);
     }
+  }
+  if (verdict == Verdict::Foreign && !heard.empty()) {
+    return;  // the request has changed the address, and the new assembler already uses the new address
   }
   const std::string name = name_in(kVerdicts, verdict);
   if (!name.empty()) {

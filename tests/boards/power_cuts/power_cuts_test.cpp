@@ -170,9 +170,9 @@ class PowerCutsOf : public testing::TestWithParam<ImageName> {
 
   void TearDown() override {
     std::printf(
-        "%s: %zu cuts at %zu points left %zu different contents; of these %zu are the old settings and %zu "
-        "those of "
-        "an earlier command that was cut; the image came up from %zu (seed %u)\n",
+        "%s: %zu cuts or resets at %zu points left %zu different contents; of these, %zu contain the old "
+        "settings, and %zu contain the settings of an earlier, interrupted command; the image started from "
+        "%zu (seed %u)\n",
         bench_name().c_str(), cuts_, points_, distinct_, olds_, finished_late_, booted_, kSeed);
   }
   static std::string bench_name() {
@@ -221,8 +221,8 @@ TEST_P(PowerCutsOf, DuringTwoSuccessiveCommandsLeaveEachCommandCompletelyStoredO
   });
 }
 
-/// The number of pairs grows with the square of the number of written bytes. Therefore this test uses a
-/// random sample even with EX9000_CUTS=all.
+/// The number of combinations of a first and a second cut grows with the square of the number of written
+/// bytes. Therefore this test uses a random sample even with EX9000_CUTS=all.
 TEST_P(PowerCutsOf, DuringTwoSuccessiveMultiPageStoresLeaveEachCommandStoredOrNotAtAll) {
   for_some_commands_of_several_pages([this](const State& state, const StoringCommand& first) {
     cut_twice(state, first, all_cases_requested() ? 200 : 2);

@@ -38,8 +38,8 @@ LineFormat another_format(LineFormat format, Random& random) {
 
 }  // namespace
 
-unsigned baud_code_with(unsigned rate, const Module& module, Random& random) {
-  return rate | (!module.has_extensions() || random.once_in(2) ? 0U : random.below(4) << 6);
+unsigned baud_code_with(unsigned code, const Module& module, Random& random) {
+  return code | (!module.has_extensions() || random.once_in(2) ? 0U : random.below(4) << 6);
 }
 
 std::vector<Step> first_steps(const Module& module, Random& random) {
