@@ -21,7 +21,8 @@ Step next_step(const Module& module, Random& random);
 Bytes dcon_request(const Module& module, Random& random);
 
 /// Returns a CC with this code of a baud rate in bits 5:0, for example 06 for 9600 baud. The code may be one
-/// that does not exist. If the module has extensions, about half of the returned CCs have a random line format.
+/// that does not exist. If the module has extensions, about half of the returned CCs have a random line
+/// format.
 unsigned baud_code_with(unsigned code, const Module& module, Random& random);
 
 /// Returns the address of an extension register, or one at which this model has none.
