@@ -3,8 +3,6 @@
 #include <utility>
 #include <vector>
 
-#include "sim/line_monitor/log/json_log.hpp"
-#include "sim/line_monitor/log/text_log.hpp"
 #include "sim/text/values.hpp"
 
 namespace ex9000::sim {
@@ -24,13 +22,10 @@ StationNames stations_of(Line& line) {
 }  // namespace
 
 LineRecord::LineRecord(Line& line, std::string name, LogFormat format, const Print& print)
-    : line_(line), name_(std::move(name)) {
-  if (format == LogFormat::Json) {
-    log_ = std::make_unique<JsonLog>(name_, stations_of(line), print);
-  } else {
-    log_ = std::make_unique<TextLog>(stations_of(line), print);
-  }
-}
+    : line_(line),
+      name_(std::move(name)),
+      log_(format == LogFormat::Json ? json_log(name_, stations_of(line), print)
+                                     : text_log(stations_of(line), print)) {}
 
 void LineRecord::note(const std::string& text) {
   if (over_) {

@@ -153,23 +153,18 @@ constexpr std::array<Verb, 12> kVerbs{{
 
 /// A command for one line. `line NAME` may precede it.
 struct LineVerb {
-  std::string_view name;
-  std::string_view args;
+  std::string_view shape;
   std::string_view does;
-
-  [[nodiscard]] std::string shape() const {
-    return std::string(name) + (args.empty() ? "" : " ") + std::string(args);
-  }
 };
 
 constexpr std::array<LineVerb, 6> kLineVerbs{{
-    {"baud", "RATE",
+    {"baud RATE",
      "sets the line's baud rate, for TCP; a pseudo-terminal overrides it, and a serial port has its own"},
-    {"format", "FORMAT", "sets the line's format: 8N1, 8N2, 8E1 or 8O1; a serial port has its own"},
-    {"sent", "", "reads how many bytes the line has written to its ports"},
-    {"fault", "FAULT", "adds a fault, see below; replies with its number. With N: for that module"},
-    {"fault off", "K|all", "removes the fault with this number, or all faults"},
-    {"faults", "",
+    {"format FORMAT", "sets the line's format: 8N1, 8N2, 8E1 or 8O1; a serial port has its own"},
+    {"sent", "reads how many bytes the line has written to its ports"},
+    {"fault FAULT", "adds a fault, see below; replies with its number. With N: for that module"},
+    {"fault off K|all", "removes the fault with this number, or all faults"},
+    {"faults",
      "lists the faults: number, * if in progress, how often each has occurred, its module, its text"},
 }};
 
@@ -183,7 +178,7 @@ std::string all_shapes() {
     text += shape(verb) + ", ";
   }
   for (const LineVerb& verb : kLineVerbs) {
-    text += verb.shape() + ", ";
+    text += std::string(verb.shape) + ", ";
   }
   return text + "advance TIME [after N] [quiet], list, help, quit";
 }
@@ -198,28 +193,17 @@ std::string where(const SimulatedModule& module) {
 
 using Lines = std::vector<Control::ControlledLine>;
 
-std::size_t modules_of(const Lines& lines) {
-  std::size_t modules = 0;
-  for (const Control::ControlledLine& controlled : lines) {
-    modules += controlled.line.size();
-  }
-  return modules;
-}
-
 std::string list(const Lines& lines) {
-  const std::size_t modules = modules_of(lines);
-  std::string text = std::to_string(modules) + (modules == 1 ? " module:" : " modules:");
-  std::size_t position = 0;
+  Words modules;
   for (const Control::ControlledLine& controlled : lines) {
     for (std::size_t i = 0; i < controlled.line.size(); ++i) {
       const SimulatedModule& module = controlled.line.module(i);
-      text += std::string(position == 0 ? " " : ", ") + std::to_string(position + 1) + " " +
-              std::string(module.model().designation) + where(module) +
-              (controlled.name.empty() ? "" : " on " + controlled.name);
-      ++position;
+      modules.push_back(std::to_string(modules.size() + 1) + " " + std::string(module.model().designation) +
+                        where(module) + (controlled.name.empty() ? "" : " on " + controlled.name));
     }
   }
-  return text;
+  return std::to_string(modules.size()) + (modules.size() == 1 ? " module: " : " modules: ") +
+         joined(modules, ", ");
 }
 
 const Verb& verb_called(const std::string& name) {
@@ -266,28 +250,16 @@ std::string list_faults(Line& line, std::size_t position) {
   return text;
 }
 
-void require_no_serial_port(const Control::ControlledLine& controlled, const std::string& key) {
+/// Returns the only argument of a command of this `shape`, which sets the line's `key`.
+const std::string& new_value(const Control::ControlledLine& controlled, const Words& words,
+                             const std::string& shape, const std::string& key) {
+  if (words.size() != 2) {
+    fail("expected " + shape);
+  }
   if (controlled.has_serial_port) {
     fail("the line's serial port keeps its " + key + "; start the program with another " + key);
   }
-}
-
-std::string set_rate(const Control::ControlledLine& controlled, const Words& words) {
-  if (words.size() != 2) {
-    fail("expected baud RATE");
-  }
-  require_no_serial_port(controlled, "rate");
-  controlled.line.master().set_baud(parse_baud_rate(words[1]));
-  return "";
-}
-
-std::string set_format(const Control::ControlledLine& controlled, const Words& words) {
-  if (words.size() != 2) {
-    fail("expected format FORMAT");
-  }
-  require_no_serial_port(controlled, "line format");
-  controlled.line.master().set_format(parse_line_format(words[1]));
-  return "";
+  return words[1];
 }
 
 std::string on_line(const Control::ControlledLine& controlled, std::size_t position, const Words& words) {
@@ -299,10 +271,12 @@ std::string on_line(const Control::ControlledLine& controlled, std::size_t posit
     return list_faults(line, position);
   }
   if (words[0] == "baud") {
-    return set_rate(controlled, words);
+    line.master().set_baud(parse_baud_rate(new_value(controlled, words, "baud RATE", "rate")));
+    return "";
   }
   if (words[0] == "format") {
-    return set_format(controlled, words);
+    line.master().set_format(parse_line_format(new_value(controlled, words, "format FORMAT", "line format")));
+    return "";
   }
   if (words[0] == "fault" && words.size() >= 2) {
     return words[1] == "off" ? end_fault(line, words)
@@ -334,9 +308,13 @@ std::string on_some_line(const Lines& lines, const Words& words) {
 }
 
 std::string on_module(const Lines& lines, const Words& words) {
-  const auto position = whole_number(words[0], modules_of(lines));
+  std::size_t modules = 0;
+  for (const Control::ControlledLine& controlled : lines) {
+    modules += controlled.line.size();
+  }
+  const auto position = whole_number(words[0], modules);
   if (!position || *position == 0) {
-    fail("no module " + words[0] + "; expected a position from 1 to " + std::to_string(modules_of(lines)));
+    fail("no module " + words[0] + "; expected a position from 1 to " + std::to_string(modules));
   }
   if (words.size() == 1) {
     fail("'" + words[0] + "' is not a command; expected one of " + all_shapes());
@@ -367,12 +345,11 @@ Control::Reply Control::carry_out(const std::string& command) {
       fail("the command contains NUL; leave it out");
     }
     std::string result;
-    const bool quit = first == "quit";
-    if (quit || first == "list" || first == "help") {
+    if (first == "quit" || first == "list" || first == "help") {
       if (words.size() != 1) {
         fail("'" + first + "' has no arguments; leave them out");
       }
-      result = quit ? "" : first == "list" ? list(lines_) : all_shapes();
+      result = first == "quit" ? "" : first == "list" ? list(lines_) : all_shapes();
     } else if (first == "advance") {
       fail("'advance' requires --speed step; without it, the lines' time advances by itself");
     } else if (first == "line" || first == "fault" || first == "faults" || first == "baud" ||
@@ -383,7 +360,7 @@ Control::Reply Control::carry_out(const std::string& command) {
     } else {
       result = on_module(lines_, words);
     }
-    return {"ok" + (result.empty() ? "" : " " + result), quit};
+    return {"ok" + (result.empty() ? "" : " " + result), first == "quit"};
   } catch (const std::invalid_argument& error) {
     return {std::string("error: ") + error.what(), false};
   }
@@ -391,7 +368,7 @@ Control::Reply Control::carry_out(const std::string& command) {
 
 std::string control_commands() {
   std::ostringstream text;
-  const auto row = [&text](const std::string& command, std::string_view does) {
+  const auto row = [&text](std::string_view command, std::string_view does) {
     constexpr int kColumn = 20;
     text << "  " << std::left << std::setw(kColumn) << command << does << "\n";
   };
@@ -399,10 +376,10 @@ std::string control_commands() {
     row(shape(verb), verb.does);
   }
   for (const LineVerb& verb : kLineVerbs) {
-    row(verb.shape(), verb.does);
+    row(verb.shape, verb.does);
   }
   row("line NAME ...", "one of the six above, for that line; required if there are several lines");
-  text << "  advance TIME [after N] [quiet]\n";
+  row("advance TIME [after N] [quiet]", "");
   row("", "with --speed step: waits until N bytes have arrived at the ports, sends all of them on the");
   row("", "lines, and advances the time by TIME; with 'quiet', only until nothing is pending. Replies");
   row("", "with the time");

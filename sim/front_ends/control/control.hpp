@@ -33,8 +33,7 @@ class Control {
     bool quit = false;
   };
 
-  /// Carries out a command and returns the reply. `command` is a text without a newline. A rejected command
-  /// changes nothing.
+  /// Carries out a command and returns the reply. A rejected command changes nothing.
   Reply carry_out(const std::string& command);
 
  private:

@@ -8,10 +8,10 @@
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/read_until.hpp>
 #include <boost/asio/write.hpp>
-#include <stdexcept>
 #include <utility>
 
 #include "sim/files_and_ports/ports/listening.hpp"
+#include "sim/text/fail.hpp"
 
 namespace ex9000::sim {
 
@@ -20,27 +20,21 @@ namespace {
 using Local = boost::asio::local::stream_protocol;
 
 constexpr std::size_t kLongestLine = 1000;  // characters, without the newline
-/// The largest number of clients at the same time. Usually, clients reach this number only if they do not
-/// disconnect.
-constexpr std::size_t kMostClients = 64;
-
-[[noreturn]] void refuse(const std::string& path, const std::string& why) {
-  throw std::invalid_argument(path + ": " + why);
-}
+constexpr std::size_t kMostClients = 64;    // at the same time
 
 /// Removes a socket at `path` if the process that created it has ended. Throws std::invalid_argument if
 /// another program may still use the path, or if a file that is not a socket is there.
 void remove_stale(boost::asio::io_context& io, const std::string& path, const Claim& claim) {
-  const std::string in_use = "another program listens there; end it or name another path";
+  const std::string in_use = path + ": another program listens there; end it or name another path";
   if (!claim.held()) {
-    refuse(path, in_use);
+    fail(in_use);
   }
   struct stat status {};
   if (lstat(path.c_str(), &status) != 0) {
     return;
   }
   if (!S_ISSOCK(status.st_mode)) {
-    refuse(path, "the path is in use by a file that is not a socket; remove it or name another path");
+    fail(path + ": the path is in use by a file that is not a socket; remove it or name another path");
   }
   Local::socket visitor(io);
   boost::system::error_code error;
@@ -53,7 +47,7 @@ void remove_stale(boost::asio::io_context& io, const std::string& path, const Cl
   }
   if (error != boost::asio::error::connection_refused) {
     const bool listens = !error || error == boost::asio::error::no_buffer_space;  // Asio's code for EAGAIN
-    refuse(path, listens ? in_use : error.message() + "; name another path");
+    fail(listens ? in_use : path + ": " + error.message() + "; name another path");
   }
   unlink(path.c_str());
 }
@@ -61,8 +55,6 @@ void remove_stale(boost::asio::io_context& io, const std::string& path, const Cl
 }  // namespace
 
 struct ControlSocket::Client {
-  explicit Client(Local::socket its_socket) : socket(std::move(its_socket)) {}
-
   Local::socket socket;
   std::string input;
   std::string output;
@@ -77,8 +69,8 @@ ControlSocket::ControlSocket(boost::asio::io_context& io, std::string path, Carr
       acceptor_(io),
       next_try_(io) {
   if (path_.empty() || path_.size() >= sizeof(sockaddr_un::sun_path)) {
-    refuse(path_,
-           "expected a path of 1 to " + std::to_string(sizeof(sockaddr_un::sun_path) - 1) + " characters");
+    fail(path_ + ": expected a path of 1 to " + std::to_string(sizeof(sockaddr_un::sun_path) - 1) +
+         " characters");
   }
   remove_stale(io, path_, claim_);
   boost::system::error_code error;
@@ -96,7 +88,7 @@ ControlSocket::ControlSocket(boost::asio::io_context& io, std::string path, Carr
   }
   if (error) {
     remove();
-    refuse(path_, error.message() + "; name a path that can be written");
+    fail(path_ + ": " + error.message() + "; name a path that can be written");
   }
 }
 
@@ -117,7 +109,7 @@ void ControlSocket::admit(Local::socket socket) {
   clients_.erase(std::remove_if(clients_.begin(), clients_.end(),
                                 [](const std::weak_ptr<Client>& client) { return client.expired(); }),
                  clients_.end());
-  const auto client = std::make_shared<Client>(std::move(socket));
+  const auto client = std::make_shared<Client>(Client{std::move(socket), "", ""});
   if (clients_.size() < kMostClients) {
     clients_.push_back(client);
     read(client);

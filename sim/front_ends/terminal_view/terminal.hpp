@@ -16,7 +16,6 @@ struct Screen {
   }
 };
 
-/// The terminal on which faces are drawn.
 class Terminal {
  public:
   Terminal() = default;

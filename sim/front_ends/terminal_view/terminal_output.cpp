@@ -4,9 +4,9 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
-#include <cctype>
 #include <cerrno>
 #include <cstdlib>
+#include <cstring>
 #include <string>
 #include <utility>
 
@@ -35,33 +35,22 @@ std::string locale() {
 }  // namespace
 
 bool names_utf8(const std::string& locale) {
-  std::string plain;
-  for (const char character : locale) {
-    if (character != '-') {
-      plain += static_cast<char>(std::tolower(static_cast<unsigned char>(character)));
-    }
-  }
-  return plain.find("utf8") != std::string::npos;
+  return strcasestr(locale.c_str(), "UTF-8") != nullptr || strcasestr(locale.c_str(), "UTF8") != nullptr;
 }
 
 TerminalOutput::TerminalOutput(int descriptor, GivesUp gives_up) : gives_up_(std::move(gives_up)) {
   if (isatty(descriptor) != 0 && environment("TERM") != "dumb") {
     const std::string terminal = "/proc/self/fd/" + std::to_string(descriptor);
-    fd_ = open(terminal.c_str(), O_WRONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
+    fd_ = FileDescriptor(open(terminal.c_str(), O_WRONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC));
   }
 }
 
-TerminalOutput::~TerminalOutput() {
-  if (is_open()) {
-    flush();
-    close(fd_);
-  }
-}
+TerminalOutput::~TerminalOutput() { flush(); }
 
 Screen TerminalOutput::screen() const {
   Screen screen;
   winsize size{};
-  if (ioctl(fd_, TIOCGWINSZ, &size) == 0 && size.ws_row != 0 && size.ws_col != 0) {
+  if (ioctl(fd_.get(), TIOCGWINSZ, &size) == 0 && size.ws_row != 0 && size.ws_col != 0) {
     screen.rows = size.ws_row;
     screen.columns = size.ws_col;
   }
@@ -72,7 +61,7 @@ Screen TerminalOutput::screen() const {
 void TerminalOutput::write(const std::string& text) {
   waiting_ += text;
   flush();
-  while (waiting_.size() > kMostWaiting && !gives_up_() && wait_for_room(fd_, gives_up_)) {
+  while (waiting_.size() > kMostWaiting && !gives_up_() && wait_for_room(fd_.get(), gives_up_)) {
     flush();
   }
 }
@@ -86,7 +75,7 @@ bool TerminalOutput::keeps_up() {
 /// terminal has disappeared, discards the waiting output.
 void TerminalOutput::flush() {
   while (!waiting_.empty()) {
-    const ssize_t taken = ::write(fd_, waiting_.data(), waiting_.size());
+    const ssize_t taken = ::write(fd_.get(), waiting_.data(), waiting_.size());
     if (taken < 0 && errno == EINTR) {
       continue;
     }

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "sim/files_and_ports/files/file_descriptor.hpp"
 #include "sim/files_and_ports/files/wait_for_room.hpp"
 #include "sim/front_ends/terminal_view/terminal.hpp"
 
@@ -28,7 +29,7 @@ class TerminalOutput final : public Terminal {
   /// Returns false if the descriptor is not a terminal, if TERM is `dumb` (the cursor of such a terminal
   /// cannot be moved), or if the terminal could not be opened. In these cases no other function may be
   /// called.
-  [[nodiscard]] bool is_open() const { return fd_ != kClosed; }
+  [[nodiscard]] bool is_open() const { return fd_.is_open(); }
 
   // --- Terminal ---
   [[nodiscard]] Screen screen() const override;
@@ -39,8 +40,7 @@ class TerminalOutput final : public Terminal {
  private:
   void flush();
 
-  static constexpr int kClosed = -1;  ///< the result of open(2) after an error
-  int fd_ = kClosed;
+  FileDescriptor fd_;
   std::string waiting_;
   GivesUp gives_up_;
 };

@@ -29,8 +29,8 @@ std::string shortened(const std::string& line, std::size_t columns) {
 }  // namespace
 
 void Watch::add_line(std::string name, const Line& line, std::function<VirtualTime()> present) {
-  lines_.push_back({std::move(name), line, std::move(present), {}});
-  lines_.back().faces.resize(line.size());
+  lines_.push_back(
+      {std::move(name), line, std::move(present), std::vector<std::optional<Face>>(line.size())});
 }
 
 void Watch::look() {

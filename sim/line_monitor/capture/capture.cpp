@@ -12,30 +12,11 @@ namespace {
 
 UpperPdu dissected_by(const Frame& frame) {
   constexpr std::size_t kShortestThatMbrtuTakes = 5;
-  UpperPdu pdu;
   if (was_dcon(frame.bytes)) {
-    pdu.dissector = "data-text-lines";
-    pdu.protocol = "DCON";
-  } else {
-    pdu.dissector = frame.bytes.size() < kShortestThatMbrtuTakes ? "data" : "mbrtu";
-    pdu.protocol = "Modbus RTU";  // even if the dissector cannot decode the frame
+    return {"data-text-lines", "DCON"};
   }
-  return pdu;
-}
-
-/// Sets the ports of a frame. The master of each line has its own port, because Wireshark matches replies
-/// with requests by their ports. A frame of a station that is neither the master nor a module gets no ports,
-/// because this station may send both requests and replies.
-void set_ports(UpperPdu& pdu, std::size_t line, std::size_t modules, const Frame& frame) {
-  constexpr std::size_t kFirstMastersPort = 10000;
-  const auto master = static_cast<std::uint16_t>(kFirstMastersPort + line);
-  if (frame.speaker() == Speaker::Master) {
-    pdu.source_port = master;
-    pdu.destination_port = kCapturedModulesPort;
-  } else if (frame.station <= modules) {
-    pdu.source_port = kCapturedModulesPort;
-    pdu.destination_port = master;
-  }
+  // The column shows the protocol even if the dissector cannot decode the frame.
+  return {frame.bytes.size() < kShortestThatMbrtuTakes ? "data" : "mbrtu", "Modbus RTU"};
 }
 
 }  // namespace
@@ -52,16 +33,26 @@ std::size_t Capture::add_line(const std::string& name, std::size_t modules, std:
 }
 
 void Capture::write(std::size_t line, const Frame& frame) {
+  // The master of each line has its own port, because Wireshark matches replies with requests by their ports.
+  // A frame of a station that is neither the master nor a module gets no ports, because this station may send
+  // both requests and replies.
+  constexpr std::size_t kFirstMastersPort = 10000;
+  const auto master = static_cast<std::uint16_t>(kFirstMastersPort + line);
+  const bool known = frame.station <= lines_[line].modules;
   UpperPdu pdu = dissected_by(frame);
-  set_ports(pdu, line, lines_[line].modules, frame);
   pcapng::EnhancedPacket packet;
+  if (frame.speaker() == Speaker::Master) {
+    pdu.source_port = master;
+    pdu.destination_port = kCapturedModulesPort;
+    packet.direction = pcapng::Direction::Outbound;
+  } else if (known) {
+    pdu.source_port = kCapturedModulesPort;
+    pdu.destination_port = master;
+  }
   packet.interface_id = static_cast<std::uint32_t>(line);
   packet.timestamp = lines_[line].began + frame.began;
-  packet.direction =
-      frame.speaker() == Speaker::Master ? pcapng::Direction::Outbound : pcapng::Direction::Inbound;
   packet.data = pdu.header();
   packet.data.insert(packet.data.end(), frame.bytes.begin(), frame.bytes.end());
-  const bool known = frame.speaker() == Speaker::Master || frame.station <= lines_[line].modules;
   packet.comment = known ? errors(frame) : line_error(frame);  // as in the logs
   const std::lock_guard<std::mutex> lock(writing_);
   file_.append(pcapng::enhanced_packet(packet));

@@ -43,9 +43,7 @@ std::vector<std::uint8_t> UpperPdu::header() const {
   put_number(header, kPortType, kTcp);
   put_number(header, kSourcePort, source_port);
   put_number(header, kDestinationPort, destination_port);
-  if (!protocol.empty()) {
-    put_text(header, kProtocolColumn, protocol);
-  }
+  put_text(header, kProtocolColumn, protocol);
   put_text(header, kEndOfTags, "");
   return header;
 }

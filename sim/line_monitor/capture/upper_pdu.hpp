@@ -1,6 +1,6 @@
 // The header that lets Wireshark dissect a frame without the layers below it: LINKTYPE_WIRESHARK_UPPER_PDU,
-// see https://wiki.wireshark.org/Protocols/exported_pdu. The ports in this header can show whether a frame is
-// a request or a reply. The header also names the dissector, so that users need not choose a dissector.
+// see https://wiki.wireshark.org/Protocols/exported_pdu. The header names the dissector, so that users need
+// not choose one.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@ constexpr std::uint16_t kLinkTypeWiresharkUpperPdu = 252;
 /// The header before the bytes of a frame.
 struct UpperPdu {
   std::string dissector;  ///< Wireshark's name of the dissector
-  std::string protocol;   ///< text for the protocol column; empty: the dissector chooses it
+  std::string protocol;   ///< text for the protocol column
   /// The dissector for Modbus RTU treats a frame from the port mbrtu.tcp.port as a response, and a frame to
   /// that port as a query.
   std::uint16_t source_port = 0;

@@ -1,21 +1,14 @@
 #include "sim/line_monitor/frames/frame_errors.hpp"
 
+#include <algorithm>
+#include <iterator>
+
 #include "sim/text/values.hpp"
+#include "sim/text/words.hpp"
 
 namespace ex9000::sim {
 
 namespace {
-
-std::string error_text(ByteStatus status) {
-  switch (status) {
-    case ByteStatus::FramingError:
-      return "framing error";
-    case ByteStatus::ParityError:
-      return "parity error";
-    default:
-      return "";
-  }
-}
 
 std::string told(const Frame::Change& change) {
   const std::string sent = hex_byte_text(change.sent);
@@ -24,42 +17,43 @@ std::string told(const Frame::Change& change) {
   if (!byte) {
     return which + sent + " is lost because its start bit is missing";
   }
-  if (change.status() == ByteStatus::Break) {
+  const ByteStatus status = change.status();
+  if (status == ByteStatus::Break) {
     return which + "break instead of " + sent;
   }
-  const std::string instead = *byte == change.sent ? "" : hex_byte_text(*byte) + " instead of " + sent;
-  const std::string error = error_text(change.status());
-  return which + error + (error.empty() || instead.empty() ? "" : ", ") + instead;
-}
-
-void append(std::string& text, const std::string& more) {
-  if (!more.empty()) {
-    text += (text.empty() ? "" : "; ") + more;
+  Words parts;
+  if (status != ByteStatus::Good) {
+    parts.emplace_back(status == ByteStatus::FramingError ? "framing error" : "parity error");
   }
+  if (*byte != change.sent) {
+    parts.push_back(hex_byte_text(*byte) + " instead of " + sent);
+  }
+  return which + joined(parts, ", ");
 }
 
 }  // namespace
 
 std::string line_error(const Frame& frame) {
-  std::string changes;
-  for (const Frame::Change& change : frame.changes) {
-    append(changes, told(change));
+  Words parts;
+  if (frame.collided) {
+    parts.emplace_back("collision: another station drove the line at the same time");
   }
-  std::string text = frame.collided ? "collision: another station drove the line at the same time" : "";
   if (!hear_each_other(frame.sent_in, frame.line_in)) {
-    append(text, "sent at " + mode_text(frame.sent_in.baud, frame.sent_in.format) + " on a line at " +
-                     mode_text(frame.line_in.baud, frame.line_in.format));
+    parts.push_back("sent at " + mode_text(frame.sent_in.baud, frame.sent_in.format) + " on a line at " +
+                    mode_text(frame.line_in.baud, frame.line_in.format));
   }
-  append(text, changes.empty() ? "" : "noise: " + changes);
-  return text;
+  if (!frame.changes.empty()) {
+    Words changes;
+    std::transform(frame.changes.begin(), frame.changes.end(), std::back_inserter(changes), told);
+    parts.push_back("noise: " + joined(changes, "; "));
+  }
+  return joined(parts, "; ");
 }
 
 std::string errors(const Frame& frame) {
-  std::string text = line_error(frame);
-  if (!frame.collided) {
-    append(text, check_error(frame.bytes, frame.speaker()));
-  }
-  return text;
+  const std::string on_the_line = line_error(frame);
+  const std::string in_the_bytes = frame.collided ? "" : check_error(frame.bytes, frame.speaker());
+  return on_the_line + (on_the_line.empty() || in_the_bytes.empty() ? "" : "; ") + in_the_bytes;
 }
 
 }  // namespace ex9000::sim

@@ -1,6 +1,7 @@
 #include "sim/line_monitor/frames/frame_meaning.hpp"
 
 #include <algorithm>
+#include <numeric>
 #include <string_view>
 
 #include "firmware/dcon/commands.hpp"
@@ -60,11 +61,8 @@ DconRequest dcon_request_of(const std::string& text) {
 }
 
 bool checksum_is_right(const std::string& text) {
-  unsigned sum = 0;
-  for (const char character : text.substr(0, text.size() - kChecksumDigits)) {
-    sum += static_cast<unsigned char>(character);
-  }
-  return text.substr(text.size() - kChecksumDigits) == hex_byte_text(sum & 0xFFU);
+  const auto checksum = text.end() - kChecksumDigits;
+  return std::string(checksum, text.end()) == hex_byte_text(std::accumulate(text.begin(), checksum, 0U));
 }
 
 /// Returns whether the byte is 00 or LF, which modules ignore before a delimiter (wire.md section 3). The
@@ -99,14 +97,10 @@ std::string dcon_request(const FrameBytes& bytes) {
 }
 
 std::string dcon_reply(const FrameBytes& bytes) {
-  switch (bytes.front()) {
-    case '?':
-      return "rejected";
-    case '!':
-      return bytes.size() == 2 ? "ignored: the timeout status is set" : "reply";
-    default:
-      return "reply";
+  if (bytes == FrameBytes{'!', '\r'}) {
+    return "ignored: the timeout status is set";
   }
+  return bytes.front() == '?' ? "rejected" : "reply";
 }
 
 /// Returns whether a function of `listed` can access `row`, and the address is in `row` on at least one
@@ -119,15 +113,15 @@ bool lies_in(const Row& row, modbus::Functions listed, unsigned address) {
          });
 }
 
-std::string row_meaning(unsigned function, unsigned address, unsigned value) {
-  if (function > 0x10 || function == 0x08) {
-    return "";
-  }
-  const auto listed = static_cast<modbus::Functions>(1U << (function == 0x10 ? 6U : function));
-  constexpr unsigned kHostOk = 0x3038;
-  if (address == kHostOk && (function == 3 || function == 4) && value <= 1) {
+/// Returns the meaning of the address in a request without its CRC. Its function is at most 10 (hex).
+std::string row_meaning(Bytes request) {
+  if (modbus::is_host_ok(request)) {
     return ", host OK";
   }
+  const unsigned function = request[1];
+  const unsigned address = request.word(2);
+  const auto listed =
+      static_cast<modbus::Functions>(function == 0x10 ? modbus::kWriteRegisters : 1U << function);
   for (const auto& entry : modbus::kBitRegisters) {
     if (lies_in(entry.row, listed, address)) {
       return ", " + std::string(entry.meaning);
@@ -173,12 +167,11 @@ std::string modbus_meaning(const FrameBytes& bytes, Speaker speaker) {
   if (bytes.size() < 8 || row == modbus::kFunctions.end() || function > 0x10 || function == 0x08) {
     return who + name;
   }
-  const unsigned address = bytes[2] * 256U + bytes[3];
-  const unsigned value = bytes[4] * 256U + bytes[5];
+  const Bytes request{bytes.data(), bytes.size() - 2};
+  const unsigned value = request.word(4);
   const bool single = function == 5 || function == 6;
-  return who + name + " " + hex_word_text(address) +
-         (single ? " = " + hex_word_text(value) : " x " + std::to_string(value)) +
-         row_meaning(function, address, value);
+  return who + name + " " + hex_word_text(request.word(2)) +
+         (single ? " = " + hex_word_text(value) : " x " + std::to_string(value)) + row_meaning(request);
 }
 
 }  // namespace
@@ -223,8 +216,7 @@ std::string check_error(const FrameBytes& bytes, Speaker speaker) {
     return "";  // the module's setting decides whether the last two characters are a checksum
   }
   const std::string text = dcon_text(bytes);
-  const DconRequest request = text.size() < 3 ? DconRequest() : dcon_request_of(text);
-  return request.checksum && !checksum_is_right(text) ? "wrong checksum" : "";
+  return dcon_request_of(text).checksum && !checksum_is_right(text) ? "wrong checksum" : "";
 }
 
 std::string meaning(const FrameBytes& bytes, Speaker speaker) {

@@ -11,27 +11,16 @@ namespace {
 
 constexpr std::size_t kMaster = 0;
 
-/// The longest pauses inside a frame: between the pieces of a master's write, and between two key presses of
-/// a person. If four characters of 11 bits take longer than 5 ms, the first limit is the time of four such
-/// characters.
+// The longest pauses inside a frame: between the pieces of a master's write at a high rate, and between two
+// key presses of a person.
 constexpr VirtualTime kLongestPauseInWrite = std::chrono::milliseconds(5);
 constexpr VirtualTime kLongestPauseInTyping = std::chrono::seconds(5);
 
-constexpr Levels kStartBit = 1U;
-
 }  // namespace
 
-std::optional<std::uint8_t> Frame::Change::byte() const {
-  if ((arrives & kStartBit) != 0) {
-    return std::nullopt;
-  }
-  return byte_of(arrives);
-}
-
 FrameWatch::Sender& FrameWatch::sender(std::size_t station) {
-  while (senders_.size() <= station) {
-    senders_.emplace_back();
-    senders_.back().frame.station = senders_.size() - 1;
+  if (senders_.size() <= station) {
+    senders_.resize(station + 1);
   }
   return senders_[station];
 }
@@ -111,21 +100,14 @@ void FrameWatch::run(VirtualTime now) {
   }
 }
 
-void FrameWatch::finish() {
-  for (std::size_t station = 0; station < senders_.size(); ++station) {
-    hand_out(station);
-  }
-}
-
 void FrameWatch::hand_out(std::size_t station) {
   Sender& sending = sender(station);
   if (std::exchange(sending.sent, 0) == 0) {
     return;
   }
   sending.frame_deadline = kNever;
-  Frame next;
-  next.station = station;
-  const Frame frame = std::exchange(sending.frame, next);
+  Frame frame = std::exchange(sending.frame, {});
+  frame.station = station;
   for (const Take& take : takers_) {
     take(frame);
   }

@@ -23,7 +23,10 @@ struct Frame {
 
     /// Returns the byte that receivers in the sender's mode read; nullopt if the start bit is lost, because
     /// receivers then do not detect the byte.
-    [[nodiscard]] std::optional<std::uint8_t> byte() const;
+    [[nodiscard]] std::optional<std::uint8_t> byte() const {
+      constexpr Levels kStartBit = 1;
+      return (arrives & kStartBit) == 0 ? std::optional(byte_of(arrives)) : std::nullopt;
+    }
     /// Returns the status that these receivers report if they detect the byte.
     [[nodiscard]] ByteStatus status() const { return status_of(arrives, format); }
   };
@@ -69,7 +72,7 @@ class FrameWatch final : public BusObserver {
   /// Passes on the frames that are due at `now`.
   void run(VirtualTime now);
   /// Passes on all unfinished frames at the end of the run.
-  void finish();
+  void finish() { run(kNever); }
 
   // --- BusObserver ---
   void driver(std::size_t station, bool on, VirtualTime now) override;

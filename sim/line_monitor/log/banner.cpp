@@ -1,7 +1,6 @@
 #include "sim/line_monitor/log/banner.hpp"
 
-#include <algorithm>
-#include <iterator>
+#include <array>
 #include <map>
 
 #include "firmware/model/model.hpp"
@@ -24,53 +23,29 @@ std::string quoted(const std::string& path) {
   return text + "'";
 }
 
-/// The options that set a line format.
+/// The options that set a line format. A pseudo-terminal ignores the format, but a real bus does not.
 struct FormatOptions {
-  LineFormat format;
   const char* mbpoll;   ///< for mbpoll, whose default is 8E1
   const char* picocom;  ///< for picocom, whose default is 8N1
 };
 
-constexpr FormatOptions kFormatOptions[] = {
-    {LineFormat::k8N1, " -P none", ""},
-    {LineFormat::k8N2, " -P none -s 2", " -p 2"},
-    {LineFormat::k8E1, " -P even", " -y e"},
-    {LineFormat::k8O1, " -P odd", " -y o"},
-};
-
-/// Returns the options for `format`. A pseudo-terminal ignores the format, but a real bus does not.
 const FormatOptions& options_of(LineFormat format) {
-  return *std::find_if(std::begin(kFormatOptions), std::end(kFormatOptions),
-                       [format](const FormatOptions& options) { return options.format == format; });
+  static constexpr std::array<FormatOptions, 4> kInTheOrderOfLineFormat{
+      {{" -P none", ""}, {" -P none -s 2", " -p 2"}, {" -P even", " -y e"}, {" -P odd", " -y o"}}};
+  return kInTheOrderOfLineFormat[static_cast<std::size_t>(format)];
 }
 
-/// The parts of an mbpoll command that depend on the port.
-struct MbpollPort {
-  std::string options;
-  std::string name;
-};
-
-MbpollPort pty_of(const LineSummary& line, const ModuleSummary& module) {
-  return {"-m rtu -b " + std::to_string(module.mode.baud) + options_of(module.mode.format).mbpoll,
-          quoted(line.pty)};
-}
-
-MbpollPort gateway_of(const LineSummary& line) {
-  const auto colon = line.modbus_tcp.rfind(':');
-  return {"-m tcp -p " + line.modbus_tcp.substr(colon + 1), line.modbus_tcp.substr(0, colon)};
-}
-
-/// Returns commands for mbpoll, which counts addresses from 1.
-std::string mbpoll(const ModuleSummary& module, const MbpollPort& port) {
-  const std::string common = "    mbpoll " + port.options + " -a " + std::to_string(module.address);
+/// Returns commands for mbpoll, which counts addresses from 1. `options` are those for `port`.
+std::string mbpoll(const ModuleSummary& module, const std::string& options, const std::string& port) {
+  const std::string common = "    mbpoll " + options + " -a " + std::to_string(module.address);
   const auto read = [&](const char* type, unsigned count, const char* what) {
-    return common + " -t " + type + " -r 1 -c " + std::to_string(count) + " -1 " + port.name +
-           "    # read the " + what + "\n";
+    return common + " -t " + type + " -r 1 -c " + std::to_string(count) + " -1 " + port + "    # read the " +
+           what + "\n";
   };
   std::string text;
   if (module.outputs != 0) {
     text += read("0", module.outputs, "outputs");
-    text += common + " -t 0 -r 1 " + port.name + " 1    # switch output 0 on\n";
+    text += common + " -t 0 -r 1 " + port + " 1    # switch output 0 on\n";
   }
   if (module.inputs != 0) {
     text += read("1", module.inputs, "inputs");
@@ -79,7 +54,6 @@ std::string mbpoll(const ModuleSummary& module, const MbpollPort& port) {
   return text;
 }
 
-/// Returns a command for a terminal program.
 std::string terminal(const ModuleSummary& module, const std::string& link) {
   return "    picocom -q -b " + std::to_string(module.mode.baud) + options_of(module.mode.format).picocom +
          " --imap crcrlf --echo " + link + "    # then type $" + hex_byte_text(module.address) +
@@ -89,10 +63,18 @@ std::string terminal(const ModuleSummary& module, const std::string& link) {
 /// Returns commands that a user can paste to use the module; empty if masters can reach the module neither
 /// through a pseudo-terminal nor through the gateway.
 std::string commands(const LineSummary& line, const ModuleSummary& module) {
-  if (!line.pty.empty()) {
-    return module.speaks_ascii ? terminal(module, quoted(line.pty)) : mbpoll(module, pty_of(line, module));
+  if (!line.pty.empty() && module.speaks_ascii) {
+    return terminal(module, quoted(line.pty));
   }
-  return line.modbus_tcp.empty() || module.speaks_ascii ? "" : mbpoll(module, gateway_of(line));
+  if (!line.pty.empty()) {
+    const std::string baud = std::to_string(module.mode.baud);
+    return mbpoll(module, "-m rtu -b " + baud + options_of(module.mode.format).mbpoll, quoted(line.pty));
+  }
+  if (line.modbus_tcp.empty() || module.speaks_ascii) {
+    return "";
+  }
+  const auto colon = line.modbus_tcp.rfind(':');
+  return mbpoll(module, "-m tcp -p " + line.modbus_tcp.substr(colon + 1), line.modbus_tcp.substr(0, colon));
 }
 
 std::string ports(const LineSummary& line) {

@@ -1,7 +1,8 @@
-// Writes the log of the bus: one line of text for each frame and for each note.
+// The log of a line: one line of text for each frame and for each note.
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -38,5 +39,21 @@ class BusLog {
   /// Writes a note about the line. `now` is the time of the line's clock.
   virtual void note(VirtualTime now, const std::string& text) = 0;
 };
+
+/// Returns the log for people. The line of a frame contains its time, direction, sender, bytes, errors and
+/// meaning.
+std::unique_ptr<BusLog> text_log(StationNames names, BusLog::Print print);
+
+/// Returns the log for programs: one JSON object (RFC 8259) per line. Members of the object of a frame:
+///   time      start of its first start bit, in seconds of the line's time
+///   line      name of the line
+///   from      name of the station that sent it, or `unknown sender`
+///   bytes     in hex, without blanks
+///   text      the bytes as text; present if they have the form of a DCON frame
+///   meaning   see `meaning`; present if it is known, the station has a name, and there was no collision
+///   error     see `errors`, but only `line_error` if the station has no name; present if there is an error
+///   collided  whether a byte collided, see BusObserver::byte
+/// Members of the object of a note: time, line, note.
+std::unique_ptr<BusLog> json_log(std::string line, StationNames names, BusLog::Print print);
 
 }  // namespace ex9000::sim

@@ -1,33 +1,37 @@
-#include "sim/line_monitor/log/text_log.hpp"
-
 #include "sim/line_monitor/frames/frame_errors.hpp"
+#include "sim/line_monitor/log/bus_log.hpp"
 #include "sim/text/durations.hpp"
 
 namespace ex9000::sim {
 
 namespace {
 
-/// Returns the errors and the meaning of a frame. `known`: the sender is the master or a module. The bytes of
-/// a collided frame or of an unknown station have no known meaning.
-std::string remarks(const Frame& frame, bool known) {
-  const std::string error = line_error(frame);
-  const std::string means = frame.collided || !known ? "" : meaning(frame.bytes, frame.speaker());
-  return error + (error.empty() || means.empty() ? "" : "; ") + means;
-}
+class TextLog final : public BusLog {
+ public:
+  TextLog(StationNames names, Print print) : names_(std::move(names)), print_(std::move(print)) {}
+
+  void frame(const Frame& frame) override {
+    const bool known = names_.know(frame.station);
+    const std::string mark = frame.speaker() == Speaker::Master ? "  > " : known ? "  < " : "  ? ";
+    const std::string error = line_error(frame);
+    // The bytes of a collided frame or of an unknown station have no known meaning.
+    const std::string means = frame.collided || !known ? "" : meaning(frame.bytes, frame.speaker());
+    const std::string remarks = error + (error.empty() || means.empty() ? "" : "; ") + means;
+    print_(stamp_text(frame.began) + mark + names_.of(frame.station) + "  " + shown(frame.bytes) +
+           (remarks.empty() ? "" : "  ; " + remarks));
+  }
+
+  void note(VirtualTime now, const std::string& text) override { print_(note_text(now, text)); }
+
+ private:
+  StationNames names_;
+  Print print_;
+};
 
 }  // namespace
 
-void TextLog::frame(const Frame& frame) {
-  const bool known = names_.know(frame.station);
-  const std::string mark = frame.speaker() == Speaker::Master ? "  > " : known ? "  < " : "  ? ";
-  std::string line = stamp_text(frame.began) + mark + names_.of(frame.station) + "  " + shown(frame.bytes);
-  const std::string remark = remarks(frame, known);
-  if (!remark.empty()) {
-    line += "  ; " + remark;
-  }
-  print_(line);
+std::unique_ptr<BusLog> text_log(StationNames names, BusLog::Print print) {
+  return std::make_unique<TextLog>(std::move(names), std::move(print));
 }
-
-void TextLog::note(VirtualTime now, const std::string& text) { print_(note_text(now, text)); }
 
 }  // namespace ex9000::sim

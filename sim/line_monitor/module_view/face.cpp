@@ -22,6 +22,8 @@ Led led_of(const SimulatedModule& module) {
   return Led::On;
 }
 
+bool listens(const SimulatedModule& module) { return module.powered() && module.module().listening(); }
+
 Plate plate_of(const SimulatedModule& module) {
   Plate plate;
   plate.switched_on = module.switched_on();
@@ -31,7 +33,7 @@ Plate plate_of(const SimulatedModule& module) {
   plate.outputs = module.outputs();
   plate.inputs = static_cast<std::uint16_t>(module.input_levels() & module.model().input_mask());
   plate.watchdog_resets = module.watchdog_resets();
-  plate.listening = module.powered() && module.module().listening();
+  plate.listening = listens(module);
   if (plate.listening) {
     const InForce& in_force = module.module().state().in_force;
     plate.init_mode = in_force.init_mode;
@@ -47,24 +49,17 @@ Plate plate_of(const SimulatedModule& module) {
 }
 
 InputRecords gathered_of(const SimulatedModule& module) {
-  InputRecords gathered;
-  if (module.powered() && module.module().listening()) {
-    const Inputs& inputs = module.module().state().inputs;
-    gathered.latched_high = inputs.latched_high();
-    gathered.latched_low = inputs.latched_low();
-    for (unsigned channel = 0; channel < module.model().inputs; ++channel) {
-      gathered.counters[channel] = inputs.counter(channel);
-    }
+  const Inputs& inputs = module.module().state().inputs;
+  InputRecords gathered{inputs.latched_high(), inputs.latched_low(), {}};
+  for (unsigned channel = 0; channel < module.model().inputs; ++channel) {
+    gathered.counters[channel] = inputs.counter(channel);
   }
   return gathered;
 }
 
 HostWatchdogState guard_of(const SimulatedModule& module, VirtualTime now) {
-  HostWatchdogState guard;
-  if (!module.powered() || !module.module().listening()) {
-    return guard;
-  }
   const State& state = module.module().state();
+  HostWatchdogState guard;
   guard.enabled = state.settings.watchdog_enabled;
   guard.timed_out = state.settings.timeout_status;
   guard.timeout = state.settings.watchdog_timeout;
@@ -80,33 +75,26 @@ HostWatchdogState guard_of(const SimulatedModule& module, VirtualTime now) {
   return guard;
 }
 
-Stored::Copy copy_of(const std::vector<std::uint8_t>& memory, const Place& place,
-                     std::optional<StoredSettings>& stored, const Model& model) {
-  const Bytes rest{memory.data() + place.address, kRecordRoom};
-  stored = read_copy(model, place, rest);
-  const Bytes copy = rest.first(stored ? copy_size(place, rest) : kMemoryPage);
-  Stored::Copy read{{copy.begin(), copy.end()}, std::nullopt};
-  if (stored) {
-    read.sequence = stored->edition.sequence;
-  }
-  return read;
-}
-
 /// Reads the copies, and selects the copy that a reset would load (wire.md section 8).
 Stored stored_of(const SimulatedModule& module) {
   Stored stored;
   stored.settings = Settings::factory(module.model());
   stored.blank = true;
-  Edition counts;
-  for (std::size_t place = 0; place < kPlaces.size(); ++place) {
-    std::optional<StoredSettings> read;
-    stored.copies.push_back(copy_of(module.memory().contents(), kPlaces[place], read, module.model()));
-    const std::vector<std::uint8_t>& bytes = stored.copies.back().bytes;
-    stored.blank = stored.blank && is_blank({bytes.data(), bytes.size()});
-    if (read && (!stored.current || read->edition.is_newer_than(counts))) {
-      stored.current = place;
+  Edition newest;
+  for (const Place& place : kPlaces) {
+    const Bytes room{module.memory().contents().data() + place.address, kRecordRoom};
+    const auto read = read_copy(module.model(), place, room);
+    const Bytes bytes = room.first(read ? copy_size(place, room) : kMemoryPage);
+    stored.blank = stored.blank && is_blank(bytes);
+    if (read && (!stored.current || read->edition.is_newer_than(newest))) {
+      stored.current = stored.copies.size();
       stored.settings = read->settings;
-      counts = read->edition;
+      newest = read->edition;
+    }
+    Stored::Copy& copy = stored.copies.emplace_back();
+    copy.bytes.assign(bytes.begin(), bytes.end());
+    if (read) {
+      copy.sequence = read->edition.sequence;
     }
   }
   return stored;
@@ -138,6 +126,9 @@ bool operator==(const HostWatchdogState& a, const HostWatchdogState& b) {
 bool operator==(const Stored& a, const Stored& b) { return a.copies == b.copies; }
 
 Face face_of(const SimulatedModule& module, VirtualTime now) {
+  if (!listens(module)) {
+    return {plate_of(module), {}, {}, stored_of(module)};
+  }
   return {plate_of(module), gathered_of(module), guard_of(module, now), stored_of(module)};
 }
 

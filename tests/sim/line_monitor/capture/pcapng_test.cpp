@@ -62,12 +62,13 @@ TEST(Pcapng, ACommentIsCutToTheMaximumOptionLength) {
   EXPECT_EQ(hex({block.begin() + 36, block.begin() + 40}), "0100FFFF");
 }
 
-TEST(UpperPdu, NamesTheDissectorAndThePorts) {
-  EXPECT_EQ(hex(UpperPdu{"mbrtu", "", 0x1234, 0x5678}.header()),
-            "000C0008 6D627274 75000000 00180004 00000002 00190004 00001234 001A0004 00005678 00000000");
+TEST(UpperPdu, NamesTheDissectorThePortsAndTheProtocol) {
+  EXPECT_EQ(hex(UpperPdu{"mbrtu", "Modbus RTU", 0x1234, 0x5678}.header()),
+            "000C0008 6D627274 75000000 00180004 00000002 00190004 00001234 001A0004 00005678 "
+            "0021000C 4D6F6462 75732052 54550000 00000000");
 }
 
-TEST(UpperPdu, ContainsTheNameOfTheProtocolIfThereIsOne) {
+TEST(UpperPdu, ATextOfFourBytesHasNoPadding) {
   EXPECT_EQ(
       hex(UpperPdu{"data", "DCON", 1, 2}.header()),
       "000C0004 64617461 00180004 00000002 00190004 00000001 001A0004 00000002 00210004 44434F4E 00000000");

@@ -147,6 +147,7 @@ TEST(DconMeaning, RefusalsIgnoredCommandsAndOtherRepliesAreDistinguished) {
   EXPECT_EQ(of_reply("?01\r"), "rejected");
   EXPECT_EQ(of_reply("?\r"), "rejected");
   EXPECT_TRUE(has(of_reply("!\r"), "ignored"));
+  EXPECT_EQ(of_reply("!0"), "reply");
   EXPECT_EQ(of_reply("!01400640\r"), "reply");
   EXPECT_EQ(of_reply(">\r"), "reply");
   EXPECT_EQ(of_reply(">0F00\r"), "reply");
@@ -189,8 +190,9 @@ TEST(ModbusMeaning, AHostOkIsNamed) {
   EXPECT_TRUE(has(of_request(FrameBytes{0x01, 0x04, 0x30, 0x38, 0x00, 0x01}), "host OK"));
 }
 
-TEST(ModbusMeaning, ReadingRegister3038WithAnotherQuantityIsNotAHostOk) {
+TEST(ModbusMeaning, ReadingRegister3038WithAnotherQuantityOrLengthIsNotAHostOk) {
   EXPECT_FALSE(has(of_request(FrameBytes{0x01, 0x03, 0x30, 0x38, 0x00, 0x02}), "host OK"));
+  EXPECT_FALSE(has(of_request(FrameBytes{0x01, 0x03, 0x30, 0x38, 0x00, 0x01, 0x00}), "host OK"));
 }
 
 TEST(ModbusMeaning, AnAddressOutsideTheMapIsReportedAsUnknown) {

@@ -6,8 +6,7 @@
 
 #include "sim/app/play/modbus_frame.hpp"
 #include "sim/line_monitor/frames/frame_errors.hpp"
-#include "sim/line_monitor/log/json_log.hpp"
-#include "sim/line_monitor/log/text_log.hpp"
+#include "sim/line_monitor/log/bus_log.hpp"
 
 namespace ex9000::sim {
 namespace {
@@ -29,13 +28,13 @@ StationNames names() { return StationNames({"master", "01 EX9042D-M"}); }
 
 std::string text_of(const Frame& frame) {
   std::string printed;
-  TextLog(names(), [&printed](const std::string& line) { printed += line + "|"; }).frame(frame);
+  text_log(names(), [&printed](const std::string& line) { printed += line + "|"; })->frame(frame);
   return printed;
 }
 
 std::string json_line_of(const Frame& frame) {
   std::string printed;
-  JsonLog("pump", names(), [&printed](const std::string& line) { printed += line; }).frame(frame);
+  json_log("pump", names(), [&printed](const std::string& line) { printed += line; })->frame(frame);
   return printed;
 }
 nlohmann::json json_of(const Frame& frame) { return nlohmann::json::parse(json_line_of(frame)); }
@@ -87,7 +86,7 @@ TEST(TextLog, ChangesByNoiseAreReportedBeforeAWrongCrc) {
 
 TEST(TextLog, ANoteIsPrintedOnOneLine) {
   std::string printed;
-  TextLog(names(), [&printed](const std::string& line) { printed = line; }).note(kBegan, "a remark");
+  text_log(names(), [&printed](const std::string& line) { printed = line; })->note(kBegan, "a remark");
   EXPECT_EQ(printed, "   12.345679  - a remark");
 }
 
@@ -126,15 +125,15 @@ TEST(JsonLog, AFrameFromAnUnknownSenderHasNoMeaning) {
 
 TEST(JsonLog, ANoteHasItsTimeAndLine) {
   std::string printed;
-  JsonLog("pump", names(), [&printed](const std::string& line) {
+  json_log("pump", names(), [&printed](const std::string& line) {
     printed = line;
-  }).note(kBegan, "at \"9600\"\nbaud");
+  })->note(kBegan, "at \"9600\"\nbaud");
   EXPECT_EQ(printed, R"({"time":12.345678901,"line":"pump","note":"at \"9600\"\nbaud"})");
 }
 
 TEST(JsonLog, ALineNameThatIsNotUtf8StillGivesValidJson) {
   std::string printed;
-  JsonLog("p\xFFmp", names(), [&printed](const std::string& line) { printed = line; }).note(kBegan, "");
+  json_log("p\xFFmp", names(), [&printed](const std::string& line) { printed = line; })->note(kBegan, "");
   EXPECT_EQ(nlohmann::json::parse(printed)["line"], "p\xEF\xBF\xBDmp");
 }
 
