@@ -5,17 +5,14 @@
 namespace ex9000::sim {
 
 struct Bus::End final : BusEnd {
-  End(Bus& its_bus, Station& its_station, std::size_t its_index)
-      : bus(its_bus), station(its_station), index(its_index) {}
+  End(Bus& its_bus, std::size_t its_index) : bus(its_bus), index(its_index) {}
 
   void drive(bool on) override { bus.drive(*this, on); }
   void put(std::uint8_t byte, SerialMode mode) override {
-    const Levels right = levels_of(byte, mode.format);
-    bus.put(*this, byte, mode, right, right);
+    bus.put(*this, byte, mode, levels_of(byte, mode.format));
   }
   void put_with_wrong_parity(std::uint8_t byte, SerialMode mode) override {
-    const Levels right = levels_of(byte, mode.format);
-    bus.put(*this, byte, mode, right, with_wrong_parity(right, mode.format));
+    bus.put(*this, byte, mode, with_wrong_parity(levels_of(byte, mode.format), mode.format));
   }
   [[nodiscard]] VirtualTime takes(std::size_t bytes, SerialMode mode) const override {
     constexpr std::int64_t kBitNanoseconds = 1'000'000'000;
@@ -26,7 +23,6 @@ struct Bus::End final : BusEnd {
   void run_at(VirtualTime when) override { bus.due_times_.set(index, when); }
 
   Bus& bus;
-  Station& station;
   std::size_t index;
   bool driving = false;
 };
@@ -50,7 +46,7 @@ SerialMode Bus::on_the_wires(SerialMode mode) const {
 
 BusEnd& Bus::attach(Station& station) {
   receivers_.push_back({&station});
-  ends_.push_back(std::make_unique<End>(*this, station, due_times_.add()));
+  ends_.push_back(std::make_unique<End>(*this, due_times_.add()));
   return *ends_.back();
 }
 
@@ -61,7 +57,7 @@ void Bus::run_next() {
     run_wire();
   }
   if (due_times_.next() <= now) {
-    due_times_.run_due(now, [this](std::size_t station) { ends_[station]->station.run(); });
+    due_times_.run_due(now, [this](std::size_t station) { receivers_[station].station->run(); });
   }
 }
 
@@ -81,7 +77,7 @@ void Bus::drive(End& end, bool on) {
   const VirtualTime now = clock_.virtual_now();
   for (Wave& wave : waves_) {
     wave.collided = wave.collided || drivers_on_ > 1;
-    if (!on && wave.station == end.index && wave.cut_off == kNever && wave.end() > now) {
+    if (!on && wave.station == end.index && wave.cut_off == kNever && wave.end > now) {
       // The sender leaves the line idle for the rest of the byte, and the receivers sample the result.
       wave.collided = true;
       wave.cut_off = now;
@@ -93,13 +89,13 @@ void Bus::drive(End& end, bool on) {
   }
 }
 
-/// `right`: the correct levels of `byte`. `sent`: the levels that the station sends.
-void Bus::put(End& end, std::uint8_t byte, SerialMode mode, Levels right, Levels sent) {
+/// `sent`: the levels that the station sends, with right or wrong parity.
+void Bus::put(End& end, std::uint8_t byte, SerialMode mode, Levels sent) {
   Wave wave{clock_.virtual_now(), on_the_wires(mode), sent};
   if (disturbance_ != nullptr) {
-    wave.levels = disturbance_->disturbed({sent, mode, wave.end(), drivers_on_ > 1});
+    wave.levels = disturbance_->disturbed({sent, mode, wave.end, drivers_on_ > 1});
   }
-  wave.disturbed = wave.levels != right;
+  wave.disturbed = wave.levels != levels_of(byte, mode.format);
   if (wave.disturbed) {
     for (BusObserver* observer : observers_) {
       observer->changed(end.index, wave.levels);
@@ -114,8 +110,8 @@ void Bus::put(End& end, std::uint8_t byte, SerialMode mode, Levels right, Levels
   }
   waves_.push_back(wave);
   ++carried_;
-  next_byte_end_ = std::min(next_byte_end_, wave.end());
-  if (!wave.arrives_whole() || has_other_listeners(wave.mode)) {
+  next_byte_end_ = std::min(next_byte_end_, wave.end);
+  if (!wave.arrives_whole() || !all_hear(mode)) {
     begin_sampling();
   }
 }
@@ -129,7 +125,6 @@ void Bus::listen(End& end, SerialMode mode) {
   count_listener(receiver.mode, -1);
   count_listener(now, 1);
   receiver.mode = now;
-  sampling_ -= receiver.samples ? 1U : 0U;
   receiver.samples = false;
   receiver.sampler = UartSampler();
   receiver.sampler.skip_to(clock_.virtual_now());
@@ -143,9 +138,9 @@ void Bus::count_listener(SerialMode mode, int change) {
   }
 }
 
-bool Bus::has_other_listeners(SerialMode mode) const {
-  return listeners_.size() > 1 ||
-         (listeners_.size() == 1 && listeners_.begin()->first != std::pair(mode.baud, mode.format));
+bool Bus::all_hear(SerialMode mode) const {
+  const SerialMode now = on_the_wires(mode);
+  return listeners_.size() == listeners_.count({now.baud, now.format});
 }
 
 /// Returns whether the receiver has the mode of the byte, has listened since the start of the byte, and has
@@ -171,7 +166,6 @@ void Bus::begin_sampling() {
   for (Receiver& receiver : receivers_) {
     if (!receiver.samples && has_to_sample(receiver)) {
       receiver.samples = true;
-      ++sampling_;
       // The sampler begins at the start of the first byte that has not ended, or at its own position if that
       // is later. It does not have to sample older bytes: the receiver got them unchanged, has sampled them
       // already, or did not listen.
@@ -184,10 +178,7 @@ void Bus::begin_sampling() {
 void Bus::end_sampling() {
   next_sample_ = kNever;
   for (Receiver& receiver : receivers_) {
-    if (receiver.samples && !has_to_sample(receiver)) {
-      receiver.samples = false;
-      --sampling_;
-    }
+    receiver.samples = receiver.samples && has_to_sample(receiver);
     if (receiver.samples) {
       next_sample_ = std::min(next_sample_, receiver.sampler.next(receiver.mode, clock_.virtual_now()));
     }
@@ -195,7 +186,7 @@ void Bus::end_sampling() {
 }
 
 void Bus::run_wire() {
-  if (sampling_ != 0) {
+  if (next_sample_ != kNever) {
     run_samplers();
   }
   finish_bytes();
@@ -226,8 +217,8 @@ void Bus::finish_bytes() {
     if (wave.over) {
       continue;
     }
-    if (wave.end() > now) {
-      next_byte_end_ = std::min(next_byte_end_, wave.end());
+    if (wave.end > now) {
+      next_byte_end_ = std::min(next_byte_end_, wave.end);
       continue;
     }
     wave.over = true;
@@ -239,10 +230,7 @@ void Bus::finish_bytes() {
 }
 
 void Bus::deliver(const Wave& over) {
-  const VirtualTime now = clock_.virtual_now();
-  const bool has_second_stop_bit = over.nominal.format == LineFormat::k8N2;
-  const VirtualTime ends =
-      has_second_stop_bit ? over.start + ends_[over.station]->takes(1, over.nominal) : now;
+  const VirtualTime ends = over.start + ends_[over.station]->takes(1, over.nominal);
   for (BusObserver* observer : observers_) {
     observer->byte(over.station, over.byte, over.nominal, over.collided, over.start, ends);
   }
@@ -258,13 +246,13 @@ void Bus::deliver(const Wave& over) {
 
 /// Removes the bytes that have ended and that no sampler has to read.
 void Bus::forget_waves() {
-  if (sampling_ == 0 && !carries()) {
+  if (next_sample_ == kNever && !carries()) {
     waves_.clear();
     return;
   }
   const auto is_read = [this](const Wave& wave) {
     return std::any_of(receivers_.begin(), receivers_.end(), [&wave](const Receiver& receiver) {
-      return receiver.samples && receiver.sampler.position() < wave.end();
+      return receiver.samples && receiver.sampler.position() < wave.end;
     });
   };
   waves_.erase(std::remove_if(waves_.begin(), waves_.end(),

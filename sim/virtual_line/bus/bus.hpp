@@ -93,8 +93,6 @@ class Disturbance {
 /// wrong bytes. If several drivers are enabled at the same time, the level of the line is 0 while at least
 /// one of them sends a 0, and receivers sample the resulting levels.
 ///
-/// The clock jumps from event to event; this class does not depend on real time.
-///
 /// `times_faster` multiplies all nominal rates of the line. This factor does not change which stations
 /// understand each other.
 class Bus {
@@ -130,7 +128,7 @@ class Bus {
   /// Returns whether a byte is on the wires or a driver is enabled.
   [[nodiscard]] bool busy() const { return carries() || drivers_on_ != 0; }
   /// Returns whether all stations that listen have the rate and the parity of `mode`.
-  [[nodiscard]] bool all_hear(SerialMode mode) const { return !has_other_listeners(on_the_wires(mode)); }
+  [[nodiscard]] bool all_hear(SerialMode mode) const;
   VirtualClock& clock() { return clock_; }
 
  private:
@@ -148,12 +146,11 @@ class Bus {
   [[nodiscard]] std::uint32_t bit_rate(std::uint32_t baud) const;
   [[nodiscard]] SerialMode on_the_wires(SerialMode mode) const;
   void drive(End& end, bool on);
-  void put(End& end, std::uint8_t byte, SerialMode mode, Levels right, Levels sent);
+  void put(End& end, std::uint8_t byte, SerialMode mode, Levels sent);
   void listen(End& end, SerialMode mode);
   static bool has_heard_from_the_start(const Receiver& receiver, const Wave& wave);
   [[nodiscard]] bool has_to_sample(const Receiver& receiver) const;
   void count_listener(SerialMode mode, int change);
-  [[nodiscard]] bool has_other_listeners(SerialMode mode) const;
   void begin_sampling();
   void end_sampling();
   void run_wire();
@@ -173,9 +170,8 @@ class Bus {
   unsigned carried_ = 0;  ///< number of bytes on the wires
   unsigned drivers_on_ = 0;
   std::map<std::pair<std::uint32_t, LineFormat>, int> listeners_;  ///< number of receivers for each mode
-  unsigned sampling_ = 0;                                          ///< number of receivers that sample
   VirtualTime next_byte_end_ = kNever;
-  VirtualTime next_sample_ = kNever;
+  VirtualTime next_sample_ = kNever;  ///< not kNever while a receiver samples
 };
 
 }  // namespace ex9000::sim

@@ -23,15 +23,15 @@ class DueTimes {
   /// Replaces the due time of a station; kNever: the station has none.
   void set(std::size_t station, VirtualTime when) {
     times_[station] = when;
-    changed_[station / kBlock] = 1;
-    any_changed_ = true;
+    earliest_of_[station / kBlock] = kUnknown;
+    earliest_ = kUnknown;
     if (when <= running_) {
       next_to_run_ = std::min(next_to_run_, station);
     }
   }
   /// Returns the earliest due time; kNever if there is none.
   [[nodiscard]] VirtualTime next() const {
-    if (any_changed_) {
+    if (earliest_ == kUnknown) {
       search();
     }
     return earliest_;
@@ -47,29 +47,26 @@ class DueTimes {
       if (times_[station] <= now) {
         set(station, kNever);
         run(station);
-      } else if (station % kBlock == 0 && changed_[station / kBlock] == 0 &&
-                 earliest_of_[station / kBlock] > now) {
+      } else if (station % kBlock == 0 && earliest_of_[station / kBlock] > now) {
         next_to_run_ = station + kBlock;
       }
     }
-    running_ = kNoTime;
+    running_ = kNotRunning;
   }
 
  private:
   static constexpr std::size_t kBlock = 8;
-  static constexpr VirtualTime kNoTime = VirtualTime::min();
+  static constexpr VirtualTime kNotRunning = VirtualTime::min();
+  static constexpr VirtualTime kUnknown = VirtualTime::min();  ///< a due time has changed since the search
 
   void search() const;
 
   std::size_t stations_ = 0;
-  std::vector<VirtualTime> times_;  ///< whole blocks; kNever after the last station
-  VirtualTime running_ = kNoTime;   ///< the argument of `run_due` while it runs
-  std::size_t next_to_run_ = 0;     ///< no station before this one is due at `running_`
-  // Results of the last search, and the changes since that search.
-  mutable std::vector<VirtualTime> earliest_of_;  ///< the earliest due time of each block
-  mutable std::vector<unsigned char> changed_;    ///< for each block: 1 if a due time has changed
-  mutable VirtualTime earliest_ = kNever;
-  mutable bool any_changed_ = false;
+  std::vector<VirtualTime> times_;                ///< whole blocks; kNever after the last station
+  VirtualTime running_ = kNotRunning;             ///< the argument of `run_due` while it runs
+  std::size_t next_to_run_ = 0;                   ///< no station before this one is due at `running_`
+  mutable std::vector<VirtualTime> earliest_of_;  ///< the earliest due time of each block, or kUnknown
+  mutable VirtualTime earliest_ = kNever;         ///< the earliest due time, or kUnknown
 };
 
 }  // namespace ex9000::sim

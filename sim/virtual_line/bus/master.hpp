@@ -38,9 +38,7 @@ class Master final : public Station {
   /// Sets the rate and format. The receiver uses them immediately, and the sender uses them from the next
   /// byte on.
   void set_mode(SerialMode mode);
-  /// Sets the rate in bits per second and keeps the format.
   void set_baud(std::uint32_t baud) { set_mode({baud, mode_.format}); }
-  /// Sets the format and keeps the rate.
   void set_format(LineFormat format) { set_mode({mode_.baud, format}); }
 
   /// Sets a second function to call for each received byte. The master calls it before the `receive` of the
@@ -56,17 +54,17 @@ class Master final : public Station {
   void receive(std::uint8_t byte, ByteStatus status) override;
 
  private:
+  struct Waiting {
+    std::uint8_t byte;
+    bool damaged;
+  };
+
   VirtualClock& clock_;
   BusEnd& wire_;
   SerialMode mode_;
   Receive receive_;
   Receive also_receive_;
   std::function<void(SerialMode mode)> changed_;
-  struct Waiting {
-    std::uint8_t byte;
-    bool damaged;
-  };
-
   std::deque<Waiting> waiting_;
   std::uint64_t taken_ = 0;
   bool driving_ = false;

@@ -56,8 +56,6 @@ void SimulatedModule::follow_supply() {
   settle();
 }
 
-void SimulatedModule::reset() { restart(ResetReason::ResetPin); }
-
 void SimulatedModule::restart(ResetReason reason) {
   if (powered()) {
     stop();
@@ -86,16 +84,13 @@ void SimulatedModule::stop() {
 
 void SimulatedModule::set_init(bool asserted) {
   init_switch_.set(asserted);
-  if (powered()) {
-    turn();
-    settle();
-  }
+  react();
 }
 
 void SimulatedModule::set_input(unsigned channel, bool level) {
   if (inputs_.set(channel, level)) {
     edge(channel, level);
-    take_edges();
+    react();
   }
 }
 
@@ -105,17 +100,17 @@ void SimulatedModule::pulse_input(unsigned channel, std::uint32_t count) {
     edge(channel, !level);
     edge(channel, level);
     if (i % 1024 == 0) {
-      take_edges();
+      react();
     }
   }
-  take_edges();
+  react();
 }
 
-/// Makes the device process the edges. On a real board, the main loop does this at least once a tick.
-void SimulatedModule::take_edges() {
+/// Makes the device process INIT* and the edges. On a real board, the main loop does this at least once a
+/// tick.
+void SimulatedModule::react() {
   if (powered()) {
-    turn();
-    settle();
+    work();
   }
 }
 
@@ -147,8 +142,6 @@ void SimulatedModule::stop_tick() {
   mcu_->tick.stop();
   settle();
 }
-
-void SimulatedModule::store(const Settings& settings) { memory_.contents() = memory_image(model_, settings); }
 
 /// Returns a blank image for factory settings, because the memory of a factory-fresh module is blank (wire.md
 /// D8).
@@ -190,6 +183,7 @@ void SimulatedModule::run() {
   runs_at_ = kNever;
   if (next_without_silence_ > clock_.virtual_now()) {
     end_silence();  // only the silence timer can be due
+    work_or_wait();
     return;
   }
   if (mcu_->watchdog.has_expired()) {
@@ -199,9 +193,7 @@ void SimulatedModule::run() {
   }
   run_line();
   run_memory();
-  if (mcu_->silence_timer.fire()) {
-    mcu_->device.on_silence();
-  }
+  end_silence();
   run_timers();
   if (mcu_->device.has_work()) {
     turn();
@@ -213,7 +205,6 @@ void SimulatedModule::end_silence() {
   if (mcu_->silence_timer.fire()) {
     mcu_->device.on_silence();
   }
-  work_or_wait();
 }
 
 void SimulatedModule::run_line() {
@@ -255,8 +246,7 @@ void SimulatedModule::receive(std::uint8_t byte, ByteStatus status) {
 
 /// Runs the interrupt of the silence timer before the receive interrupt, see hal/one_shot_timer.hpp.
 void SimulatedModule::receive_after_silence(std::uint8_t byte, ByteStatus status) {
-  mcu_->silence_timer.fire();
-  mcu_->device.on_silence();
+  end_silence();
   receive(byte, status);
 }
 

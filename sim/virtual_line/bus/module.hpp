@@ -26,8 +26,7 @@
 
 namespace ex9000::sim {
 
-/// One module on a bus. Its supply is off at first. The functions of this class perform the actions of a
-/// user, for example switch the supply on, and cause faults.
+/// One module on a bus. Its supply is off at first.
 class SimulatedModule final : public Station {
  public:
   /// Attaches itself to `bus`. `model` is a row of kModels; `timing_at`: see Module.
@@ -44,10 +43,10 @@ class SimulatedModule final : public Station {
   /// the switch of the supply.
   void interrupt_supply(bool interrupted);
   [[nodiscard]] bool powered() const { return mcu_.has_value(); }
-  /// Returns whether the switch of the supply is on. A supply failure does not change the switch.
+  /// Returns whether the switch of the supply is on.
   [[nodiscard]] bool switched_on() const { return switched_on_; }
   /// Resets the module without loss of power. Has no effect without power.
-  void reset();
+  void reset() { restart(ResetReason::ResetPin); }
   /// Connects INIT* to GND or releases it.
   void set_init(bool asserted);
   [[nodiscard]] bool init_asserted() const { return init_switch_.asserted(); }
@@ -75,7 +74,7 @@ class SimulatedModule final : public Station {
   }
   /// Replaces the content of the memory with the `memory_image` of `settings`. The module loads these
   /// settings at its next start.
-  void store(const Settings& settings);
+  void store(const Settings& settings) { memory_.contents() = memory_image(model_, settings); }
   /// Returns an image of the whole memory that contains `settings`; a blank image for factory settings.
   static std::vector<std::uint8_t> memory_image(const Model& model, const Settings& settings);
 
@@ -158,7 +157,7 @@ class SimulatedModule final : public Station {
   void stop();
   void turn();
   void edge(unsigned channel, bool level);
-  void take_edges();
+  void react();
 
   VirtualClock& clock_;
   const Model& model_;

@@ -15,10 +15,10 @@ void ModuleWire::drive(bool on) {
   drives_ = on;
   if (on) {
     ++reply_;
-    fate_ = begins_ ? begins_(reply_) : ReplyFate();
-    if (!fate_.lost && late_.size() > kMostLate) {
-      fate_.lost = true;
-      tell(reply_, false);
+    fate_ = begins_(reply_);
+    fate_.lost = fate_.lost || late_.size() > kMostLate;
+    if (fate_.lost) {
+      on_the_wires_(reply_, false);
     }
     forced_for_reply_ = forced_;
     delay_ = fate_.late_by;
@@ -27,7 +27,7 @@ void ModuleWire::drive(bool on) {
     }
   }
   hand_on(on ? What::On : What::Off, 0, {});
-  if (!on && ends_) {
+  if (!on) {
     ends_();
   }
 }
@@ -39,49 +39,44 @@ void ModuleWire::hand_on(What what, std::uint8_t byte, SerialMode mode) {
     return;
   }
   const VirtualTime now = clock_.virtual_now();
+  const Event event{now, now + delay_, what, byte, mode, reply_, fate_};
   if (delay_ == VirtualTime(0) && late_.empty()) {
-    carry_out(what, byte, mode, reply_);
+    carry_out(event);
     driving_late_ = driving_late_ && what != What::Off;  // `run` may have begun this reply as a late one
   } else {
-    late_.push_back({now, now + delay_, what, byte, mode, reply_, fate_});
+    late_.push_back(event);
   }
 }
 
-void ModuleWire::tell(std::uint64_t reply, bool on) const {
-  if (on_the_wires_) {
-    on_the_wires_(reply, on);
-  }
-}
-
-void ModuleWire::carry_out(What what, std::uint8_t byte, SerialMode mode, std::uint64_t reply) {
-  switch (what) {
+void ModuleWire::carry_out(const Event& event) {
+  switch (event.what) {
     case What::On:
-      tell(reply, true);
+      on_the_wires_(event.reply, true);
       wire_.drive(true);
       break;
     case What::Byte:
-      wire_.put(byte, mode);
+      wire_.put(event.byte, event.mode);
       break;
     case What::Off:
       wire_.drive(false);
-      tell(reply, false);
+      on_the_wires_(event.reply, false);
       break;
   }
 }
 
 void ModuleWire::run() {
   while (!late_.empty() && late_.front().when <= clock_.virtual_now()) {
-    const Late due = late_.front();
+    const Event due = late_.front();
     late_.pop_front();
     driving_late_ = due.what != What::Off;
-    carry_out(due.what, due.byte, due.mode, due.reply);
+    carry_out(due);
   }
 }
 
 void ModuleWire::end_delays(std::optional<std::size_t> fault) {
   VirtualTime free = clock_.virtual_now();  // when the replies before the next one have ended
   std::optional<VirtualTime> delay;         // nullopt: of a reply that has begun on the wires
-  for (Late& late : late_) {
+  for (Event& late : late_) {
     if (late.what == What::On) {
       if (fault.value_or(late.fate.delayed_by) == late.fate.delayed_by) {
         // Keeps the time between this reply and the one before.
@@ -101,9 +96,9 @@ void ModuleWire::abort() {
   if (std::exchange(driving_late_, false)) {
     wire_.drive(false);
   }
-  for (const Late& never : std::exchange(late_, {})) {
+  for (const Event& never : std::exchange(late_, {})) {
     if (never.what == What::Off) {
-      tell(never.reply, false);
+      on_the_wires_(never.reply, false);
     }
   }
 }

@@ -36,8 +36,8 @@ class ModuleWire final : public Wire {
   /// Called when the UART disables the driver, even if the reply is lost or is not on the wires yet.
   using Ends = std::function<void()>;
   /// Called with `on` true before the driver is enabled on the wires for a reply. Called with false after the
-  /// driver is disabled, or when `abort` drops the reply. `reply` is the same number as for Begins. This
-  /// function is not called for replies that are lost because Begins has returned this.
+  /// driver is disabled, when `abort` drops the reply, or after Begins if the reply is lost. `reply` is the
+  /// same number as for Begins.
   using OnTheWires = std::function<void(std::uint64_t reply, bool on)>;
   void watch(Begins begins, Ends ends, OnTheWires on_the_wires);
   /// Makes the UART run at `baud` regardless of the firmware's setting; 0: the firmware's setting applies.
@@ -66,7 +66,7 @@ class ModuleWire final : public Wire {
 
  private:
   enum class What { On, Byte, Off };
-  struct Late {
+  struct Event {
     VirtualTime sent;  ///< time at which the UART did this
     VirtualTime when;  ///< time at which it happens on the wires
     What what;
@@ -81,8 +81,7 @@ class ModuleWire final : public Wire {
   static constexpr std::size_t kMostLate = 65'536;
 
   void hand_on(What what, std::uint8_t byte, SerialMode mode);
-  void carry_out(What what, std::uint8_t byte, SerialMode mode, std::uint64_t reply);
-  void tell(std::uint64_t reply, bool on) const;
+  void carry_out(const Event& event);
   [[nodiscard]] SerialMode reply_mode(SerialMode mode) const {
     return with_rate(drives_ ? forced_for_reply_ : forced_, mode);
   }
@@ -92,17 +91,17 @@ class ModuleWire final : public Wire {
 
   const VirtualClock& clock_;
   Wire& wire_;
-  Begins begins_;
-  Ends ends_;
-  OnTheWires on_the_wires_;
+  Begins begins_ = [](std::uint64_t /*reply*/) { return ReplyFate(); };
+  Ends ends_ = [] {};
+  OnTheWires on_the_wires_ = [](std::uint64_t /*reply*/, bool /*on*/) {};
   ReplyFate fate_;
-  VirtualTime delay_{
-      0};  ///< that of the reply in progress; longer than `fate_.late_by` if a late reply precedes
+  /// The delay of the reply that the UART sends; longer than `fate_.late_by` if a late reply precedes.
+  VirtualTime delay_{0};
   std::uint64_t reply_ = 0;  ///< number of the reply that the UART sends, or has sent last
   std::uint32_t forced_ = 0;
   std::uint32_t forced_for_reply_ = 0;  ///< the forced rate for the whole reply
   bool drives_ = false;                 ///< the UART has enabled its driver
-  std::deque<Late> late_;
+  std::deque<Event> late_;              ///< the events that are not on the wires yet
   bool driving_late_ = false;
 };
 

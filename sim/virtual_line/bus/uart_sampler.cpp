@@ -16,12 +16,9 @@ bool level_of(const Waves& waves, VirtualTime at) {
 }
 
 /// Returns the first time from `from` on and before `until` at which the line has `level`; nullopt if there
-/// is none.
+/// is none. `from` must be before `until`.
 std::optional<VirtualTime> find_level(const Waves& waves, bool level, VirtualTime from, VirtualTime until) {
-  if (from < until && level_of(waves, from) == level) {
-    return from;
-  }
-  std::vector<VirtualTime> boundaries;
+  std::vector<VirtualTime> boundaries{from};
   for (const Wave& wave : waves) {
     for (unsigned bit = 0; bit <= wave.bits(); ++bit) {
       if (wave.boundary(bit) > from && wave.boundary(bit) < until) {
@@ -47,7 +44,7 @@ VirtualTime end_of_byte(VirtualTime start, SerialMode mode) {
 VirtualTime Wave::boundary(unsigned index) const { return start + VirtualTime(index * kSecond / mode.baud); }
 
 bool Wave::level(VirtualTime at) const {
-  if (at < start || at >= end() || at >= cut_off) {
+  if (at < start || at >= end || at >= cut_off) {
     return true;
   }
   unsigned bit = 0;

@@ -39,26 +39,20 @@ constexpr bool has_odd_number_of_ones(std::uint8_t byte) {
   return odd;
 }
 
+/// The parity bit, if the format has one.
+constexpr unsigned kParityBit = 1U << 9U;
+
+/// Returns the bit of the first stop bit.
+constexpr unsigned stop_bit(LineFormat format) { return 1U << (bits_received(format) - 1U); }
+
 constexpr Levels levels_of(std::uint8_t byte, LineFormat format = LineFormat::k8N1) {
-  constexpr unsigned kNinthBit = 1U << 9U;
-  constexpr unsigned kTenthBit = 1U << 10U;
-  const unsigned start_and_data = unsigned{byte} << 1U;
-  if (!has_parity(format)) {
-    return static_cast<Levels>(kNinthBit | start_and_data);
-  }
-  const bool parity = has_odd_number_of_ones(byte) == (format == LineFormat::k8E1);
-  return static_cast<Levels>(kTenthBit | (parity ? kNinthBit : 0U) | start_and_data);
+  const bool parity = has_parity(format) && has_odd_number_of_ones(byte) == (format == LineFormat::k8E1);
+  return static_cast<Levels>(stop_bit(format) | (parity ? kParityBit : 0U) | unsigned{byte} << 1U);
 }
 
 /// Returns `levels` with the parity bit inverted. Levels without a parity bit stay the same.
 constexpr Levels with_wrong_parity(Levels levels, LineFormat format) {
-  constexpr unsigned kParityBit = 1U << 9U;
   return static_cast<Levels>(has_parity(format) ? levels ^ kParityBit : levels);
-}
-
-/// Returns whether the first stop bit in `levels` is an idle level.
-constexpr bool has_stop_bit(Levels levels, LineFormat format) {
-  return (levels >> (bits_received(format) - 1U) & 1U) != 0;
 }
 
 /// Returns the data bits in `levels`.
@@ -67,7 +61,7 @@ constexpr std::uint8_t byte_of(Levels levels) { return static_cast<std::uint8_t>
 /// Returns what a UART reports for a character that has a start bit: Break if all bits are 0, FramingError if
 /// the first stop bit is missing, ParityError if the parity is wrong, otherwise Good.
 constexpr ByteStatus status_of(Levels levels, LineFormat format) {
-  if (!has_stop_bit(levels, format)) {
+  if ((levels & stop_bit(format)) == 0) {
     return levels == 0 ? ByteStatus::Break : ByteStatus::FramingError;
   }
   const bool right = !has_parity(format) || levels == levels_of(byte_of(levels), format);
@@ -79,13 +73,11 @@ constexpr ByteStatus status_of(Levels levels, LineFormat format) {
 struct Wave {
   /// `its_mode`: the bit rate on the wires, not 0, and the format as receivers read it.
   Wave(VirtualTime its_start, SerialMode its_mode, Levels its_levels)
-      : start(its_start), mode(its_mode), levels(its_levels), ends(boundary(bits())) {}
+      : start(its_start), mode(its_mode), levels(its_levels), end(boundary(bits())) {}
 
   [[nodiscard]] unsigned bits() const { return bits_received(mode.format); }
-  /// Returns the time at which bit `index` begins. If `index` is `bits()`, this is the end of the first stop
-  /// bit.
+  /// Returns the time at which bit `index` begins, or the end of the first stop bit if `index` is `bits()`.
   [[nodiscard]] VirtualTime boundary(unsigned index) const;
-  [[nodiscard]] VirtualTime end() const { return ends; }
   /// Returns the level at the time `at`: true if idle. The level is idle before the byte, after its first
   /// stop bit, and from `cut_off` on.
   [[nodiscard]] bool level(VirtualTime at) const;
@@ -93,7 +85,7 @@ struct Wave {
   VirtualTime start;
   SerialMode mode;
   Levels levels;
-  VirtualTime ends;
+  VirtualTime end;  ///< the end of the first stop bit
   /// Time at which the driver was disabled during the byte; kNever: it was not.
   VirtualTime cut_off = hal::doubles::kNever;
   std::size_t station = 0;

@@ -15,27 +15,25 @@ void Echo::wake_at(VirtualTime when) {
 }
 
 void Echo::receive(std::uint8_t byte, ByteStatus /*status*/) {
-  if (!driving_ && heard_.size() < kMostHeard) {
+  if (sent_ == 0 && heard_.size() < kMostHeard) {
     heard_.push_back(byte);
-    wake_at(clock_.virtual_now() + delay_);
+    wake_at(bus_.clock().virtual_now() + delay_);
   }
 }
 
 void Echo::run() {
-  if (!driving_ && bus_.carries()) {
+  if (sent_ == 0 && bus_.carries()) {
     // The echo waits for the byte that is on the wires, because `receive` is called only after the first stop
     // bit.
-    wake_at(clock_.virtual_now() + wire_.takes(1, mode_));
+    wake_at(bus_.clock().virtual_now() + wire_.takes(1, mode_));
     return;
   }
-  if (!driving_) {
-    driving_ = true;
-    began_ = clock_.virtual_now();
+  if (sent_ == 0) {
+    began_ = bus_.clock().virtual_now();
     sends_in_ = mode_;
     wire_.drive(true);
   }
   if (sent_ == heard_.size()) {
-    driving_ = false;
     heard_.clear();
     sent_ = 0;
     wake_at(kNever);

@@ -12,7 +12,7 @@ namespace ex9000::sim {
 class Echo final : public Station {
  public:
   /// Attaches itself to `bus`; the echo is off at first. `mode` is the present mode of the line.
-  Echo(Bus& bus, SerialMode mode) : bus_(bus), clock_(bus.clock()), wire_(bus.attach(*this)), mode_(mode) {}
+  Echo(Bus& bus, SerialMode mode) : bus_(bus), wire_(bus.attach(*this)), mode_(mode) {}
   Echo(const Echo&) = delete;
   Echo& operator=(const Echo&) = delete;
 
@@ -41,16 +41,14 @@ class Echo final : public Station {
   /// The maximum number of bytes in one transmission of the echo. Further received bytes are ignored.
   static constexpr std::size_t kMostHeard = 1024;
 
-  const Bus& bus_;
-  VirtualClock& clock_;
+  Bus& bus_;
   BusEnd& wire_;
   SerialMode mode_;
   bool on_ = false;
   SerialMode sends_in_;  ///< mode of the present transmission, from its first byte to its last
   VirtualTime delay_{0};
   std::vector<std::uint8_t> heard_;
-  std::size_t sent_ = 0;
-  bool driving_ = false;
+  std::size_t sent_ = 0;  ///< number of bytes of `heard_` sent so far; 0: the driver is off
   VirtualTime began_{0};
   VirtualTime next_ = kNever;
 

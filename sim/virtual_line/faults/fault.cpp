@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <iomanip>
 #include <limits>
 #include <sstream>
@@ -15,6 +16,9 @@ namespace ex9000::sim {
 
 namespace {
 
+/// The duration of a power cut without `for`.
+constexpr VirtualTime kPowerCutLasts = std::chrono::seconds(1);
+
 std::uint64_t parse_count(const std::string& word) {
   return parse_whole_number(word, 1, std::numeric_limits<std::uint64_t>::max());
 }
@@ -25,11 +29,10 @@ struct Row {
   std::string_view usual;  ///< a typical value, a typical schedule, or both; may be empty
   Trouble trouble;
   bool of_a_module;
-  void (*take)(Fault& fault, const std::string& word);
+  void (*take)(Fault& fault, const std::string& word);  ///< parses the value; null if there is none
   std::string_view does;
 };
 
-void take_nothing(Fault& /*fault*/, const std::string& /*word*/) {}
 void take_probability(Fault& fault, const std::string& word) { fault.probability = parse_probability(word); }
 void take_time(Fault& fault, const std::string& word) { fault.time = parse_time(word); }
 /// Requires at least 1 ms, because an echo with a shorter delay could keep an instant line busy all the time.
@@ -55,16 +58,15 @@ constexpr std::array<Row, 13> kRows{{
      "sends all received bytes again after a pause of this length"},
     {"foreign-traffic", "HEX", "0501000000083C48 every 1s", Trouble::ForeignTraffic, false, take_bytes,
      "sends these bytes, as another device would"},
-    {"lost-reply", "", "every 3rd reply", Trouble::LostReply, true, take_nothing, "drops the reply"},
+    {"lost-reply", "", "every 3rd reply", Trouble::LostReply, true, nullptr, "drops the reply"},
     {"late-reply", "TIME", "50ms", Trouble::LateReply, true, take_time, "delays the reply"},
     {"late-driver", "TIME", "2ms", Trouble::LateDriver, true, take_time,
      "disables the driver later by this time"},
     {"wrong-rate", "RATE", "19200", Trouble::WrongRate, true, take_rate,
      "makes the module receive and send at this rate"},
-    {"gone", "", "", Trouble::Gone, true, take_nothing, "switches the supply off until the fault ends"},
-    {"power-cut", "", "every 10s", Trouble::PowerCut, true, take_nothing,
-     "cuts the supply, for 1s by default"},
-    {"hang", "", "every 10s", Trouble::Hang, true, take_nothing,
+    {"gone", "", "", Trouble::Gone, true, nullptr, "switches the supply off until the fault ends"},
+    {"power-cut", "", "every 10s", Trouble::PowerCut, true, nullptr, "cuts the supply, for 1s by default"},
+    {"hang", "", "every 10s", Trouble::Hang, true, nullptr,
      "stops the main loop until the module watchdog resets the module"},
 }};
 
@@ -92,10 +94,11 @@ std::optional<std::uint64_t> ordinal(const std::string& word) {
   return value == std::uint64_t{0} ? std::nullopt : value;
 }
 
-/// Parses the words of a schedule one after the other.
+/// Parses the words of a schedule, from the word at the position `first` on. `words` must outlive this
+/// object.
 class ScheduleReader {
  public:
-  explicit ScheduleReader(Words words) : words_(std::move(words)) {}
+  ScheduleReader(const Words& words, std::size_t first) : words_(words), at_(first) {}
 
   Schedule read() {
     while (!done()) {
@@ -169,8 +172,8 @@ class ScheduleReader {
 
   [[nodiscard]] bool done() const { return at_ == words_.size(); }
 
-  Words words_;
-  std::size_t at_ = 0;
+  const Words& words_;
+  std::size_t at_;
   Schedule schedule_;
 };
 
@@ -178,23 +181,22 @@ class ScheduleReader {
 /// and a duration that has no effect.
 void check(const Fault& fault) {
   const Schedule& schedule = fault.schedule;
-  const bool lasting = fault.trouble != Trouble::ForeignTraffic && fault.trouble != Trouble::Hang &&
-                       fault.trouble != Trouble::PowerCut;
-  if (schedule.when == Schedule::When::EveryTime && lasting && !schedule.lasts) {
+  const bool is_periodic = schedule.when == Schedule::When::EveryTime;
+  const bool is_a_moment = fault.trouble == Trouble::ForeignTraffic || fault.trouble == Trouble::Hang;
+  const bool is_a_power_cut = fault.trouble == Trouble::PowerCut;
+  const bool outlasts_a_reply = fault.trouble == Trouble::Gone || fault.trouble == Trouble::WrongRate;
+  const bool requires_end =
+      (is_periodic && !is_a_moment && !is_a_power_cut) || (schedule.of_replies() && outlasts_a_reply);
+  if (requires_end && !schedule.lasts) {
     fail("has no end; add 'for TIME'");
   }
-  if (schedule.when == Schedule::When::EveryTime && schedule.lasts && *schedule.lasts >= schedule.time) {
+  if (is_periodic && schedule.lasts && *schedule.lasts >= schedule.time) {
     fail("'for' is not shorter than the period; shorten it");
   }
-  if (schedule.when == Schedule::When::EveryTime && !schedule.lasts && fault.trouble == Trouble::PowerCut &&
-      schedule.time <= kPowerCutLasts) {
+  if (is_periodic && !schedule.lasts && is_a_power_cut && schedule.time <= kPowerCutLasts) {
     fail("the power cut lasts 1s, which is not shorter than the period; add 'for TIME'");
   }
-  if (schedule.of_replies() && (fault.trouble == Trouble::Gone || fault.trouble == Trouble::WrongRate) &&
-      !schedule.lasts) {
-    fail("has no end; add 'for TIME'");
-  }
-  if (schedule.lasts && (fault.trouble == Trouble::ForeignTraffic || fault.trouble == Trouble::Hang)) {
+  if (schedule.lasts && is_a_moment) {
     fail("'for': this fault has no duration; leave it out");
   }
 }
@@ -207,7 +209,7 @@ bool concerns_a_module(Trouble trouble) {
 }
 
 Fault parse_fault(const std::string& text) {
-  Words words = words_of(text);
+  const Words words = words_of(text);
   if (words.empty()) {
     fail("the fault is empty; expected one of " + names_of(kRows));
   }
@@ -217,15 +219,17 @@ Fault parse_fault(const std::string& text) {
   with_place(fault.text + ": ", [&] {
     fault.trouble = row.trouble;
     std::size_t used = 1;
-    if (!row.value.empty()) {
+    if (row.take != nullptr) {
       if (words.size() == 1) {
         fail("has no value; add " + std::string(row.value) + " after it");
       }
       row.take(fault, words[used++]);
     }
-    fault.schedule =
-        ScheduleReader(Words(words.begin() + static_cast<std::ptrdiff_t>(used), words.end())).read();
+    fault.schedule = ScheduleReader(words, used).read();
     check(fault);
+    if (fault.trouble == Trouble::PowerCut && !fault.schedule.lasts) {
+      fault.schedule.lasts = kPowerCutLasts;
+    }
   });
   return fault;
 }

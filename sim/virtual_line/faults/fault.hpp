@@ -7,7 +7,6 @@
 //   power-cut after 3 writes
 #pragma once
 
-#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -35,9 +34,6 @@ enum class Trouble {
   Hang,
 };
 
-/// The duration of a power cut without `for`.
-inline constexpr VirtualTime kPowerCutLasts = std::chrono::seconds(1);
-
 /// When a fault occurs, that is, takes effect, and how long the fault lasts.
 struct Schedule {
   enum class When { Always, At, EveryTime, EveryReply, Probably, AfterWrites };
@@ -47,8 +43,8 @@ struct Schedule {
   std::uint64_t count = 1;  ///< EveryReply: 10 means every 10th reply; AfterWrites: number of writes
   double probability = 0;   ///< Probably: the probability for each reply
   /// How long the fault lasts after it begins. A hang and foreign traffic have no duration. For the others,
-  /// nullopt means: a power cut lasts kPowerCutLasts, another fault that depends on replies lasts until the
-  /// end of the reply, and any other fault is permanent.
+  /// nullopt means: a fault that depends on replies lasts until the end of the reply, and any other fault is
+  /// permanent. A power cut always has a duration.
   std::optional<VirtualTime> lasts;
 
   [[nodiscard]] bool of_replies() const { return when == When::EveryReply || when == When::Probably; }

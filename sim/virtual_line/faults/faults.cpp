@@ -24,9 +24,6 @@ bool is_noise(Trouble trouble) {
          trouble == Trouble::InsertedBytes || trouble == Trouble::StrayZeros;
 }
 
-/// Returns whether a fault of this kind has no duration.
-bool is_a_moment(Trouble trouble) { return trouble == Trouble::ForeignTraffic || trouble == Trouble::Hang; }
-
 }  // namespace
 
 Faults::Faults(Bus& bus, Master& master, Modules& modules, std::uint64_t seed, Notice notice)
@@ -35,8 +32,7 @@ Faults::Faults(Bus& bus, Master& master, Modules& modules, std::uint64_t seed, N
       master_(master),
       modules_(modules),
       notice_(std::move(notice)),
-      chance_(seed),
-      replies_(modules.size()) {
+      chance_(seed) {
   for (std::size_t i = 0; i < modules_.size(); ++i) {
     modules_[i]->watch_replies([this, i](std::uint64_t reply) { return reply_begins(i, reply); },
                                [this, i] { reply_ends(i); },
@@ -53,7 +49,6 @@ std::size_t Faults::add(const Fault& fault) {
   const VirtualTime now = bus_.clock().virtual_now();
   const Schedule& schedule = fault.schedule;
   Armed armed;
-  armed.number = numbers_ + 1;
   armed.fault = fault;
   if (schedule.when == When::Always) {
     armed.begins = now;
@@ -67,10 +62,10 @@ std::size_t Faults::add(const Fault& fault) {
     armed.begins = now + schedule.time;
   }
   prepare(fault.trouble);
-  ++numbers_;
+  armed.number = ++numbers_;
   armed_.push_back(armed);
-  act();
-  return numbers_;
+  run();
+  return armed.number;
 }
 
 /// If a fault of this kind requires a station that is not attached yet, attaches this station to the bus.
@@ -93,24 +88,22 @@ bool Faults::remove(std::size_t number) {
     return false;
   }
   armed_.erase(found);
-  end_reply_delays(number);
-  change();
-  act();
+  end_effects(number);
   return true;
 }
 
 void Faults::remove_all() {
   armed_.clear();
-  end_reply_delays(std::nullopt);
-  change();
-  act();
+  end_effects(std::nullopt);
 }
 
-/// Ends the delays of the replies that this fault makes late, or of all replies if `fault` is nullopt.
-void Faults::end_reply_delays(std::optional<std::size_t> fault) {
+/// Ends the effects of the removed fault with this number, or of all faults if `removed` is nullopt.
+void Faults::end_effects(std::optional<std::size_t> removed) {
   for (const auto& module : modules_) {
-    module->end_reply_delays(fault);
+    module->end_reply_delays(removed);
   }
+  change();
+  run();
 }
 
 std::vector<Faults::Info> Faults::list() const {
@@ -140,10 +133,8 @@ VirtualTime Faults::next() const {
   return next;
 }
 
-void Faults::run() { act(); }
-
 /// Processes everything that is due: ends occurrences first, then begins new ones, then updates the effects.
-void Faults::act() {
+void Faults::run() {
   const VirtualTime now = bus_.clock().virtual_now();
   for (Armed& armed : armed_) {
     end_occurrences(armed, [now](const Occurrence& occurrence) { return occurrence.ends <= now; });
@@ -152,7 +143,7 @@ void Faults::act() {
     if (armed.begins <= now) {
       armed.begins =
           armed.fault.schedule.when == When::EveryTime ? armed.begins + armed.fault.schedule.time : kNever;
-      begin(armed, std::nullopt);
+      begin(armed);
     }
   }
   if (changed_) {
@@ -169,36 +160,31 @@ void Faults::change() {
   end_.run_at(bus_.clock().virtual_now());
 }
 
-/// Begins an occurrence. A module may cause this call in the middle of an action. This function therefore
-/// does not change any module; the next call of `act` changes the modules.
-void Faults::begin(Armed& armed, std::optional<std::size_t> reply_of) {
+/// Begins an occurrence. `reply` of the module `reply_of` has triggered it; nullopt: no reply has. A module
+/// may cause this call in the middle of an action. This function therefore does not change any module; the
+/// next call of `run` changes the modules.
+void Faults::begin(Armed& armed, std::optional<std::size_t> reply_of, std::uint64_t reply) {
   const Fault& fault = armed.fault;
   ++armed.occurrences_so_far;
   change();
   say(armed, "occurs");
   if (fault.trouble == Trouble::ForeignTraffic) {
     to_say_.push_back(fault.bytes);
+    return;
   }
   if (fault.trouble == Trouble::Hang) {
     for (std::size_t i = 0; i < modules_.size(); ++i) {
-      // An occurrence that a reply triggered affects only the sender of the reply. Any other occurrence
-      // affects all modules of the fault.
       if (is_of(fault, i) && reply_of.value_or(i) == i) {
         hanging_.push_back(i);
       }
     }
-  }
-  if (is_a_moment(fault.trouble)) {
     return;
-  }
-  auto lasts = fault.schedule.lasts;
-  if (!lasts && fault.trouble == Trouble::PowerCut) {
-    lasts = kPowerCutLasts;
   }
   if (reply_of && is_noise(fault.trouble)) {
-    armed.occurrences.push_back({reply_of, kNever, replies_[*reply_of], true});
+    armed.occurrences.push_back({reply_of, kNever, reply, true});
     return;
   }
+  const auto lasts = fault.schedule.lasts;
   const VirtualTime ends = lasts ? bus_.clock().virtual_now() + *lasts : kNever;
   for (Occurrence& known : armed.occurrences) {
     if (known.reply_of == reply_of) {
@@ -240,21 +226,7 @@ void Faults::say(const Armed& armed, const std::string& what) const {
   }
 }
 
-/// Removes the earlier occurrences that replies of the same module triggered, because the latest occurrence
-/// ends last.
-void Faults::forget_others_of(Armed& armed, const Occurrence& latest) {
-  const Occurrence kept = latest;
-  auto& occurrences = armed.occurrences;
-  occurrences.erase(std::remove_if(occurrences.begin(), occurrences.end(),
-                                   [&kept](const Occurrence& occurrence) {
-                                     return occurrence.reply_of == kept.reply_of && !occurrence.waits &&
-                                            occurrence.reply != kept.reply;
-                                   }),
-                    occurrences.end());
-}
-
 ReplyFate Faults::reply_begins(std::size_t module, std::uint64_t reply) {
-  replies_[module] = reply;
   for (Armed& armed : armed_) {
     const Schedule& schedule = armed.fault.schedule;
     if (!schedule.of_replies() || !is_of(armed.fault, module)) {
@@ -263,17 +235,11 @@ ReplyFate Faults::reply_begins(std::size_t module, std::uint64_t reply) {
     const bool occurs = schedule.when == When::Probably ? chance_.happens(schedule.probability)
                                                         : ++armed.counted % schedule.count == 0;
     if (occurs) {
-      begin(armed, module);
+      begin(armed, module, reply);
     }
-  }
-  if (changed_) {
-    set_late_drivers();
   }
   ReplyFate fate;
   fate.lost = affected_by(Trouble::LostReply, module);
-  if (fate.lost) {
-    reply_on_the_wires(module, reply, false);
-  }
   if (const Armed* late = active(Trouble::LateReply, module)) {
     fate.late_by = late->fault.time;
     fate.delayed_by = late->number;
@@ -306,17 +272,20 @@ void Faults::reply_on_the_wires(std::size_t module, std::uint64_t reply, bool on
       end_occurrences(armed, of_it);
       continue;
     }
-    const auto occurrence = std::find_if(armed.occurrences.begin(), armed.occurrences.end(), of_it);
-    if (occurrence != armed.occurrences.end()) {
-      occurrence->waits = false;
-      if (const auto lasts = armed.fault.schedule.lasts) {
-        occurrence->ends = bus_.clock().virtual_now() + *lasts;
-        forget_others_of(armed, *occurrence);
-      }
+    const auto begun = std::find_if(armed.occurrences.begin(), armed.occurrences.end(), of_it);
+    if (begun == armed.occurrences.end()) {
+      continue;
     }
-  }
-  if (on) {
-    set_noise();
+    begun->waits = false;
+    change();
+    if (const auto lasts = armed.fault.schedule.lasts) {
+      begun->ends = bus_.clock().virtual_now() + *lasts;
+      // Earlier replies of the module may have triggered occurrences that are in progress. This one ends
+      // last.
+      end_occurrences(armed, [=](const Occurrence& occurrence) {
+        return occurrence.reply_of == module && occurrence.reply != reply && !occurrence.waits;
+      });
+    }
   }
 }
 
@@ -325,13 +294,12 @@ void Faults::written(std::size_t module) {
     const Schedule& schedule = armed.fault.schedule;
     if (schedule.when == When::AfterWrites && is_of(armed.fault, module) &&
         ++armed.counted == schedule.count) {
-      begin(armed, std::nullopt);
+      begin(armed);
     }
   }
 }
 
-/// Returns a fault of this kind that affects the module at present, or null. If a reply triggered an
-/// occurrence, the occurrence affects only the module that sent the reply.
+/// Returns a fault of this kind that affects the module at present, or null.
 const Faults::Armed* Faults::active(Trouble trouble, std::size_t module) const {
   for (const Armed& armed : armed_) {
     if (armed.fault.trouble == trouble && armed.occurs_at(module)) {
@@ -341,42 +309,24 @@ const Faults::Armed* Faults::active(Trouble trouble, std::size_t module) const {
   return nullptr;
 }
 
-const Fault* Faults::active_on_the_line(Trouble trouble) const {
-  for (const Armed& armed : armed_) {
-    if (armed.in_progress() != 0 && armed.fault.trouble == trouble) {
-      return &armed.fault;
-    }
-  }
-  return nullptr;
-}
-
 void Faults::take_effect() {
-  set_powers();
   for (std::size_t i = 0; i < modules_.size(); ++i) {
+    modules_[i]->interrupt_supply(affected_by(Trouble::Gone, i) || affected_by(Trouble::PowerCut, i));
     const Armed* const wrong = active(Trouble::WrongRate, i);
     modules_[i]->force_rate(wrong == nullptr ? 0 : wrong->fault.baud);
+    const Armed* const late = active(Trouble::LateDriver, i);
+    modules_[i]->release_driver_late(late == nullptr ? VirtualTime(0) : late->fault.time);
   }
-  set_late_drivers();
   for (const std::size_t module : std::exchange(hanging_, {})) {
     modules_[module]->hang();
   }
   set_noise();
   set_echo();
   for (const auto& bytes : std::exchange(to_say_, {})) {
-    say_foreign(bytes);
-  }
-}
-
-void Faults::set_powers() {
-  for (std::size_t i = 0; i < modules_.size(); ++i) {
-    modules_[i]->interrupt_supply(affected_by(Trouble::Gone, i) || affected_by(Trouble::PowerCut, i));
-  }
-}
-
-void Faults::set_late_drivers() {
-  for (std::size_t i = 0; i < modules_.size(); ++i) {
-    const Armed* const late = active(Trouble::LateDriver, i);
-    modules_[i]->release_driver_late(late == nullptr ? VirtualTime(0) : late->fault.time);
+    stranger_->set_mode(master_.mode());
+    if (stranger_->waiting() < kMostForeign) {
+      stranger_->send(bytes.data(), bytes.size());
+    }
   }
 }
 
@@ -392,32 +342,25 @@ double Faults::rate_of(Trouble trouble) const {
 }
 
 void Faults::set_noise() {
+  if (!noise_) {
+    return;
+  }
   NoiseRates rates;
   rates.flipped_bit = rate_of(Trouble::BitErrors);
   rates.lost_character = rate_of(Trouble::LostBytes);
   rates.stray_character = rate_of(Trouble::InsertedBytes);
   rates.stray_zero = rate_of(Trouble::StrayZeros);
-  if (noise_) {
-    noise_->set_rates(rates);
-  }
+  noise_->set_rates(rates);
 }
 
 void Faults::set_echo() {
-  const Fault* const fault = active_on_the_line(Trouble::Echo);
-  if (!echo_) {
-    return;
-  }
-  if (fault == nullptr) {
+  const auto armed = std::find_if(armed_.begin(), armed_.end(), [](const Armed& each) {
+    return each.fault.trouble == Trouble::Echo && each.in_progress() != 0;
+  });
+  if (armed != armed_.end()) {
+    echo_->switch_on(armed->fault.time);
+  } else if (echo_) {
     echo_->switch_off();
-  } else {
-    echo_->switch_on(fault->time);
-  }
-}
-
-void Faults::say_foreign(const std::vector<std::uint8_t>& bytes) {
-  stranger_->set_mode(master_.mode());
-  if (stranger_->waiting() < kMostForeign) {
-    stranger_->send(bytes.data(), bytes.size());
   }
 }
 

@@ -20,7 +20,8 @@
 namespace ex9000::sim {
 
 /// The same faults, the same seed and the same traffic produce the same occurrences at the same times. Only
-/// the bus calls `run`. Call `add`, `remove` and `remove_all` only while Bus::run_next is not running.
+/// the bus and this class call `run`. Call `add`, `remove` and `remove_all` only while Bus::run_next is not
+/// running.
 class Faults final : public Station {
  public:
   using Modules = std::vector<std::unique_ptr<SimulatedModule>>;
@@ -93,26 +94,20 @@ class Faults final : public Station {
   void reply_ends(std::size_t module);
   void reply_on_the_wires(std::size_t module, std::uint64_t reply, bool on);
   void written(std::size_t module);
-  void begin(Armed& armed, std::optional<std::size_t> reply_of);
-  static void forget_others_of(Armed& armed, const Occurrence& latest);
-  void end_reply_delays(std::optional<std::size_t> fault);
+  void begin(Armed& armed, std::optional<std::size_t> reply_of = std::nullopt, std::uint64_t reply = 0);
+  void end_effects(std::optional<std::size_t> removed);
   template <class Over>
   void end_occurrences(Armed& armed, Over over);
   void say(const Armed& armed, const std::string& what) const;
-  void act();
   void take_effect();
   void prepare(Trouble trouble);
-  void set_powers();
-  void set_late_drivers();
   [[nodiscard]] const Armed* active(Trouble trouble, std::size_t module) const;
-  [[nodiscard]] const Fault* active_on_the_line(Trouble trouble) const;
   [[nodiscard]] bool affected_by(Trouble trouble, std::size_t module) const {
     return active(trouble, module) != nullptr;
   }
   [[nodiscard]] double rate_of(Trouble trouble) const;
   void set_noise();
   void set_echo();
-  void say_foreign(const std::vector<std::uint8_t>& bytes);
 
   Bus& bus_;
   BusEnd& end_;
@@ -121,9 +116,8 @@ class Faults final : public Station {
   Notice notice_;
   Chance chance_;
   std::vector<Armed> armed_;
-  std::vector<std::uint64_t> replies_;  ///< number of the last reply of each module (ModuleWire)
   std::size_t numbers_ = 0;
-  bool changed_ = false;  ///< the next call of `act` must update the effects
+  bool changed_ = false;  ///< the next call of `run` must update the effects
   std::vector<std::size_t> hanging_;
   std::vector<std::vector<std::uint8_t>> to_say_;
   // Each of these objects is created when a fault first requires it.

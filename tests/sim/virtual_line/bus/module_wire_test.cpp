@@ -127,7 +127,7 @@ TEST_F(ModuleWireTest, ReportsTheEndOfEachReplyThatIsLostBecauseTooManyAreLate) 
   EXPECT_EQ(on_the_wires.back(), "30000 off");
 }
 
-TEST_F(ModuleWireTest, ReportsTheStartAndEndOfEachReplyOnTheWiresAndEachAbortedReply) {
+TEST_F(ModuleWireTest, ReportsTheStartAndEndOfEachReplyOnTheWiresAndEachAbortedOrLostReply) {
   watch();
   fate.late_by = 20ms;
   reply(5ms, 'a');
@@ -140,7 +140,7 @@ TEST_F(ModuleWireTest, ReportsTheStartAndEndOfEachReplyOnTheWiresAndEachAbortedR
   reply(40ms, 'c');
   fate.lost = false;
   reply(50ms, 'd');
-  EXPECT_EQ(on_the_wires, (std::vector<std::string>{"1 on", "1 off", "2 off", "4 on", "4 off"}));
+  EXPECT_EQ(on_the_wires, (std::vector<std::string>{"1 on", "1 off", "2 off", "3 off", "4 on", "4 off"}));
 }
 
 TEST_F(ModuleWireTest, ForwardsAReplyImmediatelyWithoutAWatcher) {

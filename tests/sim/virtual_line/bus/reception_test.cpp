@@ -277,7 +277,7 @@ class SamplingReceiver {
   /// Returns the first time with the level `wanted`, from `from` on and before `until`; nullopt if there is
   /// none. Advances `first_` to the first wave that ends after `from`.
   std::optional<VirtualTime> find(bool wanted, VirtualTime from, VirtualTime until) {
-    while (first_ < waves_.size() && waves_[first_].end() <= from) {
+    while (first_ < waves_.size() && waves_[first_].end <= from) {
       ++first_;
     }
     for (VirtualTime at = from; at < until; at = edge_after(at)) {

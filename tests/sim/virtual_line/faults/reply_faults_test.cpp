@@ -148,6 +148,16 @@ TEST(LateReply, NoiseDamagesTheLateReplyButNotTheNextRequest) {
   EXPECT_TRUE(bench.garbled());
 }
 
+TEST(LateReply, ItsNoiseEndsAfterTheGivenDuration) {
+  FaultBench bench;
+  bench.add("late-reply 50ms every 2nd reply");
+  bench.add("bit-errors 1 every 2nd reply for 20ms");
+  EXPECT_EQ(bench.ask("$01M"), kName);
+  EXPECT_NE(bench.ask("$01M", 100ms), kName);
+  EXPECT_EQ(bench.faults().list().at(1).in_progress, 0U);
+  EXPECT_EQ(bench.ask("$01M"), kName);
+}
+
 TEST(LostReply, ItsNoiseDoesNotDamageTheNextReply) {
   FaultBench bench;
   bench.add("lost-reply every 2nd reply");
