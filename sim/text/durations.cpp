@@ -20,9 +20,12 @@ struct Unit {
   std::int64_t nanoseconds;
 };
 
-constexpr std::int64_t kSecond = 1'000'000'000;
-constexpr std::array<Unit, 5> kUnits{
-    {{"us", 1'000}, {"ms", 1'000'000}, {"s", kSecond}, {"min", 60 * kSecond}, {"h", 3600 * kSecond}}};
+constexpr std::int64_t kNanosecondsPerSecond = 1'000'000'000;
+constexpr std::array<Unit, 5> kUnits{{{"us", 1'000},
+                                      {"ms", 1'000'000},
+                                      {"s", kNanosecondsPerSecond},
+                                      {"min", 60 * kNanosecondsPerSecond},
+                                      {"h", 3600 * kNanosecondsPerSecond}}};
 constexpr double kYear = 365.0 * 24 * 3600e9;
 
 /// Returns the time in the unit of `unit` nanoseconds, exact to the nanosecond. `unit` is a power of ten.
@@ -55,7 +58,7 @@ std::string time_text(VirtualTime time) {
   return decimal_text(time, unit.nanoseconds) + std::string(unit.name);
 }
 
-std::string seconds_text(VirtualTime time) { return decimal_text(time, kSecond); }
+std::string seconds_text(VirtualTime time) { return decimal_text(time, kNanosecondsPerSecond); }
 
 std::string stamp_text(VirtualTime time) {
   std::ostringstream text;
