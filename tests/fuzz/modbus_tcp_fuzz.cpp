@@ -34,9 +34,9 @@ unsigned word(const Buffer& bytes, std::size_t at) { return bytes[at] * 256U + b
 /// A client with the requests that have no reply yet.
 class Client {
  public:
-  explicit Client(sim::Gateway& gateway)
+  explicit Client(sim::Line& line)
       : session_(
-            gateway, [this](const Buffer& bytes) { return take(bytes); }, [] {}) {}
+            line, [this](const Buffer& bytes) { return take(bytes); }, [] {}) {}
 
   void send(const std::uint8_t* bytes, std::size_t size) {
     sent_.insert(sent_.end(), bytes, bytes + size);
@@ -108,7 +108,7 @@ class Clients {
   Clients() {
     line_.come_up();
     for (auto& client : clients_) {
-      client = std::make_unique<Client>(gateway_);
+      client = std::make_unique<Client>(line_);
     }
   }
 
@@ -120,7 +120,7 @@ class Clients {
         clients_[event]->send(data + at + 1, piece);
         at += 1 + piece;
       } else if (event < 8) {
-        clients_[event - 4U] = std::make_unique<Client>(gateway_);
+        clients_[event - 4U] = std::make_unique<Client>(line_);
       } else if (event == 8) {
         line_.bus().run_for(milliseconds(4 * data[at++]));
       }
@@ -138,7 +138,6 @@ class Clients {
                    sim::parse_module_spec("EX9042D@03")},
                   sim::kInstant,
                   [](std::uint8_t /*byte*/, ByteStatus /*status*/) {}};
-  sim::Gateway gateway_{line_};
   std::array<std::unique_ptr<Client>, 4> clients_;
 };
 

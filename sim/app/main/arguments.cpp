@@ -186,8 +186,7 @@ std::vector<std::string> with_optional_values(int argc, const char* const* argv)
 
 struct PlayTexts {
   std::string file;
-  std::vector<std::string> modules;
-  std::optional<std::string> seed;
+  Texts bus;  ///< without the texts about writing
   WritingTexts writing;
 };
 
@@ -196,28 +195,25 @@ const CLI::App* add_play(CLI::App& app, PlayTexts& texts) {
       "play", "play a transcript or a scenario in virtual time; exit with 0 if all steps pass, else with 1");
   play->footer(help::of_play());
   play->add_option("FILE", texts.file, "the file, or a folder of such files")->required();
-  play->add_option("MODULE", texts.modules, "for a scenario: the modules, or BUS.json");
-  play->add_option("--seed", texts.seed, "set the seed of random faults and bouncing inputs (default: 1)")
+  play->add_option("MODULE", texts.bus.line.modules, "for a scenario: the modules, or BUS.json");
+  play->add_option("--seed", texts.bus.seed, "set the seed of random faults and bouncing inputs (default: 1)")
       ->type_name("NUMBER");
   add_writing(*play, texts.writing);
   return play;
 }
 
-play::Task task_of(const PlayTexts& play_texts) {
+play::Task task_of(const PlayTexts& texts) {
   play::Task task;
-  task.path = play_texts.file;
-  apply_writing(play_texts.writing, task.writing);
-  if (play_texts.seed) {
-    of_option("--seed", *play_texts.seed, parse_seed);  // reject a wrong seed even if the seed has no effect
+  task.path = texts.file;
+  apply_writing(texts.writing, task.writing);
+  if (texts.bus.seed) {
+    of_option("--seed", *texts.bus.seed, parse_seed);  // reject a wrong seed even if the seed has no effect
   }
   if (task.writing.capture && task.writing.capture->empty()) {
     fail("--capture: is empty; name a path");
   }
-  if (!play_texts.modules.empty()) {
-    Texts texts;
-    texts.line.modules = play_texts.modules;
-    texts.seed = play_texts.seed;
-    task.bus = setup_of(texts);
+  if (!texts.bus.line.modules.empty()) {
+    task.bus = setup_of(texts.bus);
   }
   return task;
 }
@@ -259,13 +255,7 @@ Parsed printed(const std::string& text) {
 /// Returns the options and positional arguments that the user gave for `app` itself, not for a subcommand, in
 /// the order in which they were added to `app`.
 std::vector<const CLI::Option*> given_of(const CLI::App& app) {
-  std::vector<const CLI::Option*> given;
-  for (const CLI::Option* option : app.get_options()) {
-    if (option->count() != 0) {
-      given.push_back(option);
-    }
-  }
-  return given;
+  return app.get_options([](const CLI::Option* option) { return option->count() != 0; });
 }
 
 /// Returns the name of an option. Modules have no option name, so for modules this function returns the first
@@ -307,9 +297,7 @@ void reject_other_arguments(const std::string& printing, const CLI::App& app) {
 
 std::string one_line(std::string text) {
   std::replace(text.begin(), text.end(), '\n', ' ');
-  while (!text.empty() && text.back() == ' ') {
-    text.pop_back();
-  }
+  text.erase(text.find_last_not_of(' ') + 1);
   return text;
 }
 

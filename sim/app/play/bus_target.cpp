@@ -66,6 +66,7 @@ void BusTarget::add_line(const sim::LineSetup& setup, Memories::const_iterator m
   sim::begin_programs(line, setup);
 }
 
+/// Processes the events of all lines up to and including the time `until`.
 void BusTarget::run_until(sim::VirtualTime until) {
   for (const auto& line : lines_) {
     line->bus().run_until(until);

@@ -33,11 +33,7 @@ class BusTarget : public Target {
   /// Throws std::runtime_error if the chosen module lacks the input.
   void require_input(unsigned channel);
 
-  [[nodiscard]] std::size_t size() const { return lines_.size(); }
-  sim::Line& line(std::size_t index) { return *lines_[index]; }
   [[nodiscard]] sim::VirtualTime now() { return chosen().clock().virtual_now(); }
-  /// Processes the events of all lines up to and including the time `until`.
-  void run_until(sim::VirtualTime until);
 
   // --- Target ---
   void start(const Model& model, const Settings* preset) override;
@@ -62,6 +58,7 @@ class BusTarget : public Target {
   sim::SimulatedModule& module() { return chosen().module(module_); }
 
  private:
+  void run_until(sim::VirtualTime until);
   void add_line(const sim::LineSetup& setup, Memories::const_iterator memories, std::uint64_t seed);
   void turn_to(std::size_t line, std::size_t module);
 

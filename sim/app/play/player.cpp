@@ -29,24 +29,16 @@ std::string checksum_of(const std::string& text) {
   return {kDigits[sum / 16 % 16], kDigits[sum % 16]};
 }
 
-Bytes bytes_of(const std::string& text) { return {text.begin(), text.end()}; }
-
 /// Returns the bytes as text if all are printable ASCII, except a CR at the end; otherwise in hex. Returns
 /// the word `nothing` if there are no bytes.
 std::string shown(const Bytes& bytes) {
-  bool text = !bytes.empty();
-  for (std::size_t i = 0; i < bytes.size(); ++i) {
-    text = text && ((bytes[i] >= 0x20 && bytes[i] < 0x7F) || (bytes[i] == '\r' && i + 1 == bytes.size()));
-  }
   if (bytes.empty()) {
     return "nothing";
   }
-  if (text) {
-    std::string result = "'";
-    for (const std::uint8_t byte : bytes) {
-      result += byte == '\r' ? std::string("\\r") : std::string(1, static_cast<char>(byte));
-    }
-    return result + "'";
+  const bool ends_with_cr = bytes.back() == '\r';
+  const auto end = bytes.end() - (ends_with_cr ? 1 : 0);
+  if (std::all_of(bytes.begin(), end, [](std::uint8_t byte) { return byte >= 0x20 && byte < 0x7F; })) {
+    return "'" + std::string(bytes.begin(), end) + (ends_with_cr ? "\\r'" : "'");
   }
   return sim::hex_text(bytes, " ") + " (" + std::to_string(bytes.size()) + " bytes)";
 }
@@ -60,12 +52,8 @@ class Playing {
  public:
   Playing(Target& target, bool checksum) : target_(target), checksum_(checksum) {}
 
-  void operator()(const step::SendDcon& step) {
-    send(bytes_of(step.text + (checksum_ ? checksum_of(step.text) : "") + "\r"));
-  }
-  void operator()(const step::ExpectDcon& step) {
-    expect(bytes_of(step.text + (checksum_ ? checksum_of(step.text) : "") + "\r"));
-  }
+  void operator()(const step::SendDcon& step) { send(dcon_frame(step.text)); }
+  void operator()(const step::ExpectDcon& step) { expect_one_of({dcon_frame(step.text)}); }
   void operator()(const step::SendModbus& step) { send(with_crc(step.frame)); }
   void operator()(const step::ExpectModbus& step) {
     std::vector<Bytes> permitted;
@@ -130,13 +118,16 @@ class Playing {
   void nothing_more() { nothing_for(reply_pending_ ? kReplyBegins : kAfterReply); }
 
  private:
+  [[nodiscard]] Bytes dcon_frame(const std::string& text) const {
+    const std::string frame = text + (checksum_ ? checksum_of(text) : "") + "\r";
+    return {frame.begin(), frame.end()};
+  }
+
   void send(const Bytes& bytes) {
     nothing_more();
     target_.send(bytes);
     reply_pending_ = true;
   }
-
-  void expect(const Bytes& wanted) { expect_one_of({wanted}); }
 
   /// `permitted` contains at least one reply; all have the same length.
   void expect_one_of(const std::vector<Bytes>& permitted) {

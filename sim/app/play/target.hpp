@@ -33,9 +33,8 @@ class Target {
   virtual Bytes receive(std::size_t count, std::chrono::milliseconds patience) = 0;
   /// Lets `time` pass, then returns the received bytes that no earlier call has returned.
   virtual Bytes listen(std::chrono::nanoseconds time) = 0;
-  /// Sets the master's rate.
+  /// These functions set the rate and the line format of the master.
   virtual void set_baud(std::uint32_t rate) = 0;
-  /// Sets the master's line format.
   virtual void set_format(LineFormat format) = 0;
 
   /// Switches the supply. After switching on, returns when the module has had the time to start up.

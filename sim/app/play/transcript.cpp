@@ -188,10 +188,6 @@ Action parse_verb(const std::string& text) {
   fail("'" + text + "' is not a step; expected one of " + all_shapes());
 }
 
-[[noreturn]] void reject_without_blank(const std::string& text, const std::string& lead) {
-  fail("'" + text + "': expected a blank after " + lead);
-}
-
 /// Parses `HEX` or `HEX or HEX ...`.
 Action parse_modbus_reply(const std::string& text) {
   const std::string separator = " or ";
@@ -213,10 +209,11 @@ Action parse_action(const std::string& text) {
     if (text.rfind(lead, 0) != 0) {
       continue;
     }
-    if (text.size() > lead.size() && text[lead.size()] != ' ' && text[lead.size()] != '\t') {
-      reject_without_blank(text, lead);
+    std::string rest = text.substr(lead.size());
+    if (!rest.empty() && rest[0] != ' ' && rest[0] != '\t') {
+      fail("'" + text + "': expected a blank after " + lead);
     }
-    const std::string rest = text.size() > lead.size() ? text.substr(lead.size() + 1) : "";
+    rest.erase(0, 1);
     if (lead == "<=") {
       return parse_modbus_reply(rest);
     }
@@ -378,10 +375,7 @@ std::vector<Transcript> load(const std::string& path) {
   try {
     Source source;
     for (std::string raw; std::getline(file, raw);) {
-      ++line;
-      if (!raw.empty()) {
-        read_line(raw, line, source);
-      }
+      read_line(raw, ++line, source);
     }
     line = 1;
     if (source.steps.empty()) {

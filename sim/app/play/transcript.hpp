@@ -106,8 +106,7 @@ struct Transcript {
 /// the module receives while it is idle begins earlier.
 constexpr std::chrono::milliseconds kSilence{250};
 
-/// Returns what is wrong if `model` lacks an input with this number. Returns an empty text if the input
-/// exists.
+/// Returns what is wrong if `model` has no input with this number; empty if it has one.
 std::string missing_input(const Model& model, unsigned channel);
 
 /// Returns the paths of all files below `directory` that end with .txt, sorted. Throws

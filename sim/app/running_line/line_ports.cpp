@@ -5,8 +5,8 @@
 
 namespace ex9000::sim {
 
-LinePorts::LinePorts(Line& line, const All& ports, Notice notice)
-    : line_(line), ports_(ports), notice_(std::move(notice)), reported_(line.size()) {
+LinePorts::LinePorts(Line& line, const All& ports, ModbusTcpServer* server, Notice notice)
+    : line_(line), ports_(ports), server_(server), notice_(std::move(notice)), reported_(line.size()) {
   line.bus().observe(*this);
 }
 
@@ -46,6 +46,15 @@ void LinePorts::take_rate(const Port& port) {
     line_.master().set_baud(*rate);
   }
   report_mismatches();
+}
+
+void LinePorts::resume() {
+  for (const auto& port : ports_) {
+    port->resume();
+  }
+  if (server_ != nullptr) {
+    server_->resume();
+  }
 }
 
 void LinePorts::report_mismatches() {

@@ -1,4 +1,4 @@
-// Connects the ports of a line to the master's end of the line.
+// Connects the ports and the Modbus TCP server of a line to the master's end of the line.
 #pragma once
 
 #include <cstddef>
@@ -10,21 +10,22 @@
 #include <vector>
 
 #include "sim/files_and_ports/ports/port.hpp"
+#include "sim/front_ends/modbus_tcp/modbus_tcp_server.hpp"
 #include "sim/virtual_line/line/line.hpp"
 
 namespace ex9000::sim {
 
 /// Bytes that the master's end receives go to every port. The rate that a master sets at a port becomes the
-/// line's rate. Pacer uses this class for paced time, and SteppedLine uses it for stepped time.
+/// line's rate. Pacer or SteppedLine puts the bytes and the requests of masters on the line.
 class LinePorts final : private BusObserver {
  public:
   using All = std::vector<std::unique_ptr<Port>>;
   using Notice = std::function<void(const std::string&)>;
 
   /// Observes the bus of `line`: this object and all arguments must live as long as that bus is used.
-  /// `notice` receives a one-line message for each module that cannot receive because of its rate or format,
-  /// and for bytes that a port drops.
-  LinePorts(Line& line, const All& ports, Notice notice);
+  /// `server` may be null. `notice` receives a one-line message for each module that cannot receive because
+  /// of its rate or format, and for bytes that a port drops.
+  LinePorts(Line& line, const All& ports, ModbusTcpServer* server, Notice notice);
 
   /// Stores a byte that the master's end of the line has received. Call this for each such byte.
   void hear(std::uint8_t byte) { heard_.push_back(byte); }
@@ -42,7 +43,12 @@ class LinePorts final : private BusObserver {
   /// ends and begins again is reported again.
   void report_mismatches();
 
+  /// Lets the ports and the server deliver bytes again if they wait.
+  void resume();
+
   [[nodiscard]] const All& all() const { return ports_; }
+  /// Returns the Modbus TCP server of the line; null if it has none.
+  [[nodiscard]] ModbusTcpServer* server() const { return server_; }
 
  private:
   void report_dropped(const Port& port, std::size_t bytes);
@@ -52,6 +58,7 @@ class LinePorts final : private BusObserver {
 
   Line& line_;
   const All& ports_;
+  ModbusTcpServer* server_;
   Notice notice_;
   using Mismatch = std::pair<SerialMode, SerialMode>;  ///< mode of the line, mode of a module
   std::vector<Mismatch> reported_;                     ///< one for each module; zeros: no mismatch

@@ -39,28 +39,25 @@ void LineRecord::note(const std::string& text) {
 }
 
 void LineRecord::tell(FrameWatch::Take take, BusLog::Note note) {
-  frames_.add_receiver(std::move(take));
   also_note_ = std::move(note);
-  listen();
+  listen(std::move(take));
 }
 
 void LineRecord::print_frames() {
-  frames_.add_receiver([this](const Frame& frame) {
+  listen([this](const Frame& frame) {
     if (!over_) {
       log_->frame(frame);
     }
   });
-  listen();
 }
 
 void LineRecord::keep_in(Capture& capture, VirtualTime began) {
   const std::size_t line = capture.add_line(name_, line_.size(), began);
-  frames_.add_receiver([this, &capture, line](const Frame& frame) {
+  listen([this, &capture, line](const Frame& frame) {
     if (!over_) {
       capture.write(line, frame);
     }
   });
-  listen();
 }
 
 void LineRecord::end_at(VirtualTime end) { line_.bus().attach(*this).run_at(end); }
@@ -70,7 +67,8 @@ void LineRecord::run() {
   over_ = true;
 }
 
-void LineRecord::listen() {
+void LineRecord::listen(FrameWatch::Take take) {
+  frames_.add_receiver(std::move(take));
   if (!listens_) {
     line_.bus().observe(frames_);
   }

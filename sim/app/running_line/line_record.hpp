@@ -25,7 +25,6 @@ class LineRecord final : private Station {
   /// Writes a note to the log, with the time of the line's clock. Notes are printed even if frames are not.
   /// Does nothing after the end of the log, see `end_at`.
   void note(const std::string& text);
-  /// Starts to print frames.
   void print_frames();
   /// Starts to write frames to `capture`, which must outlive this object. `began` is the timestamp of time 0
   /// of the line in the capture, since 1970-01-01 00:00:00 UTC.
@@ -33,7 +32,8 @@ class LineRecord final : private Station {
   /// Starts to call `take` with each frame when the frame has ended, and `note` with each note.
   void tell(FrameWatch::Take take, BusLog::Note note);
   /// Ends the log and the capture at `end` in the line's time. The line may run beyond `end`, because the
-  /// program reads the wall clock only at some moments; the log and the capture do not depend on this.
+  /// program reads the wall clock only at some moments; the log and the capture do not depend on this. Call
+  /// this before `end`.
   void end_at(VirtualTime end);
   /// Returns the collector of the frames; null if no frames are recorded.
   FrameWatch* frames() { return listens_ ? &frames_ : nullptr; }
@@ -44,7 +44,7 @@ class LineRecord final : private Station {
   // --- Station: called at the time that `end_at` sets ---
   void run() override;
 
-  void listen();
+  void listen(FrameWatch::Take take);
 
   Line& line_;
   std::string name_;

@@ -23,14 +23,9 @@ constexpr VirtualTime kReportedDelay = std::chrono::milliseconds(20);
 
 }  // namespace
 
-Pacer::Pacer(boost::asio::io_context& io, Line& line, const LinePorts::All& ports, FrameWatch* frames,
-             Pace pace, LinePorts::Notice notice)
-    : timer_(io),
-      line_(line),
-      notice_(std::move(notice)),
-      ports_(line, ports, notice_),
-      frames_(frames),
-      pace_(pace) {}
+Pacer::Pacer(boost::asio::io_context& io, Line& line, LinePorts& ports, FrameWatch* frames, Pace pace,
+             LinePorts::Notice notice)
+    : timer_(io), line_(line), notice_(std::move(notice)), ports_(ports), frames_(frames), pace_(pace) {}
 
 void Pacer::start() {
   began_ = std::chrono::steady_clock::now();
@@ -42,15 +37,13 @@ void Pacer::start() {
           return receive(port, {bytes, size}, damaged);
         });
   }
+  if (ports_.server() != nullptr) {
+    ports_.server()->start([this](std::size_t /*size*/, const std::function<void()>& process) {
+      now(process);
+      return !pause_if_full();
+    });
+  }
   follow();
-}
-
-void Pacer::serve(ModbusTcpServer& server) {
-  server_ = &server;
-  server.start([this](std::size_t /*size*/, const std::function<void()>& process) {
-    now(process);
-    return !pause_if_full();
-  });
 }
 
 VirtualTime Pacer::wall() const {
@@ -101,12 +94,7 @@ void Pacer::follow() {
   }
   if (paused_ && !is_full()) {
     paused_ = false;
-    for (const auto& port : ports_.all()) {
-      port->resume();
-    }
-    if (server_ != nullptr) {
-      server_->resume();
-    }
+    ports_.resume();
   }
   arm_timer();
 }

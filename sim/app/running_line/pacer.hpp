@@ -1,5 +1,4 @@
-// Makes the time of a virtual line follow the wall clock, and connects the ports to the master's end of the
-// line.
+// Makes the time of a virtual line follow the wall clock.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +9,6 @@
 #include <functional>
 
 #include "sim/app/running_line/line_ports.hpp"
-#include "sim/front_ends/modbus_tcp/modbus_tcp_server.hpp"
 #include "sim/line_monitor/frames/frame_watch.hpp"
 #include "sim/virtual_line/line/line.hpp"
 
@@ -31,40 +29,24 @@ struct Pace {
   /// passed. If `lead` is not zero, a frame after a frame of the master waits for this silence too. A frame
   /// to a Modbus module after an ASCII reply, or after bytes of an unknown sender, waits until the module no
   /// longer treats these bytes as part of a frame. Without these delays, many masters, for example libmodbus,
-  /// would begin a frame too early after a Modbus reply. Only the module that has just replied would then
-  /// receive the frame, because that module does not receive its own reply. All other modules would receive
-  /// the reply and the frame as one frame. With a real adapter this problem does not occur, because the
-  /// adapter delays the frame.
+  /// would begin a frame too early after a Modbus reply, and the modules that have received the reply would
+  /// receive both as one frame. A real adapter delays the frame itself.
   bool keep_frames_apart = true;
   /// The ratio of virtual time to the wall clock.
   double speed = 1;
 };
 
-/// Bytes take their real time.
-constexpr Pace kWallPace{};
-/// Bytes take their real time, for masters that follow the standard strictly.
-constexpr Pace kStrictWallPace{kWallPace.host_latency, kWallPace.lead, false};
-/// Bytes take almost no time. A reply that the module sends immediately does not wait for the wall clock.
-constexpr Pace kInstantPace{VirtualTime(0), std::chrono::microseconds(200), true};
-
 /// Virtual time follows the wall clock from `start` on.
 class Pacer final {
  public:
-  /// Sends the bytes that the master of `line` receives to all `ports`, and puts the bytes from the ports on
-  /// the line. `frames` may be null. `io` must outlive this object. `line`, `ports` and `frames` must live as
-  /// long as `io` runs. `notice`: see LinePorts; it also receives messages about long delays of the host, and
-  /// about two Modbus frames that were read in one piece and that modules treat as one frame.
-  Pacer(boost::asio::io_context& io, Line& line, const LinePorts::All& ports, FrameWatch* frames, Pace pace,
+  /// `frames` may be null. `io` must outlive this object. `line`, `ports` and `frames` must live as long as
+  /// `io` runs. `notice` receives messages about long delays of the host, and about two Modbus frames that
+  /// were read in one piece and that modules treat as one frame.
+  Pacer(boost::asio::io_context& io, Line& line, LinePorts& ports, FrameWatch* frames, Pace pace,
         LinePorts::Notice notice);
 
+  /// Accepts masters, and puts the bytes and the requests from `ports` on the line.
   void start();
-  /// Starts `server` and puts its requests on the line. Call this after `start`; `server` must live as long
-  /// as `io` runs.
-  void serve(ModbusTcpServer& server);
-  /// See LinePorts::hear.
-  void hear(std::uint8_t byte) { ports_.hear(byte); }
-  /// See LinePorts::sent.
-  [[nodiscard]] std::uint64_t sent() const { return ports_.sent(); }
   /// Returns the line's present time. The line's clock has the time of the last event, which may be earlier.
   [[nodiscard]] VirtualTime present() const { return std::max(wall(), line_.clock().virtual_now()); }
   /// Advances the line to its present time, then runs `action`, which may use the line.
@@ -89,15 +71,13 @@ class Pacer final {
   VirtualTime timer_expires_ = kNever;  ///< kNever: the timer is not set
   Line& line_;
   LinePorts::Notice notice_;
-  LinePorts ports_;
+  LinePorts& ports_;
   FrameWatch* frames_;
-  ModbusTcpServer* server_ = nullptr;
   Pace pace_;
   std::chrono::steady_clock::time_point began_;
-  VirtualTime first_{0};  ///< the line's time at `began_`
-  bool paused_ = false;   ///< a port or the server waits for `resume`
-  /// The longest delay of the host that was reported, in wall clock time.
-  VirtualTime longest_delay_{0};
+  VirtualTime first_{0};          ///< the line's time at `began_`
+  bool paused_ = false;           ///< a port or the server waits for `resume`
+  VirtualTime longest_delay_{0};  ///< of the delays of the host that were reported, in wall clock time
 };
 
 }  // namespace ex9000::sim

@@ -15,54 +15,52 @@ namespace ex9000::sim {
 
 namespace {
 
-Pace pace_of(const LineSetup& setup) {
+Pace pace_of(const LineSetup& setup, double speed) {
+  Pace pace;
   if (setup.instant) {
-    return kInstantPace;
+    pace.host_latency = VirtualTime(0);
+    pace.lead = std::chrono::microseconds(200);  // an immediate reply does not wait for the wall clock
   }
-  return setup.strict_gaps ? kStrictWallPace : kWallPace;
+  pace.keep_frames_apart = !setup.strict_gaps;
+  pace.speed = speed;
+  return pace;
 }
 
 }  // namespace
 
 RunningLine::RunningLine(boost::asio::io_context& io, const LineSetup& setup, std::uint64_t seed,
-                         LogFormat format, bool stepped, Print print)
-    : setup_(setup), print_(std::move(print)) {
+                         LogFormat format, bool stepped, const Print& print)
+    : io_(io), setup_(setup) {
   for (const ModuleSpec& module : setup.modules) {
     with_place(module.eeprom_place, [&] {
       memories_.push_back(module.eeprom.empty() ? nullptr : std::make_unique<EepromFile>(module.eeprom));
     });
   }
   line_ = make_line(setup, [this](std::uint8_t byte, ByteStatus /*status*/) {
-    if (pacer_) {
-      pacer_->hear(byte);
-    } else if (stepped_) {
-      stepped_->hear(byte);
+    if (connected_) {
+      connected_->hear(byte);
     }
   });
-  use_memories();
-  line_->come_up();
-  came_up_ = line_->clock().virtual_now();
-  line_->master().set_mode(first_mode(setup, *line_));
-  introduce();
-  open_ports(io, stepped);
-  record_ = std::make_unique<LineRecord>(*line_, log_name(), format, print_);
-  line_->configure_faults(seed, [this](const std::string& text) { record_->note(text); });
-  with_place(place_of(setup.places, "fault"), [&] { begin_programs(*line_, setup); });
-}
-
-void RunningLine::use_memories() {
   for (std::size_t i = 0; i < line_->size(); ++i) {
     if (memories_[i] != nullptr && memories_[i]->found()) {
       line_->module(i).memory().contents() = *memories_[i]->found();
     }
   }
+  line_->come_up();
+  came_up_ = line_->clock().virtual_now();
+  line_->master().set_mode(first_mode(setup, *line_));
+  introduce();
+  open_ports(stepped);
+  record_ = std::make_unique<LineRecord>(*line_, log_name(), format, print);
+  line_->configure_faults(seed, note_);
+  with_place(place_of(setup.places, "fault"), [&] { begin_programs(*line_, setup); });
 }
 
-void RunningLine::open_ports(boost::asio::io_context& io, bool stepped) {
+void RunningLine::open_ports(bool stepped) {
   const SerialMode mode = line_->master().mode();
   if (setup_.pty) {
     auto port = with_place(place_of(setup_.places, "pty"),
-                           [&] { return std::make_unique<PtyPort>(io, *setup_.pty, mode.baud); });
+                           [&] { return std::make_unique<PtyPort>(io_, *setup_.pty, mode.baud); });
     introduced_.pty = port->pty().link();
     introduced_.pty_device = port->pty().device();
     ports_.push_back(std::move(port));
@@ -70,19 +68,19 @@ void RunningLine::open_ports(boost::asio::io_context& io, bool stepped) {
   if (setup_.tcp) {
     const TcpPort::Linger linger = stepped ? TcpPort::Linger() : TcpPort::kUsualLinger;
     auto port = with_place(place_of(setup_.places, "tcp"),
-                           [&] { return std::make_unique<TcpPort>(io, *setup_.tcp, linger); });
+                           [&] { return std::make_unique<TcpPort>(io_, *setup_.tcp, linger); });
     introduced_.tcp = port->address();
     ports_.push_back(std::move(port));
   }
   if (setup_.modbus_tcp) {
     modbus_tcp_ = with_place(place_of(setup_.places, "modbus-tcp"), [&] {
-      return std::make_unique<ModbusTcpServer>(io, *line_, *setup_.modbus_tcp);
+      return std::make_unique<ModbusTcpServer>(io_, *line_, *setup_.modbus_tcp);
     });
     introduced_.modbus_tcp = modbus_tcp_->address();
   }
   if (setup_.serial) {
-    ports_.push_back(std::make_unique<SerialPort>(io, place_of(setup_.places, "serial"), *setup_.serial, mode,
-                                                  setup_.echo));
+    ports_.push_back(std::make_unique<SerialPort>(io_, place_of(setup_.places, "serial"), *setup_.serial,
+                                                  mode, setup_.echo));
     introduced_.serial = *setup_.serial;
   }
 }
@@ -164,24 +162,17 @@ void RunningLine::start() {
   }
 }
 
-void RunningLine::start_paced(boost::asio::io_context& io, double speed) {
-  Pace pace = pace_of(setup_);
-  pace.speed = speed;
-  pacer_ = std::make_unique<Pacer>(io, *line_, ports_, record_->frames(), pace,
-                                   [this](const std::string& text) { record_->note(text); });
+void RunningLine::start_paced(double speed) {
+  connected_ = std::make_unique<LinePorts>(*line_, ports_, modbus_tcp_.get(), note_);
+  pacer_ =
+      std::make_unique<Pacer>(io_, *line_, *connected_, record_->frames(), pace_of(setup_, speed), note_);
   pacer_->start();
-  if (modbus_tcp_) {
-    pacer_->serve(*modbus_tcp_);
-  }
 }
 
 SteppedLine& RunningLine::start_stepped(SteppedLine::Arrived arrived) {
-  stepped_ = std::make_unique<SteppedLine>(*line_, ports_, record_->frames(),
-                                           [this](const std::string& text) { record_->note(text); });
+  connected_ = std::make_unique<LinePorts>(*line_, ports_, modbus_tcp_.get(), note_);
+  stepped_ = std::make_unique<SteppedLine>(*line_, *connected_, record_->frames());
   stepped_->start(std::move(arrived));
-  if (modbus_tcp_) {
-    stepped_->serve(*modbus_tcp_);
-  }
   return *stepped_;
 }
 

@@ -30,7 +30,7 @@ class RunningLine {
   /// and `setup` must outlive this object. If `stepped` is true, the behaviour of the ports does not depend
   /// on the wall clock.
   RunningLine(boost::asio::io_context& io, const LineSetup& setup, std::uint64_t seed, LogFormat format,
-              bool stepped, Print print);
+              bool stepped, const Print& print);
   RunningLine(const RunningLine&) = delete;
   RunningLine& operator=(const RunningLine&) = delete;
 
@@ -45,41 +45,31 @@ class RunningLine {
   /// Connects the memories to their EEPROM files: from now on, all data that a module with such a file stores
   /// is written to the file. Call this after `make_missing_memories`.
   void start();
-  /// From now on, the line's time passes at `speed` times the speed of the wall clock. The events of the line
-  /// are processed while `io` runs.
-  void start_paced(boost::asio::io_context& io, double speed);
+  /// From now on, the line's time passes at `speed` times the speed of the wall clock, while `io` runs.
+  void start_paced(double speed);
   /// Accepts masters. The line's time passes only when the caller advances it. `arrived`: see
   /// SteppedLine::start.
   SteppedLine& start_stepped(SteppedLine::Arrived arrived);
-  /// Ends the log and the capture when the modules have been up for `up`. Call this before that time.
-  void end_at(VirtualTime up) { record_->end_at(came_up_ + up); }
   /// Processes all events until the modules have been up for `up`, without waiting.
   void run_until(VirtualTime up);
-  /// Records the frames that are still in progress.
-  void finish() { record_->finish(); }
 
-  [[nodiscard]] const std::string& name() const { return setup_.name; }
-  [[nodiscard]] bool has_serial_port() const { return setup_.serial.has_value(); }
   Line& line() { return *line_; }
   /// Call this only after `start_paced`.
   Pacer& pacer() { return *pacer_; }
   /// See LinePorts::sent.
-  [[nodiscard]] std::uint64_t sent() const {
-    return pacer_ ? pacer_->sent() : stepped_ ? stepped_->sent() : 0;
-  }
+  [[nodiscard]] std::uint64_t sent() const { return connected_ ? connected_->sent() : 0; }
   /// Returns the line's time at which the modules have been up for `up`.
   [[nodiscard]] VirtualTime when_up_for(VirtualTime up) const { return came_up_ + up; }
   [[nodiscard]] const LineSummary& introduced() const { return introduced_; }
 
  private:
-  void use_memories();
-  void open_ports(boost::asio::io_context& io, bool stepped);
+  void open_ports(bool stepped);
   [[nodiscard]] std::string log_name() const;
   [[nodiscard]] std::string remark(std::size_t index) const;
   void introduce();
 
+  boost::asio::io_context& io_;
   const LineSetup& setup_;
-  Print print_;
   std::vector<std::unique_ptr<EepromFile>> memories_;  ///< for each module; null if it has no EEPROM file
   std::unique_ptr<Line> line_;
   VirtualTime came_up_{0};  ///< the line's time at which all modules had started up
@@ -87,6 +77,8 @@ class RunningLine {
   LinePorts::All ports_;
   std::unique_ptr<ModbusTcpServer> modbus_tcp_;  ///< null if `setup` names no Modbus TCP port
   std::unique_ptr<LineRecord> record_;
+  const LinePorts::Notice note_ = [this](const std::string& text) { record_->note(text); };
+  std::unique_ptr<LinePorts> connected_;  ///< null until `start_paced` or `start_stepped`
   std::unique_ptr<Pacer> pacer_;          ///< null until `start_paced`
   std::unique_ptr<SteppedLine> stepped_;  ///< null until `start_stepped`
 };

@@ -4,10 +4,6 @@
 
 namespace ex9000::sim {
 
-SteppedLine::SteppedLine(Line& line, const LinePorts::All& ports, FrameWatch* frames,
-                         LinePorts::Notice notice)
-    : line_(line), ports_(line, ports, std::move(notice)), frames_(frames) {}
-
 void SteppedLine::start(Arrived arrived) {
   arrived_ = std::move(arrived);
   ports_.report_mismatches();
@@ -21,11 +17,10 @@ void SteppedLine::start(Arrived arrived) {
       });
     });
   }
-}
-
-void SteppedLine::serve(ModbusTcpServer& server) {
-  server_ = &server;
-  server.start([this](std::size_t size, Put process) { return receive(size, std::move(process)); });
+  if (ports_.server() != nullptr) {
+    ports_.server()->start(
+        [this](std::size_t size, Put process) { return receive(size, std::move(process)); });
+  }
 }
 
 bool SteppedLine::receive(std::size_t size, Put put) {
@@ -39,8 +34,8 @@ void SteppedLine::read_ports() {
   for (const auto& port : ports_.all()) {
     port->read_waiting();
   }
-  if (server_ != nullptr) {
-    server_->read_waiting();
+  if (ports_.server() != nullptr) {
+    ports_.server()->read_waiting();
   }
 }
 
@@ -51,12 +46,7 @@ void SteppedLine::put_on_line() {
   const bool paused = full();
   waiting_ = 0;
   if (paused) {
-    for (const auto& port : ports_.all()) {
-      port->resume();
-    }
-    if (server_ != nullptr) {
-      server_->resume();
-    }
+    ports_.resume();
   }
 }
 

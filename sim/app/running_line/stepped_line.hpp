@@ -2,12 +2,10 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <functional>
 #include <vector>
 
 #include "sim/app/running_line/line_ports.hpp"
-#include "sim/front_ends/modbus_tcp/modbus_tcp_server.hpp"
 #include "sim/line_monitor/frames/frame_watch.hpp"
 #include "sim/virtual_line/line/line.hpp"
 
@@ -24,16 +22,12 @@ class SteppedLine {
   /// any client until then.
   static constexpr std::size_t kMostBytes = 65'536;
 
-  /// `frames` may be null. `line`, `ports` and `frames` must outlive this object.
-  SteppedLine(Line& line, const LinePorts::All& ports, FrameWatch* frames, LinePorts::Notice notice);
+  /// `frames` may be null. All arguments must outlive this object.
+  SteppedLine(Line& line, LinePorts& ports, FrameWatch* frames)
+      : line_(line), ports_(ports), frames_(frames) {}
 
   /// Accepts masters. `arrived` is called whenever bytes have arrived at a port or at the server.
   void start(Arrived arrived);
-  /// Starts `server` and puts its requests on the line. Call this after `start`; `server` must outlive this
-  /// object.
-  void serve(ModbusTcpServer& server);
-  /// See LinePorts::hear.
-  void hear(std::uint8_t byte) { ports_.hear(byte); }
 
   /// Returns how many bytes have arrived that are not on the line yet.
   [[nodiscard]] std::size_t waiting() const { return waiting_; }
@@ -51,8 +45,6 @@ class SteppedLine {
   void run_until(VirtualTime until);
   /// See Line::pending.
   [[nodiscard]] bool pending() const { return line_.pending(); }
-  /// See LinePorts::sent.
-  [[nodiscard]] std::uint64_t sent() const { return ports_.sent(); }
   /// See LinePorts::hand_out.
   void hand_out() { ports_.hand_out(); }
 
@@ -65,10 +57,9 @@ class SteppedLine {
   [[nodiscard]] bool full() const { return waiting_ >= kMostBytes; }
 
   Line& line_;
-  LinePorts ports_;
+  LinePorts& ports_;
   FrameWatch* frames_;
   Arrived arrived_;
-  ModbusTcpServer* server_ = nullptr;
   std::vector<Put> arrivals_;  ///< in the order of arrival
   std::size_t waiting_ = 0;    ///< number of bytes in `arrivals_`
 };

@@ -1,9 +1,12 @@
 #include "sim/app/running_program/line_threads.hpp"
 
 #include <boost/asio/post.hpp>
+#include <future>
 #include <stdexcept>
 #include <string>
 #include <system_error>
+#include <utility>
+#include <vector>
 
 namespace ex9000::sim {
 
@@ -18,15 +21,16 @@ boost::asio::io_context& LineThreads::io(std::size_t line) {
 }
 
 void LineThreads::start() {
+  std::size_t number = 0;
   for (Worker& worker : workers_) {
+    ++number;
     try {
       worker.thread = std::thread([this, &worker] { run(worker.io); });
     } catch (const std::system_error& error) {
-      throw std::runtime_error("cannot start thread " + std::to_string(running_ + 1) + " of " +
+      throw std::runtime_error("cannot start thread " + std::to_string(number) + " of " +
                                std::to_string(workers_.size()) + ": " + error.code().message() +
                                "; use fewer with --threads");
     }
-    ++running_;
   }
 }
 
@@ -44,35 +48,25 @@ void LineThreads::run(boost::asio::io_context& io) {
   }
 }
 
-void LineThreads::pause() {
-  std::unique_lock<std::mutex> lock(mutex_);
-  ++paused_;
-  changed_.notify_all();
-  changed_.wait(lock, [this, pause = pauses_] { return pauses_ != pause; });
-}
-
-void LineThreads::resume() {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  paused_ = 0;
-  ++pauses_;
-  changed_.notify_all();
-}
-
 void LineThreads::pause_for(const std::function<void()>& action) {
-  if (running_ != 0) {
-    for (Worker& worker : workers_) {
-      boost::asio::post(worker.io, [this] { pause(); });
+  std::promise<void> pause;  // if `action` throws, the destructor ends the pause
+  const std::shared_future<void> ended = pause.get_future().share();
+  std::vector<std::future<void>> paused;
+  for (Worker& worker : workers_) {
+    if (worker.thread.joinable()) {
+      std::promise<void> begun;
+      paused.push_back(begun.get_future());
+      boost::asio::post(worker.io, [begun = std::move(begun), ended]() mutable {
+        begun.set_value();
+        ended.wait();
+      });
     }
-    std::unique_lock<std::mutex> lock(mutex_);
-    changed_.wait(lock, [this] { return paused_ == running_; });
   }
-  try {
-    action();
-  } catch (...) {
-    resume();
-    throw;
+  for (const std::future<void>& each : paused) {
+    each.wait();
   }
-  resume();
+  action();
+  pause.set_value();
 }
 
 void LineThreads::end() {
@@ -84,7 +78,6 @@ void LineThreads::end() {
       worker.thread.join();
     }
   }
-  running_ = 0;
 }
 
 void LineThreads::rethrow() const {

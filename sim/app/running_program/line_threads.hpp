@@ -3,9 +3,7 @@
 
 #include <boost/asio/executor_work_guard.hpp>
 #include <boost/asio/io_context.hpp>
-#include <condition_variable>
 #include <cstddef>
-#include <cstdint>
 #include <deque>
 #include <exception>
 #include <functional>
@@ -47,16 +45,10 @@ class LineThreads {
   };
 
   void run(boost::asio::io_context& io);
-  void pause();
-  void resume();
 
   boost::asio::io_context& main_;
   std::deque<Worker> workers_;  ///< a deque, because a Worker must not move
-  std::size_t running_ = 0;     ///< number of started threads
-  std::mutex mutex_;            ///< protects `paused_`, `pauses_` and `failure_`
-  std::condition_variable changed_;
-  std::size_t paused_ = 0;    ///< number of threads in the present pause
-  std::uint64_t pauses_ = 0;  ///< number of pauses that have ended
+  std::mutex mutex_;            ///< protects `failure_`
   std::exception_ptr failure_;
 };
 

@@ -63,13 +63,11 @@ void RunningProgram::print_line(const std::string& line) {
 }
 
 void RunningProgram::open_control() {
-  if (!setup_.control && !setup_.panel) {
-    return;
-  }
   std::vector<Control::ControlledLine> lines;
   for (const auto& running : lines_) {
-    lines.push_back({running->name(), running->line(), [&line = *running] { return line.sent(); },
-                     running->has_serial_port()});
+    const LineSummary& introduced = running->introduced();
+    lines.push_back({introduced.name, running->line(), [&line = *running] { return line.sent(); },
+                     !introduced.serial.empty()});
   }
   control_.emplace(std::move(lines));
   if (!setup_.control) {
@@ -243,17 +241,16 @@ void RunningProgram::start() {
 /// come first, so that no file is created if one of them fails.
 void RunningProgram::begin() {
   make_files_and_greet();
-  for (std::size_t i = 0; i < lines_.size(); ++i) {
-    RunningLine& running = *lines_[i];
+  for (const auto& running : lines_) {
     if (setup_.log) {
-      running.record().print_frames();
+      running->record().print_frames();
     }
     if (ends()) {
-      running.end_at(*setup_.lasts);
+      running->record().end_at(running->when_up_for(*setup_.lasts));
     }
-    running.start();
+    running->start();
     if (setup_.speed.paced()) {
-      running.start_paced(threads_.io(i), setup_.speed.factor);
+      running->start_paced(setup_.speed.factor);
     }
   }
 }
@@ -313,7 +310,7 @@ void RunningProgram::finish() {
   threads_.end();
   threads_.rethrow();
   for (const auto& running : lines_) {
-    running->finish();
+    running->record().finish();
   }
   if (watch_) {
     watch_->look();

@@ -43,7 +43,6 @@ class RunningProgram {
   RunningProgram& operator=(const RunningProgram&) = delete;
 
   /// Updates the existing EEPROM files, creates the missing files, prints the greeting, and starts the lines.
-  /// The time of paced lines passes from then on. The time of stepped lines passes at each command `advance`.
   /// If `setup` has a duration, paced or stepped lines stop `io` at its end. Throws std::invalid_argument or
   /// std::runtime_error with a one-line message. If the greeting has not been printed, the destructor removes
   /// the new files.

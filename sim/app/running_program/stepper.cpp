@@ -13,7 +13,6 @@ namespace ex9000::sim {
 
 namespace {
 
-constexpr const char* kCommand = "advance";
 constexpr const char* kShape = "requires TIME [after N] [quiet], for example advance 250ms after 8";
 
 }  // namespace
@@ -23,7 +22,7 @@ Stepper::Stepper(std::vector<SteppedLine*> lines, VirtualTime end, StopRequested
 
 bool Stepper::is_advance(const std::string& command) {
   const Words words = words_of(command);
-  return !words.empty() && words[0] == kCommand;
+  return !words.empty() && words[0] == "advance";
 }
 
 /// Throws std::invalid_argument with a one-line message.

@@ -6,17 +6,36 @@ namespace ex9000::sim {
 
 namespace {
 
-std::vector<std::uint8_t> exception_pdu(const MbapFrame& request, GatewayException code) {
-  return {static_cast<std::uint8_t>(request.pdu[0] | kRtuException), static_cast<std::uint8_t>(code)};
+// The exceptions of a gateway (MODBUS Application Protocol V1.1b3, section 7).
+constexpr std::uint8_t kPathUnavailable = 0x0A;
+constexpr std::uint8_t kNoReply = 0x0B;
+
+std::vector<std::uint8_t> exception_pdu(const MbapFrame& request, std::uint8_t code) {
+  return {static_cast<std::uint8_t>(request.pdu[0] | kRtuException), code};
+}
+
+/// Returns whether at least one module listens, and all modules that listen speak ASCII.
+bool speaks_only_ascii(const Line& line) {
+  bool ascii = false;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    const SimulatedModule& module = line.module(i);
+    if (module.powered() && module.module().listening()) {
+      if (module.module().state().in_force.protocol == Protocol::ModbusRtu) {
+        return false;
+      }
+      ascii = true;
+    }
+  }
+  return ascii;
 }
 
 }  // namespace
 
-void Gateway::ask(const MbapFrame& request, const std::weak_ptr<void>& owner, const Answer& answer) {
+void ask_on_line(Line& line, const MbapFrame& request, const std::weak_ptr<void>& owner,
+                 const GatewayAnswer& answer) {
   const bool broadcast = request.unit == kRtuBroadcast;
-  if (request.unit > kLastRtuAddress || speaks_only_ascii()) {
-    answer(broadcast ? std::nullopt
-                     : std::optional(exception_pdu(request, GatewayException::PathUnavailable)));
+  if (request.unit > kLastRtuAddress || speaks_only_ascii(line)) {
+    answer(broadcast ? std::nullopt : std::optional(exception_pdu(request, kPathUnavailable)));
     return;
   }
   RequestQueue::Request asked;
@@ -26,8 +45,8 @@ void Gateway::ask(const MbapFrame& request, const std::weak_ptr<void>& owner, co
   asked.is_reply = [sent = asked.bytes](Bytes frame) {
     return is_rtu_reply({sent.data(), sent.size()}, frame);
   };
-  asked.done = [broadcast, answer, no_reply = exception_pdu(request, GatewayException::NoReply)](
-                   const RequestQueue::Reply& reply) {
+  asked.done = [broadcast, answer,
+                no_reply = exception_pdu(request, kNoReply)](const RequestQueue::Reply& reply) {
     if (broadcast) {
       answer(std::nullopt);
     } else if (reply.bytes.empty()) {
@@ -37,22 +56,7 @@ void Gateway::ask(const MbapFrame& request, const std::weak_ptr<void>& owner, co
       answer(std::vector<std::uint8_t>(pdu.begin(), pdu.end()));
     }
   };
-  line_.requests().ask(std::move(asked));
-}
-
-/// Returns whether at least one module listens, and all modules that listen speak ASCII.
-bool Gateway::speaks_only_ascii() const {
-  bool ascii = false;
-  for (std::size_t i = 0; i < line_.size(); ++i) {
-    const SimulatedModule& module = line_.module(i);
-    if (module.powered() && module.module().listening()) {
-      if (module.module().state().in_force.protocol == Protocol::ModbusRtu) {
-        return false;
-      }
-      ascii = true;
-    }
-  }
-  return ascii;
+  line.requests().ask(std::move(asked));
 }
 
 }  // namespace ex9000::sim

@@ -20,7 +20,6 @@ struct MbapFrame {
 /// Finds the frames in the bytes of a connection, however TCP has split or joined them.
 class MbapReader {
  public:
-  /// Appends received bytes.
   void add(Bytes bytes);
   /// Removes and returns the next frame; nullopt if this frame is not complete yet, or if `broken` is true.
   std::optional<MbapFrame> next();
@@ -35,7 +34,6 @@ class MbapReader {
   bool broken_ = false;
 };
 
-/// Returns the bytes of a frame.
 std::vector<std::uint8_t> mbap_bytes(const MbapFrame& frame);
 
 }  // namespace ex9000::sim

@@ -14,7 +14,7 @@
 
 namespace ex9000::sim {
 
-/// Takes the requests from the bytes of a client. Passes each request to the gateway only after the answer to
+/// Takes the requests from the bytes of a client. Passes each request to the line only after the answer to
 /// the previous one, so that the clients of a line take turns. Replies have the order of the requests. The
 /// destructor drops requests that have not been sent. No function blocks.
 class MbapSession {
@@ -22,13 +22,12 @@ class MbapSession {
   /// Sends a reply to the client. Returns false if the client accepts no more at present.
   using Send = std::function<bool(const std::vector<std::uint8_t>& bytes)>;
 
-  /// `gateway` must outlive this object. `answered` is called after each answer of the gateway.
-  MbapSession(Gateway& gateway, Send send, std::function<void()> answered)
-      : gateway_(gateway), send_(std::move(send)), answered_(std::move(answered)) {}
+  /// `line` must outlive this object. `answered` is called after each answer of `ask_on_line`.
+  MbapSession(Line& line, Send send, std::function<void()> answered)
+      : line_(line), send_(std::move(send)), answered_(std::move(answered)) {}
   MbapSession(const MbapSession&) = delete;
   MbapSession& operator=(const MbapSession&) = delete;
 
-  /// Takes bytes that have arrived.
   void receive(Bytes bytes);
   /// Continues after `send` has returned false.
   void resume();
@@ -45,11 +44,11 @@ class MbapSession {
   void pass_on();
   void answer(const MbapFrame& request, const std::optional<std::vector<std::uint8_t>>& pdu);
 
-  Gateway& gateway_;
+  Line& line_;
   Send send_;
   std::function<void()> answered_;
   MbapReader reader_;
-  bool waiting_ = false;  ///< the gateway has not answered a request yet
+  bool waiting_ = false;  ///< a request has not been answered yet
   bool blocked_ = false;  ///< `send` has returned false, and `resume` has not been called yet
   bool passing_on_ = false;
   std::shared_ptr<MbapSession*> lives_ = std::make_shared<MbapSession*>(this);

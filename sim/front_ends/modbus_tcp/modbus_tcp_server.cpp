@@ -29,7 +29,7 @@ struct ModbusTcpServer::Client : std::enable_shared_from_this<Client> {
   Client(ModbusTcpServer& server, tcp::socket its_socket)
       : socket(std::move(its_socket)),
         session(
-            server.gateway_,
+            server.line_,
             [this, &server](const std::vector<std::uint8_t>& reply) {
               replies.insert(replies.end(), reply.begin(), reply.end());
               return server.write(shared_from_this());
@@ -52,7 +52,7 @@ struct ModbusTcpServer::Client : std::enable_shared_from_this<Client> {
 };
 
 ModbusTcpServer::ModbusTcpServer(boost::asio::io_context& io, Line& line, const TcpAddress& address)
-    : io_(io), gateway_(line), listener_(io, address) {}
+    : io_(io), line_(line), listener_(io, address) {}
 
 ModbusTcpServer::~ModbusTcpServer() {
   for (const ClientPointer& client : clients_) {

@@ -11,7 +11,6 @@
 
 #include "sim/files_and_ports/ports/tcp_address.hpp"
 #include "sim/files_and_ports/ports/tcp_listener.hpp"
-#include "sim/front_ends/modbus_tcp/gateway.hpp"
 #include "sim/virtual_line/line/line.hpp"
 
 namespace ex9000::sim {
@@ -61,7 +60,7 @@ class ModbusTcpServer {
   void forget(const ClientPointer& client);
 
   boost::asio::io_context& io_;
-  Gateway gateway_;
+  Line& line_;
   TcpListener listener_;
   Received received_;
   bool paused_ = false;

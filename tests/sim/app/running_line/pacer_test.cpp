@@ -44,7 +44,7 @@ class PacedLine : public testing::Test {
  protected:
   PacedLine() {
     ports_.push_back(std::make_unique<ImmediatePort>(received_));
-    pacer_.emplace(io_, line_, ports_, nullptr, kSlow, [](const std::string& /*text*/) {});
+    pacer_.emplace(io_, line_, connected_, nullptr, kSlow, [](const std::string& /*text*/) {});
     line_.bus().observe(recorder_);
     line_.come_up();
     line_.master().set_baud(115200);
@@ -84,7 +84,8 @@ class PacedLine : public testing::Test {
   Line line_{{parse_module_spec("EX9042D-M@01,baud=115200"), parse_module_spec("EX9052D-M@02,baud=115200"),
               parse_module_spec("EX9042D@03,baud=115200"), parse_module_spec("EX9043D-M@04,baud=115200")},
              kPaced,
-             [this](std::uint8_t byte, ByteStatus /*status*/) { pacer_->hear(byte); }};
+             [this](std::uint8_t byte, ByteStatus /*status*/) { connected_.hear(byte); }};
+  LinePorts connected_{line_, ports_, nullptr, [](const std::string& /*text*/) {}};
   BusRecorder recorder_;
   std::optional<Pacer> pacer_;
 };

@@ -67,21 +67,23 @@ struct StillLine {
       specs.push_back(parse_module_spec(module));
     }
     line = std::make_unique<Line>(specs, kPaced, [this](std::uint8_t byte, ByteStatus /*status*/) {
-      if (stepped) {
-        stepped->hear(byte);
+      if (connected) {
+        connected->hear(byte);
       }
     });
     line->come_up();
     auto its_port = std::make_unique<FakePort>();
     port = its_port.get();
     ports.push_back(std::move(its_port));
-    stepped = std::make_unique<SteppedLine>(*line, ports, nullptr,
+    connected = std::make_unique<LinePorts>(*line, ports, nullptr,
                                             [this](const std::string& text) { notices.push_back(text); });
+    stepped = std::make_unique<SteppedLine>(*line, *connected, nullptr);
   }
 
   std::unique_ptr<Line> line;
   LinePorts::All ports;
   FakePort* port = nullptr;
+  std::unique_ptr<LinePorts> connected;
   std::unique_ptr<SteppedLine> stepped;
   std::vector<std::string> notices;
 };
@@ -313,7 +315,7 @@ TEST_F(StepperTest, BytesForAFullPortAreDroppedAndReported) {
   EXPECT_EQ(line_.port->take_read(), "!019");
   ASSERT_EQ(line_.notices.size(), 1U);
   EXPECT_EQ(line_.notices[0].rfind("a port is full: 5 bytes are dropped", 0), 0U) << line_.notices[0];
-  EXPECT_EQ(line_.stepped->sent(), 9U);
+  EXPECT_EQ(line_.connected->sent(), 9U);
 }
 
 TEST_F(StepperTest, AFullPortIsReportedOnceUntilItHasRoomAgain) {

@@ -39,7 +39,7 @@ class GatewayLine {
   /// Sends a request to the gateway, runs the line for two seconds, and returns the answer and its time.
   Result ask(std::uint8_t unit, const Pdu& pdu) {
     Result result;
-    gateway.ask({1, unit, pdu}, owner, [&](const std::optional<Pdu>& answer) {
+    ask_on_line(line, {1, unit, pdu}, owner, [&](const std::optional<Pdu>& answer) {
       EXPECT_FALSE(result.answered) << "answered twice";
       result = {true, answer, line.clock().virtual_now()};
     });
@@ -49,7 +49,6 @@ class GatewayLine {
   Pdu reply(std::uint8_t unit, const Pdu& pdu) { return ask(unit, pdu).pdu.value_or(Pdu()); }
 
   Line line;
-  Gateway gateway{line};
   std::shared_ptr<int> owner = std::make_shared<int>();
 
  private:
@@ -189,8 +188,8 @@ std::vector<Pdu> answers_if_replies_are_late(GatewayLine& bench, RequestFor requ
   bench.line.faults().add(parse_fault("late-reply 600ms"));
   std::vector<Pdu> answers;
   for (std::uint8_t coil = 0; coil < 6; ++coil) {
-    bench.gateway.ask({1, 0x01, request_for(coil)}, bench.owner,
-                      [&](const std::optional<Pdu>& answer) { answers.push_back(answer.value_or(Pdu())); });
+    ask_on_line(bench.line, {1, 0x01, request_for(coil)}, bench.owner,
+                [&](const std::optional<Pdu>& answer) { answers.push_back(answer.value_or(Pdu())); });
   }
   bench.line.bus().run_for(seconds(10));
   return answers;
@@ -217,8 +216,8 @@ TEST(Gateway, TheReplyToAnotherMasterIsNotTheReplyToTheClient) {
   const Pdu read_coil_0{0x01, 0x00, 0x00, 0x00, 0x01};
   EXPECT_EQ(bench.reply(0x01, read_coil_0), (Pdu{0x01, 0x01, 0x01}));
   std::optional<Pdu> reply;
-  bench.gateway.ask({1, 0x01, read_coil_0}, bench.owner,
-                    [&](const std::optional<Pdu>& answer) { reply = answer; });
+  ask_on_line(bench.line, {1, 0x01, read_coil_0}, bench.owner,
+              [&](const std::optional<Pdu>& answer) { reply = answer; });
   bench.line.bus().run_for(milliseconds(100));  // the reply of the module is lost
   const std::vector<std::uint8_t> other = rtu_frame(0x01, {0x01, 0x00, 0x05, 0x00, 0x01});
   bench.line.master().send(other.data(), other.size());
@@ -237,7 +236,7 @@ TEST(Gateway, AReplyAfterTheTimeoutIsNotTheReplyToTheNextRequest) {
   GatewayLine bench({"EX9042D-M@01", "EX9052D-M@02"});
   bench.line.faults().add(parse_fault("late-reply 600ms every 2nd reply"));
   EXPECT_EQ(bench.reply(0x01, kReadOutputs), kOutputsOff);
-  bench.gateway.ask({1, 0x01, kReadOutputs}, bench.owner, [](const std::optional<Pdu>& answer) {
+  ask_on_line(bench.line, {1, 0x01, kReadOutputs}, bench.owner, [](const std::optional<Pdu>& answer) {
     EXPECT_EQ(answer, (Pdu{0x81, kNoReply}));
   });
   bench.line.bus().run_for(milliseconds(520));

@@ -21,10 +21,10 @@ using std::chrono::seconds;
 /// A client that sends further requests before it has received all replies, and checks each reply.
 class PollingClient {
  public:
-  PollingClient(Gateway& gateway, unsigned number)
+  PollingClient(Line& line, unsigned number)
       : random_(number),
         session_(
-            gateway, [this](const Buffer& bytes) { return take(bytes); }, [] {}) {}
+            line, [this](const Buffer& bytes) { return take(bytes); }, [] {}) {}
 
   void ask() {
     static constexpr std::uint8_t kUnits[] = {1, 2, 9, 250};
@@ -101,16 +101,15 @@ TEST(MbapSession, FiveClientsOnOneLineGetTheirOwnReplies) {
             kPaced, [](std::uint8_t /*byte*/, ByteStatus /*status*/) {});
   line.come_up();
   line.master().set_baud(115200);
-  Gateway gateway(line);
   const auto owner = std::make_shared<int>();
-  gateway.ask({1, 1, {0x0F, 0x00, 0x00, 0x00, 0x10, 0x02, 0xFF, 0xFF}}, owner,
+  ask_on_line(line, {1, 1, {0x0F, 0x00, 0x00, 0x00, 0x10, 0x02, 0xFF, 0xFF}}, owner,
               [](const std::optional<Buffer>& reply) {
                 EXPECT_EQ(reply, (Buffer{0x0F, 0x00, 0x00, 0x00, 0x10}));
               });
   line.bus().run_for(seconds(1));
   std::vector<std::unique_ptr<PollingClient>> clients;
   for (unsigned i = 0; i < 5; ++i) {
-    clients.push_back(std::make_unique<PollingClient>(gateway, i));
+    clients.push_back(std::make_unique<PollingClient>(line, i));
   }
   const VirtualTime end = line.clock().virtual_now() + duration;
   std::mt19937 random(1);
@@ -137,10 +136,9 @@ TEST(MbapSession, RequestsOfAClientThatReadsNoRepliesWait) {
   Line line({parse_module_spec("EX9042D-M@01")}, kInstant,
             [](std::uint8_t /*byte*/, ByteStatus /*status*/) {});
   line.come_up();
-  Gateway gateway(line);
   unsigned replies = 0;
   MbapSession session(
-      gateway,
+      line,
       [&](const Buffer& /*bytes*/) {
         ++replies;
         return false;
@@ -165,11 +163,10 @@ TEST(MbapSession, RequestsOfAClientThatReadsNoRepliesWait) {
 TEST(MbapSession, ClientsTakeTurnsAlthoughOneHasManyRequests) {
   Line line({parse_module_spec("EX9042D-M@01")}, kPaced, [](std::uint8_t /*byte*/, ByteStatus /*status*/) {});
   line.come_up();
-  Gateway gateway(line);
   std::vector<std::string> order;
   const auto client = [&](const std::string& name) {
     return std::make_unique<MbapSession>(
-        gateway,
+        line,
         [&order, name](const Buffer& /*bytes*/) {
           order.push_back(name);
           return true;
@@ -190,9 +187,8 @@ TEST(MbapSession, ClientsTakeTurnsAlthoughOneHasManyRequests) {
 TEST(MbapSession, WaitingRequestsOfADisconnectedClientAreNotSent) {
   Line line({parse_module_spec("EX9042D-M@01")}, kPaced, [](std::uint8_t /*byte*/, ByteStatus /*status*/) {});
   line.come_up();
-  Gateway gateway(line);
   auto session = std::make_unique<MbapSession>(
-      gateway,
+      line,
       [](const Buffer& /*bytes*/) {
         ADD_FAILURE() << "a reply after the client has disconnected";
         return true;

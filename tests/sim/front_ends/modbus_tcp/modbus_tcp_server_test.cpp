@@ -11,6 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "sim/front_ends/modbus_tcp/mbap.hpp"
+
 namespace ex9000::sim {
 namespace {
 
