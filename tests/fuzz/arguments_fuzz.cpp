@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "sim/app/bus_file/bus_file.hpp"
 #include "sim/app/main/arguments.hpp"
+#include "sim/app/setup_from_bus_file/bus_file.hpp"
 #include "tests/fuzz/require.hpp"
 
 namespace ex9000::fuzz {

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "sim/front_ends/control/control.hpp"
+#include "sim/front_ends/control_socket/control.hpp"
 #include "sim/virtual_line/line/line.hpp"
 #include "tests/fuzz/fault_judge.hpp"
 #include "tests/fuzz/require.hpp"

@@ -5,11 +5,11 @@
 #include <stdexcept>
 #include <utility>
 
-#include "sim/app/bus_file/bus_file.hpp"
-#include "sim/app/exports/describe.hpp"
 #include "sim/app/main/help.hpp"
 #include "sim/app/main/line_options.hpp"
 #include "sim/app/main/option_values.hpp"
+#include "sim/app/model_exports/describe.hpp"
+#include "sim/app/setup_from_bus_file/bus_file.hpp"
 #include "sim/text/durations.hpp"
 #include "sim/text/fail.hpp"
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "sim/app/play/play.hpp"
-#include "sim/app/run_setup/setup.hpp"
+#include "sim/app/setup/setup.hpp"
 
 namespace ex9000::sim {
 

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "sim/app/play/play_observer.hpp"
-#include "sim/app/run_setup/setup.hpp"
 #include "sim/app/running_line/line_record.hpp"
+#include "sim/app/setup/setup.hpp"
 #include "sim/files_and_ports/files/new_file.hpp"
 #include "sim/line_monitor/capture/capture.hpp"
 

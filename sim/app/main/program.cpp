@@ -11,10 +11,10 @@
 #include <stdexcept>
 #include <string>
 
-#include "sim/app/exports/formats.hpp"
 #include "sim/app/main/arguments.hpp"
 #include "sim/app/main/play_record.hpp"
 #include "sim/app/main/standard_stream.hpp"
+#include "sim/app/model_exports/formats.hpp"
 #include "sim/app/play/play.hpp"
 #include "sim/app/running_program/running_program.hpp"
 #include "sim/app/running_program/stop_signals.hpp"

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <utility>
 
-#include "sim/app/run_setup/line_factory.hpp"
+#include "sim/app/setup/line_factory.hpp"
 #include "sim/files_and_ports/files/eeprom_file.hpp"
-#include "sim/front_ends/control/control.hpp"
+#include "sim/front_ends/control_socket/control.hpp"
 #include "sim/text/fail.hpp"
 #include "sim/text/words.hpp"
 

@@ -8,7 +8,7 @@
 
 #include "sim/app/play/play_observer.hpp"
 #include "sim/app/play/target.hpp"
-#include "sim/app/run_setup/setup.hpp"
+#include "sim/app/setup/setup.hpp"
 #include "sim/virtual_line/line/line.hpp"
 
 namespace ex9000::play {

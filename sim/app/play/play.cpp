@@ -7,7 +7,7 @@
 #include "sim/app/play/player.hpp"
 #include "sim/app/play/rehearsal.hpp"
 #include "sim/app/play/transcript.hpp"
-#include "sim/app/run_setup/paths_in_use.hpp"
+#include "sim/app/setup/paths_in_use.hpp"
 #include "sim/text/fail.hpp"
 
 namespace ex9000::play {

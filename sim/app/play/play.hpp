@@ -6,7 +6,7 @@
 #include <string>
 
 #include "sim/app/play/play_observer.hpp"
-#include "sim/app/run_setup/setup.hpp"
+#include "sim/app/setup/setup.hpp"
 
 namespace ex9000::play {
 

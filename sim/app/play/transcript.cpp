@@ -9,7 +9,7 @@
 #include <string_view>
 
 #include "sim/files_and_ports/files/regular_file.hpp"
-#include "sim/front_ends/control/control.hpp"
+#include "sim/front_ends/control_socket/control.hpp"
 #include "sim/text/durations.hpp"
 #include "sim/text/fail.hpp"
 #include "sim/text/values.hpp"

@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "sim/app/run_setup/setup.hpp"
+#include "sim/app/setup/setup.hpp"
 #include "sim/line_monitor/capture/capture.hpp"
 #include "sim/line_monitor/frames/frame_watch.hpp"
 #include "sim/line_monitor/log/bus_log.hpp"

@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "sim/app/run_setup/line_factory.hpp"
+#include "sim/app/setup/line_factory.hpp"
 #include "sim/files_and_ports/ports/pty_port.hpp"
 #include "sim/files_and_ports/ports/serial_port.hpp"
 #include "sim/files_and_ports/ports/tcp_port.hpp"

@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "sim/app/run_setup/setup.hpp"
 #include "sim/app/running_line/line_record.hpp"
 #include "sim/app/running_line/pacer.hpp"
 #include "sim/app/running_line/stepped_line.hpp"
+#include "sim/app/setup/setup.hpp"
 #include "sim/files_and_ports/files/eeprom_file.hpp"
 #include "sim/files_and_ports/files/new_file.hpp"
 #include "sim/front_ends/modbus_tcp/modbus_tcp_server.hpp"

@@ -7,7 +7,7 @@
 #include <thread>
 #include <utility>
 
-#include "sim/app/run_setup/paths_in_use.hpp"
+#include "sim/app/setup/paths_in_use.hpp"
 #include "sim/text/fail.hpp"
 
 namespace ex9000::sim {

@@ -10,14 +10,14 @@
 #include <string>
 #include <vector>
 
-#include "sim/app/run_setup/setup.hpp"
 #include "sim/app/running_line/running_line.hpp"
 #include "sim/app/running_program/line_threads.hpp"
 #include "sim/app/running_program/stepper.hpp"
 #include "sim/app/running_program/stop_signals.hpp"
+#include "sim/app/setup/setup.hpp"
 #include "sim/files_and_ports/files/new_file.hpp"
-#include "sim/front_ends/control/control.hpp"
-#include "sim/front_ends/control/control_socket.hpp"
+#include "sim/front_ends/control_socket/control.hpp"
+#include "sim/front_ends/control_socket/control_socket.hpp"
 #include "sim/front_ends/panel/panel.hpp"
 #include "sim/front_ends/panel/panel_server.hpp"
 #include "sim/front_ends/terminal_view/watch.hpp"

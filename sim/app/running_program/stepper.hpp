@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "sim/app/running_line/stepped_line.hpp"
-#include "sim/front_ends/control/control.hpp"
+#include "sim/front_ends/control_socket/control.hpp"
 
 namespace ex9000::sim {
 

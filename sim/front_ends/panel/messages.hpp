@@ -9,7 +9,7 @@
 
 #include "sim/front_ends/panel/recent_traffic.hpp"
 #include "sim/line_monitor/module_view/face.hpp"
-#include "sim/virtual_line/faults/faults.hpp"
+#include "sim/virtual_line/bus_faults/faults.hpp"
 
 namespace ex9000::sim {
 

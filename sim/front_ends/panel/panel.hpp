@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/front_ends/control/control.hpp"
+#include "sim/front_ends/control_socket/control.hpp"
 #include "sim/line_monitor/frames/frame_watch.hpp"
 #include "sim/line_monitor/log/banner.hpp"
 #include "sim/virtual_line/line/line.hpp"

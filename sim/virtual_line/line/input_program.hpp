@@ -11,7 +11,7 @@
 
 #include "sim/virtual_line/bus/bus.hpp"
 #include "sim/virtual_line/bus/module.hpp"
-#include "sim/virtual_line/faults/chance.hpp"
+#include "sim/virtual_line/bus_faults/chance.hpp"
 
 namespace ex9000::sim {
 

@@ -7,7 +7,7 @@
 #include "sim/virtual_line/bus/bus.hpp"
 #include "sim/virtual_line/bus/master.hpp"
 #include "sim/virtual_line/bus/module.hpp"
-#include "sim/virtual_line/faults/faults.hpp"
+#include "sim/virtual_line/bus_faults/faults.hpp"
 #include "sim/virtual_line/line/frame_spacing.hpp"
 #include "sim/virtual_line/line/input_program.hpp"
 #include "sim/virtual_line/line/module_spec.hpp"

@@ -12,7 +12,7 @@
 #include <functional>
 
 #include "sim/app/play/modbus_frame.hpp"
-#include "sim/virtual_line/faults/echo.hpp"
+#include "sim/virtual_line/bus_faults/echo.hpp"
 #include "tests/firmware/noise/noisy_line.hpp"
 #include "tests/firmware/noise/theory.hpp"
 #include "tests/support/environment.hpp"

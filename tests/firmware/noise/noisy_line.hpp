@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "sim/virtual_line/faults/noise.hpp"
+#include "sim/virtual_line/bus_faults/noise.hpp"
 #include "sim/virtual_line/line/line.hpp"
 #include "tests/firmware/noise/onlooker.hpp"
 

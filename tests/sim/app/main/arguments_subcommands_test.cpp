@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "sim/app/bus_file/bus_file.hpp"
-#include "sim/app/exports/formats.hpp"
 #include "sim/app/main/arguments.hpp"
-#include "sim/front_ends/control/control.hpp"
+#include "sim/app/model_exports/formats.hpp"
+#include "sim/app/setup_from_bus_file/bus_file.hpp"
+#include "sim/front_ends/control_socket/control.hpp"
 #include "tests/sim/app/main/parsed_arguments.hpp"
 
 namespace ex9000::sim {

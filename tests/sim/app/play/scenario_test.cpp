@@ -7,12 +7,12 @@
 #include <string>
 #include <vector>
 
-#include "sim/app/bus_file/bus_file.hpp"
 #include "sim/app/main/play_record.hpp"
 #include "sim/app/play/bus_target.hpp"
 #include "sim/app/play/play.hpp"
 #include "sim/app/play/player.hpp"
 #include "sim/app/play/transcript.hpp"
+#include "sim/app/setup_from_bus_file/bus_file.hpp"
 #include "sim/files_and_ports/files/eeprom_file.hpp"
 #include "sim/virtual_line/bus/module.hpp"
 #include "tests/support/directory.hpp"

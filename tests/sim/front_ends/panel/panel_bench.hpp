@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "sim/front_ends/control/control.hpp"
+#include "sim/front_ends/control_socket/control.hpp"
 #include "sim/front_ends/panel/messages.hpp"
 #include "sim/front_ends/panel/panel.hpp"
 #include "tests/firmware/module_bench.hpp"

@@ -1,0 +1,177 @@
+#include <algorithm>
+#include <array>
+
+#include "firmware/model/baud.hpp"
+#include "sim/app/model_exports/formats.hpp"
+#include "sim/app/model_exports/register_map.hpp"
+#include "sim/app/model_exports/shown.hpp"
+#include "sim/app/model_exports/yaml.hpp"
+#include "sim/text/values.hpp"
+
+namespace ex9000::sim {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// The polling intervals, and the timeout of a request. Home Assistant warns about polling intervals shorter
+// than 5 s. If a polling interval is not longer than the timeout, Home Assistant shortens the timeout.
+constexpr unsigned kOftenSeconds = 5;
+constexpr unsigned kSeldomSeconds = 30;
+constexpr unsigned kTimeoutSeconds = 2;
+/// The silence between two frames, 3.5 characters of 11 bits, takes 32.1 ms at 1200 baud.
+constexpr unsigned kWaitMilliseconds = 33;
+
+/// The values of input_type, in the order of the enumeration Table.
+constexpr std::array<const char*, 4> kInputTypes{"coil", "discrete_input", "input", "holding"};
+
+class Hub {
+ public:
+  Hub(const Model& model, const NetworkAddress& network_address)
+      : model_(model),
+        network_address_(network_address),
+        key_(model_key(model) + "_" + hex_byte_text(network_address.address)) {}
+
+  [[nodiscard]] Json hub() const {
+    Json hub{{"name", key_},
+             {"type", network_address_.modbus_tcp ? "tcp" : "rtuovertcp"},
+             {"host", network_address_.tcp.host},
+             {"port", network_address_.tcp.port},
+             {"timeout", kTimeoutSeconds},
+             {"message_wait_milliseconds", kWaitMilliseconds}};
+    for (const Shown& shown : shown_by(model_)) {
+      for (unsigned index = 0; index < shown.width; ++index) {
+        add(shown, index, hub);
+      }
+    }
+    return hub;
+  }
+
+  /// Returns the actions that let polls restart the host watchdog, and the actions to call after a timeout.
+  [[nodiscard]] std::string watchdog_actions() const {
+    const std::string after =
+        model_.outputs == 0 ? "the timeout status stays set" : "the outputs keep their safe values";
+    return "# With register 0x0251 = 1, each poll restarts the host watchdog, which then watches Home\n"
+           "# Assistant. It expires if the polls stop for longer than its timeout (register 0x01E8; factory\n"
+           "# setting: 25.5 s), which must be longer than the scan_interval. Polls of any other master also\n"
+           "# restart it. Call these actions once:\n" +
+           write("register", "watchdog-feed", "value: 1") + write("coil", "watchdog-enable", "state: true") +
+           "# After a timeout, " + after + " until you call these:\n" +
+           write("coil", "timeout-status", "state: true") + write("coil", "watchdog-enable", "state: true");
+  }
+
+  /// Returns actions for the items with the role Button, because these items have no entity. Automations and
+  /// dashboards can call the actions.
+  [[nodiscard]] std::string actions() const {
+    std::string text;
+    for (const Shown& shown : shown_by(model_)) {
+      for (unsigned index = 0; shown.role == Role::Button && index < shown.width; ++index) {
+        text += "#   " + shown.name_of(index) + ": " + action("coil", shown.first + index, "state: true");
+      }
+    }
+    return text;
+  }
+
+ private:
+  /// Returns a call of an action that writes the coil or the register at `address`.
+  [[nodiscard]] std::string action(const std::string& kind, unsigned address,
+                                   const std::string& value) const {
+    return "modbus.write_" + kind + " with hub: " + key_ +
+           ", slave: " + std::to_string(network_address_.address) + ", address: " + std::to_string(address) +
+           ", " + value + "\n";
+  }
+
+  /// Returns a call of an action that writes the item `id` of the register map.
+  [[nodiscard]] std::string write(const std::string& kind, std::string_view id,
+                                  const std::string& value) const {
+    const std::vector<MapRow> map = register_map(model_);
+    const auto row = std::find_if(map.begin(), map.end(), [id](const MapRow& each) { return each.id == id; });
+    return "#   " + action(kind, row->first, value);
+  }
+
+  [[nodiscard]] Json entity(const Shown& shown, unsigned index, unsigned seconds) const {
+    return {{"name", std::string(model_.designation) + " " + hex_byte_text(network_address_.address) + " " +
+                         shown.name_of(index)},
+            {"unique_id", key_ + "_" + shown.key_of(index)},
+            {"slave", network_address_.address},
+            {"address", shown.first + index},
+            {"scan_interval", seconds}};
+  }
+
+  /// Adds an entity to the list of its platform. Items with the roles Preset and Button have no entity: a
+  /// dashboard should not change the presets, and the integration has no buttons.
+  void add(const Shown& shown, unsigned index, Json& hub) const {
+    const auto add_to = [&](const char* platform, unsigned seconds, const Json& more) {
+      Json entity = this->entity(shown, index, seconds);
+      entity.update(more);
+      hub[platform].push_back(entity);
+    };
+    const Json input_type = kInputTypes[static_cast<std::size_t>(shown.table)];
+    switch (shown.role) {
+      case Role::Output:
+        // Without `verify`, the switch would show the last command, even after a timeout of the host watchdog
+        // or a write by another master.
+        add_to(
+            "switches", kOftenSeconds,
+            {{"write_type", "coil"}, {"verify", {{"input_type", "coil"}, {"address", shown.first + index}}}});
+        break;
+      case Role::Input:
+        add_to("binary_sensors", kOftenSeconds, {{"input_type", input_type}});
+        break;
+      case Role::State:
+        add_to("binary_sensors", kSeldomSeconds, {{"input_type", input_type}});
+        break;
+      case Role::Problem:
+        add_to("binary_sensors", kSeldomSeconds, {{"input_type", input_type}, {"device_class", "problem"}});
+        break;
+      case Role::Counter:
+        add_to("sensors", kOftenSeconds,
+               {{"input_type", input_type}, {"data_type", "uint16"}, {"state_class", "total_increasing"}});
+        break;
+      case Role::Tenths:
+        add_to("sensors", kSeldomSeconds,
+               {{"input_type", input_type},
+                {"data_type", "uint16"},
+                {"scale", 0.1},
+                {"precision", 1},
+                {"device_class", "duration"},
+                {"unit_of_measurement", "s"}});
+        break;
+      case Role::Preset:
+      case Role::Button:
+        break;
+    }
+  }
+
+  const Model& model_;
+  const NetworkAddress& network_address_;
+  std::string key_;
+};
+
+std::string head(const Model& model, const NetworkAddress& network_address) {
+  return "# " + std::string(model.designation) + " at address " + hex_byte_text(network_address.address) +
+         ", for Home Assistant's modbus integration. In configuration.yaml:\n"
+         "#   modbus: !include modbus.yaml\n"
+         "# Put further modules on the same line under this hub: Home Assistant does not load a second hub "
+         "with the same host and port.\n"
+         "# A module on a serial port has, in place of type, host and port:\n"
+         "#   type: serial\n"
+         "#   port: /dev/ttyUSB0\n"
+         "#   baudrate: " +
+         std::to_string(baud_rate(kFactoryBaudCode)) +
+         "\n"
+         "#   bytesize: 8\n"
+         "#   method: rtu\n"
+         "#   parity: N\n"
+         "#   stopbits: 1\n";
+}
+
+}  // namespace
+
+std::string home_assistant_hub(const Model& model, const NetworkAddress& network_address) {
+  const Hub hub(model, network_address);
+  return head(model, network_address) + yaml_of(Json::array({hub.hub()})) +
+         "# Actions for items without an entity:\n" + hub.actions() + hub.watchdog_actions();
+}
+
+}  // namespace ex9000::sim

@@ -1,0 +1,55 @@
+#include "sim/virtual_line/bus_faults/noise.hpp"
+
+#include <algorithm>
+
+namespace ex9000::sim {
+
+Noise::Noise(Bus& bus, NoiseRates rates, std::uint64_t seed)
+    : wire_(bus.attach(*this)), rates_(rates), chance_(seed) {
+  bus.disturb(*this);
+}
+
+Levels Noise::disturbed(const Sent& sent) {
+  if (straying_) {
+    return sent.levels;
+  }
+  Levels levels = sent.levels;
+  for (unsigned bit = 0; bit < bits_received(sent.mode.format); ++bit) {
+    const auto mask = static_cast<Levels>(1U << bit);
+    if (chance_.happens(rates_.flipped_bit)) {
+      levels = static_cast<Levels>(levels ^ mask);
+    }
+    if (sent.contended && (levels & mask) == 0 && chance_.happens(rates_.lost_in_contention)) {
+      levels = static_cast<Levels>(levels | mask);
+    }
+  }
+  if (chance_.happens(rates_.lost_character)) {
+    levels = kIdleLevels;
+  }
+  const bool zero = chance_.happens(rates_.stray_zero);
+  if (zero || chance_.happens(rates_.stray_character)) {
+    const std::uint8_t byte = zero ? 0 : static_cast<std::uint8_t>(chance_.number());
+    const auto later = std::find_if(strays_.begin(), strays_.end(),
+                                    [&sent](const Stray& stray) { return sent.ends < stray.at; });
+    strays_.insert(later, {sent.ends, byte, sent.mode});
+    wait_for_next();
+  }
+  changes_ += levels != sent.levels ? 1U : 0U;
+  return levels;
+}
+
+/// Puts the next stray character on the wires. Does not enable a driver, because no device sends this
+/// character.
+void Noise::run() {
+  const Stray stray = strays_.front();
+  strays_.pop_front();
+  ++changes_;
+  straying_ = true;
+  wire_.put(stray.byte, stray.mode);
+  straying_ = false;
+  wait_for_next();
+}
+
+void Noise::wait_for_next() { wire_.run_at(strays_.empty() ? kNever : strays_.front().at); }
+
+}  // namespace ex9000::sim

@@ -1,0 +1,120 @@
+// Tests which models each format describes, and which arguments are rejected.
+#include "sim/app/model_exports/describe.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "firmware/model/model.hpp"
+
+namespace ex9000::sim {
+namespace {
+
+std::string described(const char* model, const char* format) {
+  DescribeTexts texts;
+  texts.model = model;
+  texts.format = format;
+  return describe(texts);
+}
+
+/// Expects that the arguments are rejected with a one-line message that contains `wrong` and `mend`.
+void expect_refused(const DescribeTexts& texts, const std::string& wrong, const std::string& mend) {
+  try {
+    describe(texts);
+    ADD_FAILURE() << texts.format << " is accepted for " << texts.model;
+  } catch (const std::invalid_argument& error) {
+    const std::string what = error.what();
+    EXPECT_NE(what.find(wrong), std::string::npos) << what;
+    EXPECT_NE(what.find(mend), std::string::npos) << what;
+    EXPECT_EQ(what.find('\n'), std::string::npos) << what;
+  }
+}
+
+TEST(Describe, MarkdownJsonAndCsvDescribeOneModelOrAll) {
+  for (const char* format : {"markdown", "json", "csv"}) {
+    const std::string all = described("", format);
+    for (const Model& model : kModels) {
+      const std::string name(model.designation);
+      EXPECT_NE(all.find(name), std::string::npos) << format << " of " << name;
+      EXPECT_NE(described(name.c_str(), format).find(name), std::string::npos) << format << " of " << name;
+    }
+    EXPECT_EQ(described("EX9042D", format).find("EX9055D"), std::string::npos);
+  }
+}
+
+TEST(Describe, HomeAssistantNodeRedAndWbMqttSerialRequireAModelWithModbus) {
+  for (const char* format : {"home-assistant", "node-red", "wb-mqtt-serial"}) {
+    for (const Model& model : kModels) {
+      const std::string name(model.designation);
+      if (model.speaks_modbus()) {
+        EXPECT_NE(described(name.c_str(), format).find(name), std::string::npos) << format;
+      } else {
+        expect_refused({name, format, {}, {}},
+                       name + " --format " + format + ": the model does not support Modbus", "--models");
+      }
+    }
+    expect_refused({"", format, {}, {}}, std::string("--format ") + format, "MODEL");
+    expect_refused({"EX1", format, {}, {}}, "'EX1'", "--models");
+  }
+}
+
+TEST(Describe, AnAddressIsOneOrTwoHexDigitsFrom01ToF7) {
+  for (const char* address : {"0", "00", "F8", "FF"}) {
+    expect_refused({"EX9042D-M", "home-assistant", address, {}}, std::string("--address ") + address,
+                   "expected a Modbus address, hex 01 to F7");
+  }
+  for (const char* address : {"", "001", "1G", "0x1", "-1", "1,"}) {
+    expect_refused({"EX9042D-M", "home-assistant", address, {}}, "--address '" + std::string(address) + "'",
+                   "expected one or two hex digits");
+  }
+  EXPECT_NE(describe({"EX9042D-M", "home-assistant", "f7", {}}).find("slave: 247\n"), std::string::npos);
+  EXPECT_NE(describe({"EX9042D-M", "home-assistant", "a", {}}).find("slave: 10\n"), std::string::npos);
+}
+
+TEST(Describe, AnInvalidTcpHostOrPortIsRefused) {
+  for (const char* tcp : {"", "0", "localhost:0", "localhost", "65536", "a b:1", "\xFF:1", "\"a\":1"}) {
+    expect_refused({"EX9042D-M", "node-red", {}, tcp}, "--tcp ", "HOST:PORT");
+    expect_refused({"EX9042D-M", "node-red", {}, {}, tcp}, "--modbus-tcp ", "HOST:PORT");
+  }
+  const std::string text = describe({"EX9042D-M", "node-red", {}, "[fe80::1%eth0]:4001"});
+  EXPECT_NE(text.find("\"tcpHost\": \"fe80::1%eth0\""), std::string::npos);
+  EXPECT_NE(text.find("\"tcpPort\": \"4001\""), std::string::npos);
+}
+
+TEST(Describe, AModbusTcpPortSetsHostPortAndType) {
+  const std::string hub = describe({"EX9042D-M", "home-assistant", {}, {}, "[fe80::1%eth0]:502"});
+  EXPECT_NE(hub.find("  type: tcp\n  host: \"fe80::1%eth0\"\n  port: 502\n"), std::string::npos) << hub;
+  const std::string flow = describe({"EX9042D-M", "node-red", {}, {}, "5020"});
+  EXPECT_NE(flow.find("\"tcpHost\": \"127.0.0.1\""), std::string::npos);
+  EXPECT_NE(flow.find("\"tcpPort\": \"5020\""), std::string::npos);
+  EXPECT_NE(flow.find("\"tcpType\": \"DEFAULT\""), std::string::npos);
+}
+
+TEST(Describe, TcpAndModbusTcpTogetherAreRefused) {
+  for (const char* format : {"home-assistant", "node-red"}) {
+    expect_refused({"EX9042D-M", format, {}, "127.0.0.1:5020", "127.0.0.1:502"},
+                   "--modbus-tcp: cannot be combined with --tcp", "leave out one of them");
+  }
+}
+
+TEST(Describe, FormatsOtherThanHomeAssistantAndNodeRedRefuseAddressAndPorts) {
+  for (const char* format : {"markdown", "json", "csv", "wb-mqtt-serial"}) {
+    expect_refused({"EX9042D-M", format, "01", {}}, "--address: --format " + std::string(format),
+                   "leave it out");
+    expect_refused({"EX9042D-M", format, {}, "5020"}, "--tcp: --format " + std::string(format),
+                   "leave it out");
+    expect_refused({"EX9042D-M", format, {}, {}, "5020"}, "--modbus-tcp: --format " + std::string(format),
+                   "leave it out");
+  }
+}
+
+TEST(Describe, AnUnknownFormatIsRefusedWithAListOfFormats) {
+  for (const char* format : {"", "yaml", "Markdown", "json "}) {
+    expect_refused({"EX9042D-M", format, {}, {}}, std::string("--format ") + format, describe_formats());
+  }
+  EXPECT_EQ(describe_formats(), "markdown|json|csv|home-assistant|node-red|wb-mqtt-serial");
+}
+
+}  // namespace
+}  // namespace ex9000::sim

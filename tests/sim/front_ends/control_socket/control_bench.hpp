@@ -1,0 +1,99 @@
+// Benches with modules, a master, and the commands of the control socket.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "sim/front_ends/control_socket/control.hpp"
+#include "tests/firmware/module_bench.hpp"
+
+namespace ex9000::sim {
+
+inline bool has(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+/// Checks the form that every reply must have, and returns the text of `reply`.
+inline std::string checked(const Control::Reply& reply) {
+  const std::string& text = reply.text;
+  EXPECT_TRUE(text == "ok" || text.rfind("ok ", 0) == 0 || text.rfind("error: ", 0) == 0) << text;
+  EXPECT_EQ(text.find_first_of("\r\n"), std::string::npos) << text;
+  EXPECT_NE(text.back(), ' ') << text;
+  return text;
+}
+
+/// A module, a master, and the commands of the control socket.
+class ControlBench : public ModuleBench {
+ public:
+  explicit ControlBench(const std::string& spec) : ModuleBench(spec), control_({{"", line()}}) {}
+
+  std::string tell(const std::string& command) {
+    const Control::Reply reply = control_.carry_out(command);
+    EXPECT_FALSE(reply.quit) << command;
+    return checked(reply);
+  }
+
+  /// Carries out a command whose reply has the form `ok HEX`, and returns the number in the reply.
+  unsigned number(const std::string& command) {
+    const std::string reply = tell(command);
+    EXPECT_EQ(reply.rfind("ok ", 0), 0U) << reply;
+    EXPECT_EQ(reply.find_first_not_of("0123456789ABCDEFabcdef", 3), std::string::npos) << reply;
+    return static_cast<unsigned>(std::stoul(reply.substr(3), nullptr, 16));
+  }
+
+  bool status_has(const std::string& part) { return has(tell("1 status"), part); }
+
+  /// Runs the line until the module restarts. Gives up after 2 s.
+  void run_to_reset() {
+    const VirtualTime gives_up = now() + std::chrono::milliseconds(2000);
+    while (!status_has("mode=starting") && now() < gives_up) {
+      line().bus().run_until(line().bus().next());
+    }
+  }
+
+  /// Returns a text with the status, the inputs, the outputs and the LED of the module. If the module has
+  /// power, the text also contains its reset status, its INIT* input and its counters.
+  std::string snapshot() {
+    std::string text = tell("1 status") + tell("1 inputs") + tell("1 outputs") + tell("1 led");
+    if (module().powered()) {
+      const State& state = module().module().state();
+      text += " reset status " + std::to_string(static_cast<int>(state.reset_status)) + " init " +
+              std::to_string(static_cast<int>(state.init_asserted));
+      for (unsigned channel = 0; channel < module().model().inputs; ++channel) {
+        text += " " + std::to_string(state.inputs.counter(channel));
+      }
+    }
+    return text;
+  }
+
+  /// Expects that the command is rejected, and that `snapshot` returns the same text 20 ms later.
+  void expect_refused(const std::string& command) {
+    run(std::chrono::milliseconds(20));
+    const std::string before = snapshot();
+    EXPECT_EQ(tell(command).rfind("error: ", 0), 0U) << command;
+    run(std::chrono::milliseconds(20));
+    EXPECT_EQ(snapshot(), before) << command;
+  }
+
+ private:
+  Control control_;
+};
+
+/// Three modules on one line, with the commands of the control socket.
+class ThreeModules {
+ public:
+  ThreeModules() { line_.come_up(); }
+
+  std::string tell(const std::string& command) { return checked(control_.carry_out(command)); }
+  SimulatedModule& at(std::size_t position) { return line_.module(position - 1); }
+
+ private:
+  Line line_{
+      {parse_module_spec("EX9042D-M@01"), parse_module_spec("EX9052D@02"), parse_module_spec("EX9055D@0A")},
+      kPaced,
+      [](std::uint8_t, ByteStatus) {}};
+  Control control_{{{"", line_}}};
+};
+
+}  // namespace ex9000::sim
