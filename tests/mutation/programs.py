@@ -197,7 +197,7 @@ def folders():
         alone = [each for each in sources if stem_of(each) in ALONE] + built(parts.get("ON_THEIR_OWN", ""))
         options = ("-O1",) if "ex9000_hot" in parts.get("PRIVATE", "") else ("-O0",)
         units = [Unit(name, together, options)] if together else []
-        units += [Unit(stem_of(each), (f"sim/{folder}/{each}",)) for each in alone]
+        units += [Unit(f"{name}-{stem_of(each)}", (f"sim/{folder}/{each}",)) for each in alone]
         libraries = tuple(re.findall(r"ex9000_(\w+)", parts.get("PUBLIC", "")))
         found[name] = Folder(tuple(units), libraries)
     return found
