@@ -204,6 +204,10 @@ Action parse_modbus_reply(const std::string& text) {
   return expected;
 }
 
+[[noreturn]] void reject_without_blank(const std::string& text, const std::string& lead) {
+  fail("'" + text + "': expected a blank after " + lead);
+}
+
 Action parse_action(const std::string& text) {
   for (const std::string lead : {"<=", "=>", "<", ">"}) {
     if (text.rfind(lead, 0) != 0) {
@@ -211,7 +215,7 @@ Action parse_action(const std::string& text) {
     }
     std::string rest = text.substr(lead.size());
     if (!rest.empty() && rest[0] != ' ' && rest[0] != '\t') {
-      fail("'" + text + "': expected a blank after " + lead);
+      reject_without_blank(text, lead);
     }
     rest.erase(0, 1);
     if (lead == "<=") {

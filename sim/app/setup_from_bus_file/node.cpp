@@ -18,7 +18,7 @@ bool Node::flag() const {
 
 std::string Node::number_or_text() const {
   if (!value_->is_number_unsigned() && !value_->is_string()) {
-    refuse("expected a whole number");
+    refuse("expected a whole number or a text in quotes");
   }
   return value_->is_number_unsigned() ? value_->dump() : text();
 }

@@ -15,8 +15,8 @@ constexpr std::uint16_t kLinkTypeWiresharkUpperPdu = 252;
 struct UpperPdu {
   std::string dissector;  ///< Wireshark's name of the dissector
   std::string protocol;   ///< text for the protocol column
-  /// The dissector for Modbus RTU treats a frame from the port mbrtu.tcp.port as a response, and a frame to
-  /// that port as a query.
+  /// Wireshark's preference mbrtu.tcp.port names a port, see kCapturedModulesPort. The dissector for Modbus
+  /// RTU treats a frame from this port as a response, and a frame to this port as a query.
   std::uint16_t source_port = 0;
   std::uint16_t destination_port = 0;
 

@@ -16,7 +16,9 @@ constexpr std::uint8_t kRtuException = 0x80;  ///< this bit of the function code
 
 /// Returns the frame with this address and PDU.
 inline std::vector<std::uint8_t> rtu_frame(std::uint8_t address, const std::vector<std::uint8_t>& pdu) {
-  std::vector<std::uint8_t> frame{address};
+  std::vector<std::uint8_t> frame;
+  frame.reserve(pdu.size() + 3);
+  frame.push_back(address);
   frame.insert(frame.end(), pdu.begin(), pdu.end());
   const Crc16 crc = crc16({frame.data(), frame.size()});
   frame.push_back(crc.low_byte());
