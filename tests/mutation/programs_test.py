@@ -54,6 +54,12 @@ class Programs(unittest.TestCase):
         self.assertIn("memory_test", names)
         self.assertEqual(names - {program.name for program in programs.listed_programs("tests/hal")}, set())
 
+    def test_a_run_uses_every_test_that_tests_sim_lists_by_name_except_those_with_ports(self):
+        text = (programs.ROOT / "tests/sim/CMakeLists.txt").read_text(encoding="utf-8")
+        names = set(re.findall(r"ex9000_test\((\w+)", text))
+        used = {program.name for program in programs.listed_programs("tests/sim")}
+        self.assertEqual(names - used, {"pacer_test", "tcp_port_test"})
+
     def test_a_shadowed_header_is_not_compiled_into_a_unit(self):
         unit = programs.LIBRARY_UNITS["mcu_model"]
         self.assertIn("tests/mcu_model/shadow/hal/registers/bus.hpp", unit.files)

@@ -119,7 +119,7 @@ class Workshop:
                 self.image(image)
             if linked.returncode != 0 or not self.passes(program, place, BUILD):
                 raise SystemExit(f"mutate: {program.name} fails on the unchanged tree\n{linked.stderr[-2000:]}")
-            taken = set(re.findall(r"\.a\((\w+)\.o\)", members.read_text()))
+            taken = set(re.findall(r"\.a\(([^)]+)\.o\)", members.read_text()))
             return [*program.tests, *(unit for unit in libraries if unit.name in taken)]
 
         return self.once(("program", program.name), build)
@@ -208,7 +208,9 @@ class Bench:
         for image in program.images:
             self.make(image)
         command = ["clang++", *objects, "-o", place, "-lgtest", "-lgtest_main", "-pthread", *program.options]
-        return run(command) and self.workshop.passes(program, place, self.folder)
+        if not run(command):
+            raise SystemExit(f"mutate: {program.name} does not link with {self.file}")
+        return self.workshop.passes(program, place, self.folder)
 
     def make(self, image):
         place = self.folder / "images"

@@ -114,7 +114,7 @@ class Pl011 extends BasePeripheral {
     case 0x2c:
       this.setUp("the line control");
       if (!Object.hasOwn(LINE_CONTROL, value & ~FIFOS_ON)) {
-        this.error("this model has only 8N1, 8N2, 8E1 and 8O1");
+        this.error(`line control 0x${value.toString(16)} is not in this model; expected 8N1, 8N2, 8E1 or 8O1`);
       }
       this.lineControl = value;
       this.latch();

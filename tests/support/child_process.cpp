@@ -86,11 +86,11 @@ ChildProcess::~ChildProcess() {
 bool ChildProcess::read_more() {
   constexpr int kHangMilliseconds = 60'000;  // only detects a program that hangs
   pollfd ready{out_, POLLIN, 0};
-  if (poll(&ready, 1, kHangMilliseconds) != 1) {
+  const int result = poll(&ready, 1, kHangMilliseconds);
+  if (result == 0) {
     kill(pid_, SIGKILL);  // a hanging program would keep `wait` waiting
-    return false;
   }
-  return append_from(out_, output_);
+  return result == 1 && append_from(out_, output_);
 }
 
 bool ChildProcess::wait_for(const std::string& text, unsigned times) {

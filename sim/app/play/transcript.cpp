@@ -107,10 +107,14 @@ Action pulse(const sim::Words& words) {
 }
 
 Action led(const sim::Words& words) {
-  if (words[0] == "flashing") {
-    return step::Led{step::Led::Shows::Flashing};
+  using Shows = step::Led::Shows;
+  for (const auto& [word, shows] :
+       {std::pair("on", Shows::On), std::pair("off", Shows::Off), std::pair("flashing", Shows::Flashing)}) {
+    if (words[0] == word) {
+      return step::Led{shows};
+    }
   }
-  return step::Led{parse_on_off(words[0]) ? step::Led::Shows::On : step::Led::Shows::Off};
+  fail("'" + words[0] + "': expected on, off or flashing");
 }
 
 /// A step that begins with a keyword.
@@ -389,7 +393,7 @@ std::vector<Transcript> load(const std::string& path) {
       return {scenario(path, source, line)};
     }
     if (!source.names_its_source) {
-      fail("requires a 'source:' line");
+      fail("has no source; add a line such as 'source: EX9042D manual 2.6'");
     }
     std::vector<Transcript> transcripts;
     for (const ModelRun& run : source.models) {

@@ -12,8 +12,8 @@ namespace ex9000::sim {
 /// background, the process ignores SIGINT.
 void add_stop_signals(boost::asio::signal_set& signals);
 
-/// Detects the signals of `add_stop_signals` while a long computation prevents the io_context of the program
-/// from running.
+/// Detects the signals of `add_stop_signals` in code that computes for a long time or waits for a reader.
+/// Such code may prevent the io_context of the program from running.
 class StopSignals {
  public:
   StopSignals();

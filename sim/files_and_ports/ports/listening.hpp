@@ -45,11 +45,10 @@ void keep_accepting(Acceptor& acceptor, boost::asio::steady_timer& next_try, Adm
   });
 }
 
-/// Returns a text for the error, with advice for the user. The advice is `mend`, unless another program uses
-/// the port.
+/// Returns a text for the error, with advice for the user. The advice is `mend`, unless the port is in use.
 inline std::string why_not_listening(const boost::system::error_code& error, const std::string& mend) {
   return error == boost::asio::error::address_in_use
-             ? "another program listens there; end it or name another port"
+             ? "the port is in use; name another port, or end the program that uses it"
              : error.message() + "; " + mend;
 }
 

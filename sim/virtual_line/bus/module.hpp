@@ -37,7 +37,8 @@ class SimulatedModule final : public Station {
   // --- actions from outside ---
 
   /// Switches the supply on or off. Switching off interrupts a memory write that is in progress, and clears
-  /// the state of the firmware. Otherwise the memory, the input levels and INIT* keep their state.
+  /// the state of the firmware. Apart from this write, the memory, the input levels and INIT* keep their
+  /// state.
   void power(bool on);
   /// Starts or ends a supply failure. A failure has the same effects as switching off, but does not change
   /// the switch of the supply.

@@ -287,6 +287,9 @@ void Faults::reply_on_the_wires(std::size_t module, std::uint64_t reply, bool on
       });
     }
   }
+  if (on) {
+    set_noise();  // before another station begins a byte at the same time
+  }
 }
 
 void Faults::written(std::size_t module) {

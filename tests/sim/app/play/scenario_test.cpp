@@ -372,6 +372,7 @@ TEST(Step, AcceptsValidSyntaxOnly) {
                              Wrong{"input 4294967296 on", "'4294967296'", "0 to 15"},
                              Wrong{"input -1 on", "'-1'", "0 to 15"},
                              Wrong{"input 0 up", "'up'", "expected on or off"},
+                             Wrong{"led blink", "'blink'", "expected on, off or flashing"},
                              Wrong{"input 0", "'input 0'", "input C on|off"},
                              Wrong{"pulse 0 x4294967297", "'4294967297'", "1 to 1000000"},
                              Wrong{"pulse 0 x0", "'0'", "1 to 1000000"},

@@ -202,7 +202,7 @@ TEST(TcpPort, APortInUseIsRefusedAndCanBeReusedAfterItsProcessIsKilled) {
   SimulatorProcess first({"EX9042D@05", "--tcp", "0"});
   const std::string address = "127.0.0.1:" + std::to_string(first.tcp_port());
   expect_refused(run({simulator_path(), "EX9042D", "--tcp", address}, first.directory()), "--tcp " + address,
-                 "another program listens there");
+                 "the port is in use");
   SocketClient client(first.tcp_port());
   client.send("$05M\r");
   EXPECT_EQ(client.receive_text(9), "!059042D\r");
