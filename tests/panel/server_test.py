@@ -246,7 +246,8 @@ class Start(unittest.TestCase):
         self.assertEqual(second.returncode, 2)
         self.assertEqual(
             second.stderr,
-            f"ex9000-sim: --panel {first.port}: the port is in use; name another port, or end the program that uses it\n",
+            f"ex9000-sim: --panel {first.port}: the port is in use; name another port, or end the program that uses "
+            "it\n",
         )
         usual = [Simulator("EX9042D", "--tcp", "0", panel=None) for _ in range(2)]
         for each in usual:

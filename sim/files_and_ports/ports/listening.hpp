@@ -37,7 +37,7 @@ void keep_accepting(Acceptor& acceptor, boost::asio::steady_timer& next_try, Adm
     } else if (error != boost::asio::error::operation_aborted) {
       next_try.expires_after(std::chrono::milliseconds(100));
       next_try.async_wait([&acceptor, &next_try, admit](const boost::system::error_code& aborted) {
-        if (!aborted) {
+        if (!aborted && acceptor.is_open()) {
           keep_accepting(acceptor, next_try, admit);
         }
       });

@@ -111,7 +111,7 @@ void Bus::put(End& end, std::uint8_t byte, SerialMode mode, Levels sent) {
   waves_.push_back(wave);
   ++carried_;
   next_byte_end_ = std::min(next_byte_end_, wave.end);
-  if (!wave.arrives_whole() || !all_hear(mode)) {
+  if (!wave.arrives_whole() || has_other_listeners(wave.mode)) {
     begin_sampling();
   }
 }
@@ -138,9 +138,9 @@ void Bus::count_listener(SerialMode mode, int change) {
   }
 }
 
-bool Bus::all_hear(SerialMode mode) const {
-  const SerialMode now = on_the_wires(mode);
-  return listeners_.size() == listeners_.count({now.baud, now.format});
+bool Bus::has_other_listeners(SerialMode mode) const {
+  return listeners_.size() > 1 ||
+         (listeners_.size() == 1 && listeners_.begin()->first != std::pair(mode.baud, mode.format));
 }
 
 /// Returns whether the receiver has the mode of the byte, has listened since the start of the byte, and has
@@ -230,7 +230,9 @@ void Bus::finish_bytes() {
 }
 
 void Bus::deliver(const Wave& over) {
-  const VirtualTime ends = over.start + ends_[over.station]->takes(1, over.nominal);
+  const bool has_second_stop_bit = over.nominal.format == LineFormat::k8N2;
+  const VirtualTime ends =
+      has_second_stop_bit ? over.start + ends_[over.station]->takes(1, over.nominal) : clock_.virtual_now();
   for (BusObserver* observer : observers_) {
     observer->byte(over.station, over.byte, over.nominal, over.collided, over.start, ends);
   }

@@ -128,7 +128,7 @@ class Bus {
   /// Returns whether a byte is on the wires or a driver is enabled.
   [[nodiscard]] bool busy() const { return carries() || drivers_on_ != 0; }
   /// Returns whether all stations that listen have the rate and the parity of `mode`.
-  [[nodiscard]] bool all_hear(SerialMode mode) const;
+  [[nodiscard]] bool all_hear(SerialMode mode) const { return !has_other_listeners(on_the_wires(mode)); }
   VirtualClock& clock() { return clock_; }
 
  private:
@@ -151,6 +151,7 @@ class Bus {
   static bool has_heard_from_the_start(const Receiver& receiver, const Wave& wave);
   [[nodiscard]] bool has_to_sample(const Receiver& receiver) const;
   void count_listener(SerialMode mode, int change);
+  [[nodiscard]] bool has_other_listeners(SerialMode mode) const;
   void begin_sampling();
   void end_sampling();
   void run_wire();

@@ -15,7 +15,8 @@ void DueTimes::search() const {
   for (std::size_t block = 0; block < earliest_of_.size(); ++block) {
     if (earliest_of_[block] == kUnknown) {
       const VirtualTime* const begin = times_.data() + block * kBlock;
-      earliest_of_[block] = *std::min_element(begin, begin + kBlock);
+      const VirtualTime* const end = times_.data() + std::min(stations_, (block + 1) * kBlock);
+      earliest_of_[block] = *std::min_element(begin, end);
     }
     earliest_ = std::min(earliest_, earliest_of_[block]);
   }
