@@ -11,12 +11,11 @@ VirtualTime FrameSpacing::after_own() const { return last_byte_ + line_.rtu_sile
 VirtualTime FrameSpacing::after_others(std::uint8_t address) const {
   if (last_speaker_ <= line_.size()) {  // otherwise a fault has added the station
     const SimulatedModule& speaker = line_.module(last_speaker_ - 1);
-    if (!speaker.powered()) {
-      return VirtualTime(0);
-    }
-    const InForce& in_force = speaker.module().state().in_force;
-    if (in_force.protocol == Protocol::ModbusRtu) {
-      return in_force.address == address ? VirtualTime(0) : last_byte_ + line_.rtu_silence();
+    if (speaker.powered()) {
+      const InForce& in_force = speaker.module().state().in_force;
+      if (in_force.protocol == Protocol::ModbusRtu) {
+        return in_force.address == address ? VirtualTime(0) : last_byte_ + line_.rtu_silence();
+      }
     }
   }
   return is_for_modbus(address) ? last_byte_ + line_.rtu_separate() : VirtualTime(0);

@@ -13,14 +13,16 @@ namespace ex9000::sim {
 
 class Line;
 
-/// Sends each request through the master of the line, and then waits for its reply or for the turn-around
-/// time, as a serial device server does. Keeps the order of the requests, and leaves the silence that modules
-/// require between frames. No function blocks. All times are in the virtual time of the line.
+/// Sends requests through the master of the line, one at a time. After each request, waits for its reply or
+/// for the turn-around time, as a serial device server does. Keeps the order of the requests, and leaves the
+/// silence that modules require between frames. No function blocks. All times are in the virtual time of the
+/// line.
 ///
 /// Other programs can use the line at the same time: they send through the same master, but not through this
-/// queue. If the last byte on the wires did not belong to a reply to this queue, a request first waits until
-/// the line has settled (Line::unsettled), for at most kReplyTimeout. The other programs do not wait for this
-/// queue. If one of them sends while a request is in progress, the request gets no reply.
+/// queue. A request first waits while the master sends or a byte is on the wires. If there has been a byte on
+/// the wires, and the last one did not belong to a reply to this queue, the request also waits until the line
+/// has settled (Line::unsettled). The request waits for at most kReplyTimeout. The other programs do not wait
+/// for this queue. If one of them sends while a request is in progress, the request gets no reply.
 class RequestQueue final : private Station {
  public:
   /// The maximum time from the end of a request to the end of the first byte of its reply. This is more than
@@ -49,7 +51,8 @@ class RequestQueue final : private Station {
     std::weak_ptr<void> owner;  ///< the client; must not be empty
   };
 
-  /// Attaches this object to the bus and the master of `line`, and must live as long as they are used.
+  /// Attaches this object to the bus and the master of `line`. This object must live as long as they are
+  /// used.
   explicit RequestQueue(Line& line);
   RequestQueue(const RequestQueue&) = delete;
   RequestQueue& operator=(const RequestQueue&) = delete;
@@ -62,7 +65,7 @@ class RequestQueue final : private Station {
  private:
   enum class State {
     Idle,           ///< nothing to send
-    WaitsForLine,   ///< the request waits until the line has settled, for at most kReplyTimeout
+    WaitsForLine,   ///< the request waits while others use the line, for at most kReplyTimeout
     WaitsForReply,  ///< the request is being sent, or no byte of its reply has arrived yet
     Receives,       ///< bytes of a frame arrive; a silence ends the frame
     TurnsAround,    ///< the request expects no reply; it is being sent, or the turn-around time passes
@@ -81,7 +84,7 @@ class RequestQueue final : private Station {
   BusEnd& timer_;
   State state_ = State::Idle;
   std::deque<Request> waiting_;  ///< the first one is in progress, unless the state is Idle or WaitsForLine
-  VirtualTime own_byte_{0};      ///< end of the last reply to this queue
+  VirtualTime own_byte_{0};      ///< end of the last reply to this queue; 0: none
   std::uint64_t taken_ = 0;      ///< Master::taken after the request was passed to the master
   VirtualTime sent_{0};          ///< end of the last byte of the request
   VirtualTime deadline_{0};      ///< when the wait for the line or the reply, or the turn-around time, ends

@@ -230,6 +230,18 @@ TEST_P(Queue, ARequestWaitsForARequestOfAnotherProgramAndItsReply) {
   EXPECT_EQ(results_, (Results{{"a", kOff1}, {"a", kOff1}, {"a", kOff1}}));
 }
 
+TEST_P(Queue, AFrameAfterAReplyThatALossOfPowerHasEndedIsASeparateFrame) {
+  line_.master().send(kRead2.data(), kRead2.size());
+  while (watch_.last_byte_of_others == VirtualTime(0)) {
+    line_.bus().run_next();
+  }
+  line_.module(1).power(false);
+  const VirtualTime off = now();
+  line_.master().send(kRead1.data(), kRead1.size(), line_.spacing().after_others(kRead1[0]));
+  run(milliseconds(200));
+  EXPECT_GT(watch_.last_byte_of_others, off);  // the reply of module 1
+}
+
 TEST_P(Queue, ALongTransmissionDoesNotBlockARequestForEver) {
   const Frame endless(60000, 0x55);
   line_.master().send(endless.data(), endless.size());
