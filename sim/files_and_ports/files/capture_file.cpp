@@ -19,7 +19,7 @@ namespace ex9000::sim {
 CaptureFile::CaptureFile(const std::string& path, const std::string& place, GivesUp gives_up)
     : where_(place + path), gives_up_(std::move(gives_up)) {
   // Without O_NONBLOCK, open would wait until a pipe has a reader.
-  constexpr int kFlags = O_WRONLY | O_CLOEXEC | O_NONBLOCK;
+  constexpr int kFlags = O_WRONLY | O_APPEND | O_CLOEXEC | O_NONBLOCK;
   constexpr mode_t kAsUmaskPermits = 0666;
   file_ = FileDescriptor(open(path.c_str(), kFlags | O_CREAT | O_EXCL, kAsUmaskPermits));
   if (!file_.is_open() && errno == EEXIST) {
@@ -45,7 +45,7 @@ void CaptureFile::begin() {
 }
 
 void CaptureFile::append(const std::vector<std::uint8_t>& block) {
-  const off_t before = regular_ ? lseek(file_.get(), 0, SEEK_CUR) : 0;
+  const off_t before = regular_ ? lseek(file_.get(), 0, SEEK_END) : 0;
   for (std::size_t done = 0; done < block.size() && !given_up_;) {
     if (!wait_for_room(file_.get(), gives_up_)) {
       given_up_ = true;
@@ -58,7 +58,7 @@ void CaptureFile::append(const std::vector<std::uint8_t>& block) {
     if (written < 0 && errno != EINTR) {
       const std::string why = reason();
       if (regular_ && ftruncate(file_.get(), before) != 0) {
-        throw std::runtime_error(where_ + ": cannot be written, and its last frame is incomplete: " + why);
+        throw std::runtime_error(where_ + ": cannot be written, and its last block is incomplete: " + why);
       }
       throw std::runtime_error(where_ + ": cannot be written: " + why);
     }

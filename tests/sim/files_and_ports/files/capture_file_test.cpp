@@ -19,6 +19,7 @@
 #include <string_view>
 
 #include "tests/support/directory.hpp"
+#include "tests/support/file_size_limit.hpp"
 
 namespace ex9000::sim {
 namespace {
@@ -26,6 +27,7 @@ namespace {
 namespace fs = std::filesystem;
 using system::bytes_of_file;
 using system::Directory;
+using system::FileSizeLimit;
 using system::write_file;
 
 /// The place in the configuration that names the file.
@@ -92,6 +94,20 @@ TEST(CaptureFile, AFullDiskIsReported) {
   } catch (const std::runtime_error& error) {
     EXPECT_EQ(std::string(error.what()), kPlace + "/dev/full: cannot be written: No space left on device");
   }
+}
+
+TEST(CaptureFile, RemovesABlockThatCouldNotBeWrittenCompletely) {
+  const Directory directory;
+  CaptureFile file(directory / "a", kPlace);
+  file.begin();
+  file.append(block("one"));
+  {
+    const FileSizeLimit limit(5);
+    EXPECT_THROW(file.append(block("two")), std::runtime_error);
+  }
+  EXPECT_EQ(bytes_of_file(directory / "a"), "one");
+  file.append(block("three"));
+  EXPECT_EQ(bytes_of_file(directory / "a"), "onethree");
 }
 
 TEST(CaptureFile, APipeIsAcceptedIfItHasAReader) {

@@ -4,14 +4,12 @@
 
 #include <gtest/gtest.h>
 #include <sys/inotify.h>
-#include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
-#include <csignal>
 #include <cstring>
 #include <filesystem>
 #include <functional>
@@ -22,6 +20,7 @@
 
 #include "tests/firmware/module_bench.hpp"
 #include "tests/support/directory.hpp"
+#include "tests/support/file_size_limit.hpp"
 
 namespace ex9000::sim {
 namespace {
@@ -30,6 +29,7 @@ namespace fs = std::filesystem;
 
 using system::bytes_of_file;
 using system::Directory;
+using system::FileSizeLimit;
 using system::write_file;
 
 constexpr std::size_t kImageSize = 8192;
@@ -70,26 +70,6 @@ void expect_refused(const std::string& refusal, const std::string& path) {
 bool write_byte(const EepromFile& file, std::uint16_t address, std::uint8_t byte) {
   return file.write(address, {&byte, 1});
 }
-
-/// Limits the size of files, in bytes, that this process can write while the object exists.
-class FileSizeLimit {
- public:
-  explicit FileSizeLimit(rlim_t limit) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
-    getrlimit(RLIMIT_FSIZE, &before_);
-    const rlimit limited{limit, before_.rlim_max};
-    setrlimit(RLIMIT_FSIZE, &limited);
-  }
-  ~FileSizeLimit() {
-    setrlimit(RLIMIT_FSIZE, &before_);
-    static_cast<void>(std::signal(SIGXFSZ, handler_));
-  }
-  FileSizeLimit(const FileSizeLimit&) = delete;
-  FileSizeLimit& operator=(const FileSizeLimit&) = delete;
-
- private:
-  rlimit before_{};
-  void (*handler_)(int);
-};
 
 TEST(EepromFile, AMissingFileIsNotFoundAndNotCreated) {
   const Directory directory;
