@@ -26,9 +26,10 @@ constexpr std::array<Unit, 5> kUnits{{{"us", 1'000},
                                       {"s", kNanosecondsPerSecond},
                                       {"min", 60 * kNanosecondsPerSecond},
                                       {"h", 3600 * kNanosecondsPerSecond}}};
-constexpr double kYear = 365.0 * 24 * 3600e9;
+constexpr long double kYear = 365.0L * 24 * 3600e9L;
 
-/// Returns the time in the unit of `unit` nanoseconds, exact to the nanosecond. `unit` is a power of ten.
+/// Returns the time in the unit of `unit` nanoseconds, exact to the nanosecond. `time` must not be negative.
+/// `unit` is a power of ten.
 std::string decimal_text(VirtualTime time, std::int64_t unit) {
   std::string fraction = std::to_string(unit + time.count() % unit).substr(1);
   fraction.resize(fraction.find_last_not_of('0') + 1);
@@ -38,12 +39,12 @@ std::string decimal_text(VirtualTime time, std::int64_t unit) {
 }  // namespace
 
 VirtualTime parse_time(const std::string& text) {
-  double value = 0;
+  long double value = 0;  // holds each number of nanoseconds of a year exactly; double does not
   const char* const end = text.data() + text.size();
   const auto [rest, error] = std::from_chars(text.data(), end, value, std::chars_format::fixed);
   const std::string_view unit(rest, static_cast<std::size_t>(end - rest));
   for (const Unit& known : kUnits) {
-    const double nanoseconds = value * static_cast<double>(known.nanoseconds);
+    const long double nanoseconds = value * static_cast<long double>(known.nanoseconds);
     if (error == std::errc() && unit == known.name && nanoseconds >= 0 && nanoseconds <= kYear) {
       return VirtualTime(std::llround(nanoseconds));
     }

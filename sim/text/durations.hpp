@@ -11,10 +11,11 @@ namespace ex9000::sim {
 /// `text` is anything else, is negative, or is longer than 365 days.
 hal::doubles::VirtualTime parse_time(const std::string& text);
 
-/// Returns the time in us, ms or s, in the format that parse_time reads.
+/// Returns the time in us, ms or s, in the format that parse_time reads. `time` must not be negative.
 std::string time_text(hal::doubles::VirtualTime time);
 
-/// Returns the time in seconds, exact to the nanosecond, without a unit: 1.25, 0.000104166.
+/// Returns the time in seconds, exact to the nanosecond, without a unit: 1.25, 0.000104166. `time` must
+/// not be negative.
 std::string seconds_text(hal::doubles::VirtualTime time);
 
 /// Returns the prefix of log lines: seconds with six decimals, right-aligned in at least 12 columns.

@@ -46,8 +46,10 @@ TEST(TimeText, IsReadBackAsTheSameTime) {
   EXPECT_EQ(time_text(100ms), "100ms");
   EXPECT_EQ(time_text(10us), "10us");
   EXPECT_EQ(time_text(24h), "86400s");
+  EXPECT_EQ(time_text(8'930'442'872'724'057ns), "8930442.872724057s");
   for (const hal::doubles::VirtualTime time :
-       {0ns, 1ns, 1'000ns, 999'999ns, 100'000'001ns, 3'600'000'001'000ns}) {
+       {0ns, 1ns, 1'000ns, 999'999ns, 100'000'001ns, 3'600'000'001'000ns, 8'930'442'872'724'057ns,
+        31'535'999'999'999'999ns}) {
     EXPECT_EQ(parse_time(time_text(time)), time) << time_text(time);
   }
 }
