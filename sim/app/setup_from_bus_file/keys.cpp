@@ -122,7 +122,9 @@ const std::array<BusFileKey<LineSetup>, 12> line_keys{{
      [](LineSetup& line, const Node& value) { line.serial = value.text(); }},
     {"echo", kFlag, "ignores the echo of an adapter that receives what it sends",
      [](LineSetup& line, const Node& value) { line.echo = value.flag(); }},
-    {"baud", kRate, "the line's baud rate at the start; a master can change it (default: the first module's)",
+    {"baud", kRate,
+     "the line's baud rate at the start; a master on a pseudo-terminal can change it (default: the first "
+     "module's)",
      [](LineSetup& line, const Node& value) { line.baud = parse_baud_rate(value.number_or_text()); }},
     {"format", kFormat,
      "the line's format; a pseudo-terminal and TCP do not carry it (default: the first module's)",

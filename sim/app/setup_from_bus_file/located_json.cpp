@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <ios>
+#include <set>
 #include <sstream>
 #include <utility>
 #include <vector>
@@ -14,9 +15,9 @@ namespace {
 
 using json = nlohmann::ordered_json;
 
-/// Records the line number of each value. A member of an object gets the line of its key, and an element of
-/// an array gets its own line. An element that is a number, true, false or null gets the line of the last
-/// string, bracket or brace before it, because the parser detects the end of a number only at the next
+/// Records the line number of each value. A member of an object gets the line of its key. An element of an
+/// array that is a string, an array or an object gets its own line. Any other element gets the line of the
+/// last string, bracket or brace before it, because the parser detects the end of a number only at the next
 /// character, which may be on a new line.
 class Locator {
  public:
@@ -60,6 +61,7 @@ class Locator {
     bool is_array;
     std::size_t next = 0;
     std::string key;
+    std::set<std::string> keys;
   };
 
   [[noreturn]] void refuse(const std::string& what) const { fail(std::to_string(seen_) + ": " + what); }
@@ -72,10 +74,12 @@ class Locator {
   }
 
   void add_key(const std::string& key) {
-    open_.back().key = key;
-    if (!lines.emplace(member_of(open_.back().path, key), seen_).second) {
+    Open& object = open_.back();
+    object.key = key;
+    if (!object.keys.insert(key).second) {
       refuse("'" + key + "' is given twice; leave out one of them");
     }
+    lines.emplace(member_of(object.path, key), seen_);
   }
 
   /// Records the line of the next value, and returns the path of the value.
@@ -96,7 +100,7 @@ class Locator {
     if (open_.size() == kDeepest) {
       refuse("has too many levels of lists and objects; see 'ex9000-sim --schema'");
     }
-    open_.push_back({add_value(), is_array, 0, ""});
+    open_.push_back({add_value(), is_array, 0, "", {}});
   }
 
   const std::string& text_;

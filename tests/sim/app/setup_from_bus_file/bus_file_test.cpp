@@ -198,6 +198,7 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"{\n\n\"seed\": 1e999}", "bus.json:3: number overflow"},
         Wrong{"{\n\"log\": true,\n\"log\": false}",
               "bus.json:3: 'log' is given twice; leave out one of them"},
+        Wrong{"{\n\"lines\": [],\n\"a\": {\"b\": 1},\n\"a.b\": 2}", "bus.json:3: a: unknown key"},
         Wrong{"{\"control\":\n\"a\\u0000b\"}", "bus.json:2: a text contains NUL; leave out \\u0000"},
         Wrong{"[[[[[[[[[[[[[[[[[\n]]]]]]]]]]]]]]]]]",
               "bus.json:1: has too many levels of lists and objects; see 'ex9000-sim --schema'"}));
@@ -434,7 +435,7 @@ TEST(BusFile, AnErrorFoundAfterTheFileIsParsedIsReported) {
       "ex9000-sim: --speed: step requires --control, because only the control socket advances the time\n");
 }
 
-TEST(BusFile, AnEepromFileWithAnotherUseIsReportedWithItsPlaceInTheFile) {
+TEST(BusFile, AnEepromFileWithAnotherUseIsReportedWithItsPlaceInTheBusFile) {
   const system::Directory directory;
   const std::string path = directory / "bus.json";
   system::write_file(path,
@@ -498,8 +499,8 @@ TEST(BusFile, CanBeCombinedWithProgramOptionsButNotWithLineOptionsOrModules) {
     words.insert(words.end(), more.begin(), more.end());
     const Parsed refused = parse(words);
     EXPECT_FALSE(refused.setup);
-    EXPECT_EQ(refused.error, "ex9000-sim: " + more[0] +
-                                 ": cannot be combined with a bus file; add it to a line of the bus file\n");
+    EXPECT_EQ(refused.error,
+              "ex9000-sim: " + more[0] + ": cannot be combined with a bus file; add it to the bus file\n");
   }
   for (const std::vector<std::string>& words :
        std::vector<std::vector<std::string>>{{path, "EX9042D"}, {"EX9042D", path}, {path, path}}) {
