@@ -42,7 +42,7 @@ class Bus(Panel):
             master.ask("020200000008", 6)
 
     def asking_inputs(self, master):
-        """Repeats requests while the block runs, because the strip shows only the last second."""
+        """Repeats requests while the `with` block runs, because the strip shows only the last second."""
         return repeating(lambda: self.ask_inputs(master, 1))
 
     def faults_of(self, simulator):

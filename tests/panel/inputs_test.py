@@ -98,7 +98,7 @@ class Inputs(Panel):
         self.click_in_the_page(DI3)
         self.browser.until(pressed(DI3))
 
-    def test_a_click_with_alt_gives_a_pulse_and_so_does_a_key_in_pulse_mode(self):
+    def test_a_click_with_alt_gives_a_pulse_and_a_key_in_pulse_mode_gives_a_pulse(self):
         self.show_two()
         self.browser.key("+Alt")
         self.browser.click(DI3)

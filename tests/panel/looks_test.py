@@ -10,8 +10,8 @@ from simulator import Master, wait_until
 from web_socket import Page
 
 MOST_PAGES = 16
-LEGIBLE = 4.5  # the lowest contrast ratio of a text
-VISIBLE = 3  # the lowest contrast ratio of a border
+LEGIBLE = 4.5  # the minimum contrast ratio that a text requires
+VISIBLE = 3  # the minimum contrast ratio that a border requires
 # Returns the contrast ratio between a colour and the background colour of the element `ground`. The colour is a
 # property of the element `selector`, or of the content generated before or after this element. The opacities of this
 # element and of all its ancestors count.

@@ -296,7 +296,7 @@ class Slow(unittest.TestCase):
         for each in slow, page:
             self.addCleanup(each.close)
             self.assertEqual(each.status, 101)
-        told = []  # the simulator time in each state that `page` has received
+        told = []  # the line time in us in each state that `page` has received
         reads = threading.Thread(target=page.until, args=(lambda message: told.extend(times_of(message))
                                                           or message.get("reply"),))
         reads.start()

@@ -152,8 +152,8 @@ Setup setup_of(const Texts& texts) {
 void add_writing(CLI::App& app, WritingTexts& texts) {
   app.add_option(
          "--log", texts.log,
-         "print the frames on the bus, one on each line: time, direction, bytes, meaning; json: one JSON "
-         "object on each line, and nothing else on standard output")
+         "print each frame on the bus as one line of text: time, direction, bytes, meaning; json: print only "
+         "JSON objects on standard output, one for each frame and each note")
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeLast)  // lets a user override a script's option
       ->type_name("[text|json|off]");
   app.add_option("--capture", texts.capture,
@@ -191,8 +191,10 @@ struct PlayTexts {
 };
 
 const CLI::App* add_play(CLI::App& app, PlayTexts& texts) {
-  CLI::App* const play = app.add_subcommand(
-      "play", "play a transcript or a scenario in virtual time; exit with 0 if all steps pass, else with 1");
+  CLI::App* const play = app.add_subcommand("play",
+                                            "play transcripts or scenarios in virtual time; exit with 0 if "
+                                            "all steps pass, with 2 if an argument or a file is wrong, else "
+                                            "with 1");
   play->footer(help::of_play());
   play->add_option("FILE", texts.file, "the file, or a folder of such files")->required();
   play->add_option("MODULE", texts.bus.line.modules, "for a scenario: the modules, or BUS.json");
@@ -225,10 +227,9 @@ CLI::App* add_describe(CLI::App& app, DescribeTexts& texts) {
   describe->add_option("MODEL", texts.model,
                        "a name from --models, in upper or lower case, with or without EX");
   describe
-      ->add_option(
-          "--format", texts.format,
-          "set the format: markdown (default), json and csv describe one model or all models; the others are "
-          "for the tool of that name and require a model that speaks Modbus")
+      ->add_option("--format", texts.format,
+                   "set the format: markdown (default), json and csv describe one model or all models; each "
+                   "other format is for the tool with the same name and requires a model that speaks Modbus")
       ->type_name(describe_formats());
   describe
       ->add_option("--address", texts.address,
@@ -258,8 +259,8 @@ std::vector<const CLI::Option*> given_of(const CLI::App& app) {
   return app.get_options([](const CLI::Option* option) { return option->count() != 0; });
 }
 
-/// Returns the name of an option. Modules have no option name, so for modules this function returns the first
-/// module as the user wrote it.
+/// Returns the name of an option. Positional arguments have no option name, so for them this function returns
+/// the first one as the user wrote it.
 std::string name_of(const CLI::Option& option) {
   return option.get_positional() ? option.results().front() : option.get_name();
 }
@@ -323,7 +324,8 @@ Parsed parse_arguments(int argc, const char* const* argv) {
   app.add_flag("--echo", texts.line.echo, "ignore the echo of a serial adapter that receives what it sends");
   app.add_option(
          "--baud", texts.line.baud,
-         "set the line's baud rate at the start; a master can change it (default: the first module's)")
+         "set the line's baud rate at the start; a master on a pseudo-terminal can change it (default: the "
+         "first module's)")
       ->type_name("RATE");
   app.add_option("--format", texts.line.format,
                  "set the line's format: 8N1, 8N2, 8E1 or 8O1 (default: the first module's)")
@@ -355,8 +357,9 @@ Parsed parse_arguments(int argc, const char* const* argv) {
                  "possible, without ports and with --for; step: only the control command 'advance' moves the "
                  "time")
       ->type_name("N|max|step");
-  app.add_option("--threads", texts.threads,
-                 "run the lines of a bus file on at most N threads (default: one for each processor)")
+  app.add_option(
+         "--threads", texts.threads,
+         "run the lines of a bus file on at most N threads (default: one for each processor, up to 64)")
       ->type_name("N");
   app.add_option("--for", texts.lasts, "end after this time on the lines, for example 10s or 24h")
       ->type_name("TIME");
@@ -366,8 +369,8 @@ Parsed parse_arguments(int argc, const char* const* argv) {
   add_writing(app, texts.writing);
   app.add_flag(
       "--strict-gaps", texts.line.strict_gaps,
-      "reject a Modbus frame with a gap of more than 1.5 characters, and do not insert the silence between "
-      "frames that a master omits");
+      "reject a Modbus frame with a gap of more than 1.5 characters, and do not insert the silence that a "
+      "master omits between frames");
   app.add_flag("--example", example, "print an example of a bus file and exit");
   app.add_flag("--schema", schema, "print the JSON Schema of bus files and exit");
   app.add_flag("--models", models, "list the models and exit");

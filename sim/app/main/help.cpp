@@ -16,15 +16,16 @@ ADDR is the address in hex, as in `$AA2` (default: 01). The keys:
   checksum=on|off          switches the checksum of ASCII frames on or off
   edge=falling|rising      sets the edge that the counters count
   name=TEXT                sets the name that `$AAM` reads
-  init=on|off              ties INIT* to GND: ASCII at address 00, 9600 baud
+  init=on|off              `on` ties INIT* to GND: ASCII at address 00, 9600 baud
   eeprom=FILE              keeps the settings in this file; an existing file overrides ADDR and the
                            other keys, except init
 
 A bus file, BUS.json, takes the place of the modules and describes any number of lines. --example prints an example,
---schema prints the JSON Schema. Options for ports, rates and modules cannot be combined with a bus file.
+--schema prints the JSON Schema. Options that describe a line, for example --tcp and --fault, cannot be combined with
+a bus file.
 
-Commands of the control socket: one on each line, with the reply `ok ...` or `error: ...`. N is a module's position
-on the command line, or in the bus file through all lines, from 1:
+Commands of the control socket: each is one line of text, with the reply `ok ...` or `error: ...`. N is a module's
+position on the command line, or in the bus file through all lines, from 1:
 )";
 
 constexpr const char* kPlayHelp = R"(
@@ -32,9 +33,10 @@ A file is a list of steps: `> $01M` and `< !019042` for DCON, `=> 01 01 0000 000
 without its CRC, `silence`, `wait 1.5s`, `bytes HEX`, `checksum on|off`, `baud RATE`, `format FORMAT`, and for a
 module `power on|off`, `power-cycle`, `reset`, `init on|off`, `input C on|off`, `pulse C [xCOUNT]`, `outputs HHHH`,
 `led on|off|flashing`.
-With `source:` and `model:` lines before the steps the file is a transcript, which is played on each model. Without
-them it is a scenario for the modules or the bus file on the command line. A scenario has more steps: `module N`,
-`line NAME`, `fault [N] FAULT` as for --fault, and `fault off K|all`. See tests/conformance/README.md.
+A file with `source:` and `model:` lines before the steps is a transcript, which is played on each of these models. A
+file without `model:` lines is a scenario for the modules or the bus file on the command line. A scenario has more
+steps: `module N`, `line NAME`, `fault [N] FAULT` as for --fault, and `fault off K|all`. See
+tests/conformance/README.md.
 )";
 
 constexpr const char* kFaultHelp = R"(
@@ -43,13 +45,14 @@ before a fault of one module. The troubles:
 )";
 
 constexpr const char* kScheduleHelp = R"(
-  WHEN is one of: at 12.5s | every 5s | every 10th reply | with probability 0.01 (of each reply) |
-  after 3 writes (to the EEPROM). Without WHEN the fault begins immediately and stays active;
-  power-cut, foreign-traffic and hang then occur once. `for 2s` limits how long the fault lasts.
-  Times are those of the log, in us, ms, s, min or h.
+  WHEN is one of: at 12.5s | every 5s | every reply | every 10th reply |
+  with probability 0.01 (for each reply) | after 3 writes (to the EEPROM).
+  Without WHEN the fault begins immediately and stays active; power-cut, foreign-traffic and hang
+  then occur once. `for 2s` limits how long the fault lasts.
+  Faults use the time that the log shows. The units of time are us, ms, s, min and h.
 
-An input that changes by itself is C square PERIOD [for TIME] or C key at TIME|every TIME for TIME [bounce TIME], for
---input (with N before it) and for bus files.
+An input that changes by itself is C square PERIOD [for TIME] [bounce TIME] or
+C key at TIME|every TIME for TIME [bounce TIME], for --input (with N before it) and for bus files.
 )";
 
 constexpr const char* kDescribeExamples = R"(

@@ -89,7 +89,7 @@ void reject_line_options(const std::string& bus_file, const LineTexts& texts) {
                                                 {"--strict-gaps", texts.strict_gaps}};
   for (const auto& [option, is_given] : given) {
     if (is_given) {
-      fail(std::string(option) + ": cannot be combined with a bus file; add it to a line of the bus file");
+      fail(std::string(option) + ": cannot be combined with a bus file; add it to the bus file");
     }
   }
   if (texts.modules.size() != 1) {

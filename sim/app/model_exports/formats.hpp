@@ -32,8 +32,8 @@ std::string markdown_of(const Models& models);
 /// null; missing lists are empty.
 std::string json_of(const Models& models);
 
-/// Returns CSV, for spreadsheets and tag lists: a header row and one row for each DCON command, coil,
-/// discrete input and register. The format is RFC 4180; lines end with CR LF.
+/// Returns CSV, for spreadsheets and tag lists: a header row and, for each model, one row for each DCON
+/// command, coil, discrete input and register. The format is RFC 4180; lines end with CR LF.
 std::string csv_of(const Models& models);
 
 // Configurations for other tools. `model` must support Modbus.
@@ -51,8 +51,9 @@ struct NetworkAddress {
 std::string home_assistant_hub(const Model& model, const NetworkAddress& network_address);
 
 /// Returns a flow to import into Node-RED with node-red-contrib-modbus, as a JSON array: a tab that reads the
-/// values of `shown_by`, switches outputs, and clears latches, counters and the timeout status. The ids of
-/// the nodes are the same in all flows for the same model and Modbus address.
+/// values of `shown_by`, switches the outputs and clears the latches and counters that the model has, and
+/// clears the timeout status. The ids of the nodes are the same in all flows for the same model and Modbus
+/// address.
 std::string node_red_flow(const Model& model, const NetworkAddress& network_address);
 
 /// Returns a device template of Wiren Board's wb-mqtt-serial, for /etc/wb-mqtt-serial.conf.d/templates.

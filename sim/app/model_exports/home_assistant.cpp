@@ -47,14 +47,15 @@ class Hub {
     return hub;
   }
 
-  /// Returns the actions that let polls restart the host watchdog, and the actions to call after a timeout.
+  /// Returns the actions that enable the host watchdog and let polls restart it, and the actions to call
+  /// after a timeout.
   [[nodiscard]] std::string watchdog_actions() const {
     const std::string after =
         model_.outputs == 0 ? "the timeout status stays set" : "the outputs keep their safe values";
     return "# With register 0x0251 = 1, each poll restarts the host watchdog, which then watches Home\n"
            "# Assistant. It expires if the polls stop for longer than its timeout (register 0x01E8; factory\n"
-           "# setting: 25.5 s), which must be longer than the scan_interval. Polls of any other master also\n"
-           "# restart it. Call these actions once:\n" +
+           "# setting: 25.5 s), which must be longer than the shortest scan_interval. Polls of any other\n"
+           "# master also restart it. Call these actions once:\n" +
            write("register", "watchdog-feed", "value: 1") + write("coil", "watchdog-enable", "state: true") +
            "# After a timeout, " + after + " until you call these:\n" +
            write("coil", "timeout-status", "state: true") + write("coil", "watchdog-enable", "state: true");

@@ -136,7 +136,7 @@ std::string dcon_notes(const Models& models) {
   text += inputs ? " `$AALS` has latches in place of inputs, and 00 in place of outputs." : "";
   text += outputs ? " `~AA4V` has 00 in place of inputs." : "";
   text +=
-      "\n- `TT` is 40; `CC` is the baud rate: " + baud_codes() +
+      "\n- `TT` is 40, and `%` also accepts 24; `CC` is the baud rate: " + baud_codes() +
       "; plus 40, 80 or C0 for the line formats 8N2, 8E1 and 8O1; `FF` is 80 if the counters count rising "
       "edges, otherwise 00; the checksum adds 40.\n"
       "- `SS` is 04 or 84 after a timeout of the host watchdog, 80 while it is enabled, otherwise 00; the "
@@ -146,8 +146,9 @@ std::string dcon_notes(const Models& models) {
                     "that is ignored because the timeout status is set."
                   : "";
   return text +
-         "\n- Access: a *stored* value is in the EEPROM before the module replies. (I): requires INIT* tied "
-         "to GND.\n";
+         "\n- Access: a *stored* value is in the EEPROM before the module replies. (I): the module must run "
+         "in INIT mode, or INIT* must be tied to GND when the command arrives. For `%` this applies only to "
+         "a change of `CC` or of the checksum.\n";
 }
 
 /// Formats a reply as code, and alternatives, for example `!AA10 or !AA11`, as separate pieces of code.
@@ -189,7 +190,7 @@ std::string functions_table(const Models& models) {
     }
     Cells cells{hex_byte_text(function.row.code), std::string(function.name),
                 function.row.at_broadcast == modbus::AtBroadcast::CarriedOut
-                    ? "all modules execute it without a reply"
+                    ? "executed or refused, without a reply"
                     : "ignored"};
     add_who(models, cells, who(models, has));
     text += table_line(cells);
@@ -233,10 +234,13 @@ std::vector<SharedMap> shared_maps(const Models& models) {
 }
 
 std::string maps_text(const Models& models) {
+  const bool outputs = any_has(models, [](const Model& model) { return model.has_outputs(); });
   std::string text =
       "Addresses count from 0, as on the line; PLC numbers count from 1 after the digit of their table. "
-      "Writes store their values in the EEPROM, except writes that set outputs, and writes that clear "
-      "latches, counters or the count of timeouts. "
+      "Writes store their values in the EEPROM, except writes ";
+  text += outputs ? "of `outputs` and of `timed output`, and writes " : "";
+  text +=
+      "that clear latches, counters or the count of timeouts. "
       "Writes that drive outputs get exception 04 while the timeout status is set. "
       "Baud codes are those of `CC` above.\n";
   for (const SharedMap& map : shared_maps(models)) {
@@ -249,7 +253,10 @@ std::string maps_text(const Models& models) {
 std::string commands_and_registers(const Models& models) {
   std::string text = "\n### DCON (ASCII) commands\n\n" + dcon_notes(models) + "\n" + commands_table(models);
   if (any_has(models, [](const Model& model) { return model.speaks_modbus(); })) {
-    text += "\n### Modbus functions\n\n" + functions_table(models);
+    text +=
+        "\n### Modbus functions\n\n" + functions_table(models) +
+        "\nAt address 0, the host OK (a read of 0x3038) is executed, and writes marked `not by broadcast` "
+        "are ignored.\n";
     text += "\n### Modbus coils and registers\n\n" + maps_text(models);
   }
   return text;

@@ -151,7 +151,7 @@ class Flow {
     nodes_.push_back(show);
   }
 
-  /// Returns a node that shows the values of the node `of`.
+  /// Returns a node that shows values. Its id is `id("show " + of)`; users see `name`.
   [[nodiscard]] Json debug(const std::string& of, const std::string& name) const {
     Json debug = node("show " + of, "debug", 2);
     debug["name"] = name;

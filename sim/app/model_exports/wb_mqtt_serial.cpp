@@ -22,7 +22,7 @@ Json channel(const Shown& shown, unsigned index) {
   Json channel{{"name", shown.name_of(index)},
                {"id", shown.key_of(index)},
                {"reg_type", kRegisterTypes[static_cast<std::size_t>(shown.table)]}};
-  // wb-mqtt-serial must not poll the coils of buttons, because most of these coils are write-only.
+  // wb-mqtt-serial must not poll the coils of buttons, because some of these coils are write-only.
   channel[shown.role == Role::Button ? "write_address" : "address"] = shown.first + index;
   switch (shown.role) {
     case Role::Output:

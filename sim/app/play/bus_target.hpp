@@ -16,8 +16,9 @@ namespace ex9000::play {
 /// The initial EEPROM contents: one item for each module, in the order of the lines and of their modules.
 /// nullopt: the module starts up with the settings of its ModuleSpec.
 using Memories = std::vector<std::optional<std::vector<std::uint8_t>>>;
-/// Reads the EEPROM files that `setup` names, even if another process uses them. Does not change the files. A
-/// file that does not exist gives nullopt. Throws std::invalid_argument with a one-line message.
+/// Reads the EEPROM files that `setup` names, even if another process uses them. Does not change the files.
+/// The result has nullopt for a module without an EEPROM file and for a file that does not exist. Throws
+/// std::invalid_argument with a one-line message if a file is not an image or is not readable.
 Memories read_memories(const sim::Setup& setup);
 
 /// All lines have the same virtual time. The observer may be null; otherwise it must outlive the target.

@@ -34,10 +34,12 @@ void LinePorts::report_dropped(const Port& port, std::size_t bytes) {
     full_.erase(known);
   } else if (bytes != 0 && known == full_.end()) {
     full_.push_back(&port);
-    notice_(port.is_a_line()
-                ? "the serial port is full: " + std::to_string(bytes) + " bytes are dropped"
-                : "a port is full: " + std::to_string(bytes) +
-                      " bytes are dropped; all later bytes are dropped too until its master reads");
+    const std::string dropped =
+        std::to_string(bytes) + (bytes == 1 ? " byte is dropped" : " bytes are dropped");
+    notice_(port.is_a_line() ? "the serial port is full: " + dropped
+                             : "a port is full: " + dropped +
+                                   ", because a master does not read; later bytes for this master are "
+                                   "dropped too until it reads");
   }
 }
 

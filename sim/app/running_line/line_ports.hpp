@@ -31,9 +31,9 @@ class LinePorts final : private BusObserver {
   void hear(std::uint8_t byte) { heard_.push_back(byte); }
   /// Returns whether a station other than the master has stopped sending since the last `hand_out`.
   [[nodiscard]] bool reply_is_complete() const { return stopped_sending_; }
-  /// Writes the bytes received since the last call to all ports. If `reply_is_complete` returned true before
-  /// this call, also calls `Port::sent` of all ports. Does not block: if a port has no room, drops the bytes.
-  /// Reports the first of consecutive drops with a notice.
+  /// Writes the bytes received since the last call to all ports. If `reply_is_complete()` is true at the time
+  /// of this call, also calls `Port::sent` of all ports. Does not block: if a port has no room, drops the
+  /// bytes. Reports the first of consecutive drops with a notice.
   void hand_out();
   /// Sets the line to the rate of the port, if the port has one, and reports mismatches.
   void take_rate(const Port& port);

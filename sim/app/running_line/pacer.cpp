@@ -127,8 +127,8 @@ void Pacer::arm_timer() {
 }
 
 /// Reports the delay of an event that was due at `next`, if the delay is at least kReportedDelay. After a
-/// report, only a delay at least twice as long as the reported one is reported, because a busy host is always
-/// late.
+/// report, only a delay at least twice as long as the reported one is reported, because a busy host causes
+/// many delays.
 void Pacer::report_delay(VirtualTime next) {
   if (next > wall()) {
     return;

@@ -18,19 +18,20 @@ namespace ex9000::sim {
 struct Pace {
   /// Compensates for the wall clock time that the process takes to wake up and read: bytes from a master
   /// count as written this much before the program reads them, but never before an event that has already
-  /// happened. If the port is a real line, the bytes count as written earlier by their transmission time too.
-  /// Without this, the host's delays would extend every transaction.
+  /// happened. If the port is connected to a real line, the bytes count as written earlier by their
+  /// transmission time too. Without this compensation, the host's delays would extend every transaction.
   VirtualTime host_latency = std::chrono::microseconds(300);
   /// While a byte is on the wires, and for this time after it, the pacer processes events without waiting for
   /// the wall clock. If virtual time is then more than 5 ms ahead of the wall clock, masters have to wait. If
   /// this value is zero, every event waits for the wall clock.
   VirtualTime lead{0};
-  /// After a Modbus reply, a frame to another module waits until the silence that ends a Modbus frame has
-  /// passed. If `lead` is not zero, a frame after a frame of the master waits for this silence too. A frame
-  /// to a Modbus module after an ASCII reply, or after bytes of an unknown sender, waits until the module no
-  /// longer treats these bytes as part of a frame. Without these delays, many masters, for example libmodbus,
-  /// would begin a frame too early after a Modbus reply, and the modules that have received the reply would
-  /// receive both as one frame. A real adapter delays the frame itself.
+  /// After a Modbus reply, a frame to another address waits until the silence that ends a Modbus frame has
+  /// passed. If `lead` is not zero, a frame after a frame of the master waits for this silence too. After an
+  /// ASCII reply, or after bytes of an unknown sender, a frame to one Modbus module or to all of them waits
+  /// until these modules no longer treat the earlier bytes as part of a frame. Without these delays, many
+  /// masters, for example libmodbus, would begin a frame too early after a Modbus reply, and the modules that
+  /// have received the reply would receive both as one frame. On a real line, a slow adapter usually causes
+  /// this delay.
   bool keep_frames_apart = true;
   /// The ratio of virtual time to the wall clock.
   double speed = 1;

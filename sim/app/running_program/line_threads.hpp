@@ -29,7 +29,7 @@ class LineThreads {
   /// std::runtime_error with a one-line message if the system cannot start a thread.
   void start();
   /// Waits until the handlers that are running or ready on the threads have ended, then runs `action` while
-  /// no handler of a line runs. Throws what `action` throws.
+  /// no handler of a line runs. `action` must not call `pause_for`. Throws what `action` throws.
   void pause_for(const std::function<void()>& action);
   /// Ends the threads. Blocks until the handlers that are running have ended.
   void end();

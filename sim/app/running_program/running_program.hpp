@@ -33,9 +33,10 @@ class RunningProgram {
   /// Opens everything that `setup` names, except EEPROM files that do not exist. Throws std::invalid_argument
   /// or std::runtime_error with a one-line message. After an exception, everything is closed again, no new
   /// file remains, and the content of existing files is unchanged. `print` receives the log, the notes and
-  /// the greeting; if the log is JSON, `greet` receives the greeting instead. `terminal` is used only if
-  /// `setup.watch` is true; see Watch. `models` is the content of the panel's /models.json. `io` and
-  /// `terminal` must outlive this object.
+  /// the greeting; if the log is JSON, `greet` receives the greeting instead. If `setup.watch` is true and
+  /// `terminal` is not null, `terminal` receives everything that `print` would receive; otherwise `terminal`
+  /// is not used. See Watch. `models` is the content of the panel's /models.json. `io` and `terminal` must
+  /// outlive this object.
   RunningProgram(boost::asio::io_context& io, Setup setup, Print print, Print greet, Terminal* terminal,
                  const std::string& models);
   ~RunningProgram();

@@ -34,7 +34,7 @@ class Stepper {
   /// - Reads what is available at all ports and Modbus TCP servers, and puts it on their lines.
   /// - Advances the lines by TIME, but not beyond `end`. With `quiet`, stops earlier, as soon as nothing is
   ///   pending on any line.
-  /// - Writes the bytes of the replies to the ports, and calls `answer`.
+  /// - Writes to the ports the bytes that modules and faults have sent, and calls `answer`.
   ///
   /// `answer` receives `ok NOW`, where NOW is the lines' time in seconds, or `error: ...`. If the command is
   /// wrong, it has no effect except the error. If the program is asked to end while time passes, time stops

@@ -83,8 +83,8 @@ struct Setup : Writing {
   Speed speed;
   /// Highest number of threads for the lines; nullopt: one for each processor, but at most kMostThreads.
   std::optional<std::size_t> threads;
-  /// How long the modules are up, in the lines' time, before the run ends; nullopt: until a signal or the
-  /// command `quit`.
+  /// How long the modules are up, in the lines' time, before the run ends; nullopt: the run has no planned
+  /// end.
   std::optional<VirtualTime> lasts;
   std::uint64_t seed = 1;  ///< seed of all random events: noise, faults with a probability, bouncing contacts
   Places places;
@@ -119,16 +119,15 @@ struct SetupError : std::invalid_argument {
 /// path or a name is not valid.
 void check(const Setup& setup);
 
-// The values of options of the command line. A bus file contains the same values, with the same syntax,
-// except the number of threads and the speed. The parsers throw std::invalid_argument with a one-line
-// message.
+// The values of options of the command line. A bus file can contain these values too, except the number of
+// threads and the speed. The parsers throw std::invalid_argument with a one-line message.
 
 /// Parses `instant` or `paced`. Returns true for `instant`: bytes take almost no time.
 bool parse_line_kind(const std::string& text);
 /// Parses a whole number of up to 64 bits.
 std::uint64_t parse_seed(const std::string& text);
-/// The highest number of threads. A thread whose lines have pseudo-terminals requires an inotify instance. On
-/// Debian, a user may have 128 of them.
+/// The highest number of threads. A thread whose lines have pseudo-terminals requires an inotify instance. By
+/// default, a user may have 128 inotify instances on Debian.
 inline constexpr std::size_t kMostThreads = 64;
 
 /// Parses a number of threads, 1 to kMostThreads.

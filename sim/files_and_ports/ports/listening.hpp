@@ -24,9 +24,9 @@ inline boost::system::error_code listen_at(boost::asio::ip::tcp::acceptor& accep
   }
 }
 
-/// Calls `admit` with the socket of each new connection until both `acceptor` and `next_try` are cancelled or
-/// destroyed. After an error, accepts again after 100 ms: if the process has no free file descriptor,
-/// immediate retries would use all of the processor's time.
+/// Calls `admit` with the socket of each new connection. To end this, close or destroy `acceptor`, and cancel
+/// or destroy `next_try`. After an error, accepts again after 100 ms: if the process has no free file
+/// descriptor, immediate retries would use all of the processor's time.
 template <class Acceptor, class Admit>
 void keep_accepting(Acceptor& acceptor, boost::asio::steady_timer& next_try, Admit admit) {
   using Socket = typename Acceptor::protocol_type::socket;

@@ -35,7 +35,8 @@ class Port {
 
   /// Sends bytes from the line. The bytes are lost if no master has the port open, as on real wires. Returns
   /// how many bytes were dropped because a master has the port open and does not read; if several masters do
-  /// not read, the largest of their numbers.
+  /// not read, the largest of their numbers. A serial port returns how many bytes it has dropped since the
+  /// last call because the kernel had no room for them.
   virtual std::size_t send(const std::vector<std::uint8_t>& bytes) = 0;
   /// Call this when a station other than the master has turned its driver off, so that no more bytes of its
   /// reply follow.

@@ -118,7 +118,8 @@ void TcpPort::resume() {
   }
 }
 
-/// Keeps a client that has closed its sending side for the linger time, because it may still receive.
+/// Keeps a client that has closed its sending side, because the client may still receive. If there is a
+/// linger time, removes the client after this time.
 void TcpPort::let_linger(const ClientPointer& client) {
   client->lingers = true;
   if (!linger_) {

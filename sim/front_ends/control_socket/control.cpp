@@ -161,7 +161,7 @@ constexpr std::array<LineVerb, 6> kLineVerbs{{
     {"baud RATE",
      "sets the line's baud rate, for TCP; a pseudo-terminal overrides it, and a serial port has its own"},
     {"format FORMAT", "sets the line's format: 8N1, 8N2, 8E1 or 8O1; a serial port has its own"},
-    {"sent", "reads how many bytes the line has written to its ports"},
+    {"sent", "reads how many bytes the line has written to each of its ports"},
     {"fault FAULT", "adds a fault, see below; replies with its number. With N: for that module"},
     {"fault off K|all", "removes the fault with this number, or all faults"},
     {"faults",

@@ -22,8 +22,8 @@ namespace ex9000::sim {
 class ControlSocket {
  public:
   using Answer = std::function<void(const Control::Reply&)>;
-  /// Carries out `command`. Calls `answer` exactly once, during the call or later. Until then the server
-  /// reads nothing more from the client that sent the command.
+  /// Carries out `command`. Calls `answer` exactly once, during the call or later, unless the program ends
+  /// first. Until `answer` is called, the server reads nothing more from the client that sent the command.
   using CarryOut = std::function<void(const std::string& command, const Answer& answer)>;
 
   /// Starts to listen on `path`; replaces a socket of a process that has ended. Throws std::invalid_argument

@@ -14,7 +14,7 @@ void MbapSession::resume() {
 
 void MbapSession::pass_on() {
   if (passing_on_) {
-    return;  // `ask` below has called `answer`; the loop continues
+    return;  // `ask_on_line` below has called `answer`; the loop continues
   }
   passing_on_ = true;
   while (!waiting_ && !blocked_) {

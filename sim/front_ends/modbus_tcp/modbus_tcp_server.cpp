@@ -103,7 +103,7 @@ void ModbusTcpServer::read(const ClientPointer& client) {
     }
     client->reading = false;
     if (paused_ || !client->may_read()) {
-      return;  // the server was paused during the wait
+      return;  // during the wait, the server was paused, or `may_read` became false
     }
     const boost::system::error_code ended = error ? error : take(client);
     if (ended == boost::asio::error::eof) {
@@ -132,7 +132,8 @@ boost::system::error_code ModbusTcpServer::take(const ClientPointer& client) {
   return error;
 }
 
-/// Passes a function to `received_` that runs `action`, unless the client has been removed by then.
+/// Calls `received_` with a function that runs `action`. If the client has been removed when this function is
+/// called, the function does not run `action`.
 void ModbusTcpServer::deliver(const ClientPointer& client, std::size_t size,
                               const std::function<void()>& action) {
   ++client->arriving;

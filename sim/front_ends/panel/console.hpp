@@ -19,11 +19,12 @@ struct ConsoleRequest {
   std::string text;          ///< a DCON command if it begins with a delimiter, otherwise a PDU in hex
 };
 
-/// Returns the request in `message`, or nullopt if `message` is not a request of the console.
+/// Returns the request in `message`, or nullopt if `message` does not have the form of a request of the
+/// console or if its address is above 247.
 std::optional<ConsoleRequest> parse_console_request(const Message& message);
 
 /// Returns the frame to send. `is_reply`, `done` and `owner` are not set. Throws std::invalid_argument with a
-/// one-line message if the text is too long, or is neither a DCON command nor a PDU.
+/// message for the user if the text is too long, or is neither a DCON command nor a PDU.
 RequestQueue::Request frame_of(const ConsoleRequest& request);
 
 /// Returns the message for the page: the reply, its meaning and its delay, or the reason why there is no

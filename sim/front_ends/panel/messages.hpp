@@ -18,7 +18,7 @@ using Message = nlohmann::ordered_json;
 /// Returns the constant data that the page requires to draw a module's plate.
 Message plate_layout(const Model& model);
 
-// The parts of a module's Face are separate messages because they change independently.
+// Each part of a module's Face is a separate Message, because the parts change independently.
 Message message_of(const Plate& plate);
 /// Returns a message that contains the latches and the first `inputs` counters.
 Message message_of(const InputRecords& gathered, unsigned inputs);
@@ -29,8 +29,8 @@ Message message_of(const Stored& stored);
 /// from 0.
 Message message_of(const std::vector<Faults::Info>& faults, std::size_t first);
 
-/// Returns entry `number` of the traffic. `modules` is the number of modules on the line; frames from
-/// stations with a higher number come from faults.
+/// Returns the message for the traffic entry `entry`, whose number is `number`. `modules` is the number of
+/// modules on the line. A frame from a station whose number is above `modules` comes from a fault.
 Message message_of(const RecentTraffic::Entry& entry, std::uint64_t number, std::size_t modules);
 
 /// A request of the page to carry out a command.

@@ -31,7 +31,8 @@ class PanelViewer {
   /// would hold too many actions active.
   virtual bool ask(const std::string& text) = 0;
   /// Returns the next message for the page: replies, the recent traffic, and the changes that Panel::look has
-  /// captured, each if the page has not received it yet. Returns an empty text if there is nothing to send.
+  /// captured, each if the page has not received it yet. The first message also describes the lines and their
+  /// modules. Returns an empty text if there is nothing to send.
   virtual std::string next() = 0;
 };
 
@@ -41,7 +42,7 @@ class Panel {
  public:
   using CarryOut = std::function<Control::Reply(const std::string& command)>;
 
-  /// Sends a request on the line at position `line`, from 0. `request.done` must be called on the thread that
+  /// Sends a request on the line at position `line`, from 0. Calls `request.done` only on the thread that
   /// uses this Panel.
   using Ask = std::function<void(std::size_t line, RequestQueue::Request request)>;
 

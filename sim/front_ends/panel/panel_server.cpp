@@ -176,10 +176,13 @@ class PanelServer::Listener::Client : public std::enable_shared_from_this<Client
     const bool live = request.target() == "/live";
     if (request.count(http::field::host) != 1 ||
         !is_loopback_host(view_of(request[http::field::host]), port)) {
-      answer(http::status::forbidden, "text/plain", "the host name must be 127.0.0.1 or localhost\n");
+      answer(http::status::forbidden, "text/plain",
+             "the header Host is missing, wrong or repeated; expected 127.0.0.1 or localhost with the port "
+             "of the panel\n");
     } else if (request.count(http::field::origin) > 1 ||
                (has_origin && !is_loopback_origin(view_of(origin->value()), port)) || (live && !has_origin)) {
-      answer(http::status::forbidden, "text/plain", "requests from pages of other sites are not allowed\n");
+      answer(http::status::forbidden, "text/plain",
+             "the header Origin is missing, wrong or repeated; expected the origin of the panel's page\n");
     } else if (!is_fetched_by_us(request)) {
       answer(http::status::forbidden, "text/plain", "requests from other sites are not allowed\n");
     } else if (!reads(request)) {
@@ -201,9 +204,9 @@ class PanelServer::Listener::Client : public std::enable_shared_from_this<Client
     return request.method() == http::verb::get || request.method() == http::verb::head;
   }
 
-  /// Returns false if Sec-Fetch-Site states that a page of another origin has caused the request. Browsers do
-  /// not send Origin with every request; newer browsers also send Sec-Fetch-Site. Accepts requests without
-  /// Sec-Fetch-Site.
+  /// Returns whether each header Sec-Fetch-Site of the request is same-origin or none; true if there is no
+  /// such header. Browsers do not send Origin with every request. Newer browsers also send Sec-Fetch-Site,
+  /// with another value if a page of another origin has caused the request.
   [[nodiscard]] static bool is_fetched_by_us(const Request& request) {
     const auto fetched = request.equal_range("Sec-Fetch-Site");
     return std::all_of(fetched.first, fetched.second, [](const auto& field) {

@@ -18,7 +18,7 @@ class Panel;
 /// fewer messages, each with the last captured state: messages do not accumulate, and the simulation does not
 /// wait for the page.
 ///
-/// Rejects requests for a host name other than 127.0.0.1 and localhost, requests that a browser marks as
+/// Rejects requests for another host or port (see is_loopback_host), requests that a browser marks as
 /// requests of a page of another origin, and requests for a WebSocket without an Origin.
 class PanelServer {
  public:

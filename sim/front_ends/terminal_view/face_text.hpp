@@ -21,7 +21,8 @@ inline constexpr Lamps kPlainLamps{"*", "-"};
 
 /// Returns the face as lines of up to 80 columns. A module number above 999, and the counters of a model with
 /// more than eight inputs, may require more columns. `number` is the module's position across all lines, from
-/// 1, and `now` is the time of its line's clock.
+/// 1, and `now` is the present time of the module's line, which may be later than the time of the line's
+/// clock.
 std::vector<std::string> face_text(std::size_t number, const SimulatedModule& module, VirtualTime now,
                                    const Lamps& lamps);
 

@@ -27,7 +27,7 @@ struct Frame {
       constexpr Levels kStartBit = 1;
       return (arrives & kStartBit) == 0 ? std::optional(byte_of(arrives)) : std::nullopt;
     }
-    /// Returns the status that these receivers report if they detect the byte.
+    /// Returns the status that receivers in the sender's mode report if they detect the byte.
     [[nodiscard]] ByteStatus status() const { return status_of(arrives, format); }
   };
 
@@ -37,7 +37,7 @@ struct Frame {
   FrameBytes bytes;
   std::vector<Change> changes;
   bool collided = false;  ///< see BusObserver::byte; true if at least one byte collided
-  /// The modes of the sender and of the line at the first byte. Receivers in the line's mode get these bytes
+  /// The modes of the sender and of the line at the first byte. Receivers in the line's mode get `bytes`
   /// only if the rates and the parities of both modes are equal. A change of a mode during the frame does not
   /// change these members.
   SerialMode sent_in;

@@ -103,7 +103,8 @@ std::string shared_addresses(const std::vector<ModuleSummary>& modules) {
   for (const auto& [address, count] : users) {
     if (count > 1) {
       text += std::to_string(count) + " modules are at address " + hex_byte_text(address) +
-              " and may reply at the same time; use MODEL@ADDR to give them different addresses\n";
+              " and may reply at the same time; give them different addresses with MODEL@ADDR, or with "
+              "'address' in the bus file\n";
     }
   }
   return text;

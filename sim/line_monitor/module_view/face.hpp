@@ -53,7 +53,7 @@ struct InputRecords {
   friend bool operator==(const InputRecords& a, const InputRecords& b);
 };
 
-/// The state of the host watchdog; valid only while the module listens.
+/// The state of the host watchdog, and the reset status; valid only while the module listens.
 struct HostWatchdogState {
   bool enabled = false;
   bool timed_out = false;              ///< the timeout status

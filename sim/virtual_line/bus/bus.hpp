@@ -61,9 +61,9 @@ class BusObserver {
   /// correct levels of the byte: the byte has wrong parity, or the disturbance has changed it.
   virtual void changed(std::size_t /*station*/, Levels /*arrives*/) {}
   /// Called at the end of the first stop bit of a byte that began at `start` and whose last stop bit ends at
-  /// `end`. A byte is not reported if its driver was disabled before its first stop bit was over. `byte` is
-  /// the byte that was sent. `collided`: at least two drivers were enabled, or another byte was on the wires,
-  /// during this byte.
+  /// `end`. A byte is not reported if the driver of `station` was disabled before its first stop bit was
+  /// over. `byte` is the byte that was sent. `collided`: at least two drivers were enabled, or another byte
+  /// was on the wires, during this byte.
   virtual void byte(std::size_t station, std::uint8_t byte, SerialMode mode, bool collided, VirtualTime start,
                     VirtualTime end) = 0;
 
@@ -78,7 +78,7 @@ class Disturbance {
     Levels levels;
     SerialMode mode;
     VirtualTime ends;  ///< the end of the first stop bit
-    bool contended;    ///< another driver is enabled
+    bool contended;    ///< at least two drivers are enabled
   };
   /// Returns the levels that all receivers get instead of those of `sent`.
   virtual Levels disturbed(const Sent& sent) = 0;
@@ -88,13 +88,13 @@ class Disturbance {
 };
 
 /// A half-duplex line. A byte lasts ten or eleven bit times at the rate of its sender. A receiver with the
-/// same rate and parity gets the byte after its first stop bit. A receiver with another rate or parity
-/// samples the levels on the wires in its own mode, and may get framing errors, parity errors, breaks or
-/// wrong bytes. If several drivers are enabled at the same time, the level of the line is 0 while at least
-/// one of them sends a 0, and receivers sample the resulting levels.
+/// same rate and parity gets the byte unchanged after its first stop bit, if the byte has its correct levels
+/// and does not collide. Otherwise the receiver samples the levels on the wires in its own mode, and may get
+/// framing errors, parity errors, breaks or wrong bytes. If several stations send at the same time, the level
+/// of the line is 0 while at least one of them sends a 0.
 ///
-/// `times_faster` multiplies all nominal rates of the line. This factor does not change which stations
-/// understand each other.
+/// `times_faster` multiplies all nominal rates of the line, up to 500 Mbit/s on the wires. Below this limit,
+/// the factor does not change which stations understand each other.
 class Bus {
  public:
   explicit Bus(VirtualClock& clock, std::uint32_t times_faster = 1);
@@ -107,8 +107,8 @@ class Bus {
   BusEnd& attach(Station& station);
   /// Adds an observer. `observer` must live as long as the bus is used.
   void observe(BusObserver& observer) { observers_.push_back(&observer); }
-  /// Lets `disturbance` change the bytes that are sent from now on, in place of an earlier one. `disturbance`
-  /// must live as long as the bus is used.
+  /// Lets `disturbance` change the bytes that are sent from now on, in place of an earlier disturbance.
+  /// `disturbance` must live as long as the bus is used.
   void disturb(Disturbance& disturbance) { disturbance_ = &disturbance; }
 
   /// Returns the time of the next event of the bus or of a station; kNever if there is none.

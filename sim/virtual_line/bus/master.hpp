@@ -22,13 +22,13 @@ class Master final : public Station {
 
   /// Returns how long `bytes` bytes without gaps take at the present rate and in the present format.
   [[nodiscard]] VirtualTime takes(std::size_t bytes) const { return wire_.takes(bytes, mode_); }
-  /// Sends the bytes after those that already wait or are on the wires. If no byte waits or is on the wires,
-  /// sends them immediately, but not before `not_before`. The driver is enabled from the first byte to the
-  /// last. Does not block. The bytes at the positions `damaged`, counted from 0, have wrong parity if the
-  /// format has a parity bit.
+  /// Sends the bytes after the bytes of this master that already wait or are on the wires. If this master has
+  /// no such bytes, sends the new bytes immediately, but not before `not_before`. The driver is enabled from
+  /// the first byte to the last. Does not block. The bytes at the positions `damaged`, counted from 0, have
+  /// wrong parity if the format has a parity bit.
   void send(const std::uint8_t* bytes, std::size_t size, VirtualTime not_before = VirtualTime(0),
             const std::vector<std::size_t>& damaged = {});
-  /// Returns whether bytes wait or are on the wires.
+  /// Returns whether bytes of this master wait or are on the wires.
   [[nodiscard]] bool sending() const { return next_ != kNever; }
   /// Returns how many bytes `send` has taken so far.
   [[nodiscard]] std::uint64_t taken() const { return taken_; }
@@ -41,8 +41,8 @@ class Master final : public Station {
   void set_baud(std::uint32_t baud) { set_mode({baud, mode_.format}); }
   void set_format(LineFormat format) { set_mode({mode_.baud, format}); }
 
-  /// Sets a second function to call for each received byte. The master calls it before the `receive` of the
-  /// constructor.
+  /// Sets a second function to call for the same bytes as the `receive` of the constructor. The master calls
+  /// the second function first.
   void also_receive(Receive receive) { also_receive_ = std::move(receive); }
 
   [[nodiscard]] SerialMode mode() const { return mode_; }
@@ -70,8 +70,8 @@ class Master final : public Station {
   bool driving_ = false;
   VirtualTime burst_began_{0};
   std::size_t burst_bytes_ = 0;
-  /// When the byte on the wires ends, or when the first byte begins. kNever: no byte waits or is on the
-  /// wires.
+  /// When the byte of this master on the wires ends, or when its first waiting byte begins. kNever: no byte
+  /// of this master waits or is on the wires.
   VirtualTime next_ = kNever;
 
   void wake_at(VirtualTime when);

@@ -51,8 +51,8 @@ class SimulatedModule final : public Station {
   /// Connects INIT* to GND or releases it.
   void set_init(bool asserted);
   [[nodiscard]] bool init_asserted() const { return init_switch_.asserted(); }
-  /// Sets the level of an input channel, counted from 0. A channel that the model lacks has no effect on the
-  /// firmware.
+  /// Sets the level of an input channel, counted from 0. The level of a channel that the model lacks has no
+  /// effect on the firmware.
   void set_input(unsigned channel, bool level);
   /// Applies `count` pulses to an input channel, counted from 0. Each pulse changes the level and changes it
   /// back. The pulses take no virtual time.
@@ -174,7 +174,7 @@ class SimulatedModule final : public Station {
   bool supply_interrupted_ = false;
   bool hung_ = false;
   std::uint64_t watchdog_resets_ = 0;
-  SerialMode listens_in_;  ///< the mode of the receiver that the bus knows
+  SerialMode listens_in_;  ///< the mode that the last call of `BusEnd::listen` has set
   // `receive` uses the members from here on. They are next to each other, so that they occupy few cache
   // lines, because many modules may receive each byte.
   ModuleWire wire_;

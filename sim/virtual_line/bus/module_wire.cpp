@@ -75,7 +75,7 @@ void ModuleWire::run() {
 
 void ModuleWire::end_delays(std::optional<std::size_t> fault) {
   VirtualTime free = clock_.virtual_now();  // when the replies before the next one have ended
-  std::optional<VirtualTime> delay;         // nullopt: of a reply that has begun on the wires
+  std::optional<VirtualTime> delay;         // of the last reply so far; nullopt: it has begun on the wires
   for (Event& late : late_) {
     if (late.what == What::On) {
       if (fault.value_or(late.fate.delayed_by) == late.fate.delayed_by) {
@@ -89,7 +89,7 @@ void ModuleWire::end_delays(std::optional<std::size_t> fault) {
     }
     free = std::max(free, late.when);
   }
-  delay_ = delay.value_or(delay_);  // if the UART still sends the last of these replies
+  delay_ = delay.value_or(delay_);  // has an effect if the UART still sends the last of these replies
 }
 
 void ModuleWire::abort() {

@@ -50,8 +50,9 @@ class ModuleWire final : public Wire {
   [[nodiscard]] VirtualTime next() const { return late_.empty() ? kNever : late_.front().when; }
   void run();
   /// Ends the delay of all replies that `fault` (ReplyFate::delayed_by) makes late, or of all replies if
-  /// `fault` is nullopt. The first such reply begins now, or when the replies before it have ended; the next
-  /// ones follow it as the UART has sent them. A reply that has begun on the wires keeps its delay.
+  /// `fault` is nullopt. If another reply waits before such a reply, the time between the two stays as the
+  /// UART has sent them. If no other reply waits before it, such a reply begins now, or at the end of the
+  /// late reply that is on the wires. A reply that has begun on the wires keeps its delay.
   void end_delays(std::optional<std::size_t> fault);
   /// Drops all bytes that are not on the wires yet, and disables the driver if a late reply is on the wires.
   /// Call this when the module loses its supply or is reset.
@@ -95,7 +96,8 @@ class ModuleWire final : public Wire {
   Ends ends_ = [] {};
   OnTheWires on_the_wires_ = [](std::uint64_t /*reply*/, bool /*on*/) {};
   ReplyFate fate_;
-  /// The delay of the reply that the UART sends; longer than `fate_.late_by` if a late reply precedes.
+  /// The delay of the reply that the UART sends. May differ from `fate_.late_by`: the delay is longer if the
+  /// reply must wait for the end of a late one, and `end_delays` may shorten it.
   VirtualTime delay_{0};
   std::uint64_t reply_ = 0;  ///< number of the reply that the UART sends, or has sent last
   std::uint32_t forced_ = 0;

@@ -78,8 +78,8 @@ struct Wave {
   [[nodiscard]] unsigned bits() const { return bits_received(mode.format); }
   /// Returns the time at which bit `index` begins, or the end of the first stop bit if `index` is `bits()`.
   [[nodiscard]] VirtualTime boundary(unsigned index) const;
-  /// Returns the level at the time `at`: true if idle. The level is idle before the byte, after its first
-  /// stop bit, and from `cut_off` on.
+  /// Returns the level at the time `at`. true: the idle level, which is also the level of a 1. The level is
+  /// idle before the byte, after its first stop bit, and from `cut_off` on.
   [[nodiscard]] bool level(VirtualTime at) const;
 
   VirtualTime start;

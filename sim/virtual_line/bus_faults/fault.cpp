@@ -55,7 +55,7 @@ constexpr std::array<Row, 13> kRows{{
     {"stray-zeros", "P", "0.01", Trouble::StrayZeros, false, take_probability,
      "adds 00 after a byte with this probability, as may happen at the turn-around of a line"},
     {"echo", "TIME", "5ms", Trouble::Echo, false, take_silence,
-     "sends all received bytes again after a pause of this length"},
+     "sends received bytes again after a pause of this length"},
     {"foreign-traffic", "HEX", "0501000000083C48 every 1s", Trouble::ForeignTraffic, false, take_bytes,
      "sends these bytes, as another device would"},
     {"lost-reply", "", "every 3rd reply", Trouble::LostReply, true, nullptr, "drops the reply"},
@@ -136,7 +136,7 @@ class ScheduleReader {
     } else {
       fail("'" + word +
            "' is not a schedule; expected 'at 12.5s', 'every 5s', 'every 10th reply', "
-           "'with probability 0.01', 'after 3 writes', and 'for 2s'");
+           "'with probability 0.01', 'after 3 writes' or 'for 2s'");
     }
   }
 

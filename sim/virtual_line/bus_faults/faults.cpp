@@ -161,8 +161,8 @@ void Faults::change() {
 }
 
 /// Begins an occurrence. `reply` of the module `reply_of` has triggered it; nullopt: no reply has. A module
-/// may cause this call in the middle of an action. This function therefore does not change any module; the
-/// next call of `run` changes the modules.
+/// may cause this call in the middle of an action. This function therefore does not change any module; `run`
+/// changes the modules later.
 void Faults::begin(Armed& armed, std::optional<std::size_t> reply_of, std::uint64_t reply) {
   const Fault& fault = armed.fault;
   ++armed.occurrences_so_far;
@@ -280,8 +280,8 @@ void Faults::reply_on_the_wires(std::size_t module, std::uint64_t reply, bool on
     change();
     if (const auto lasts = armed.fault.schedule.lasts) {
       begun->ends = bus_.clock().virtual_now() + *lasts;
-      // Earlier replies of the module may have triggered occurrences that are in progress. This one ends
-      // last.
+      // Earlier replies of the module may have triggered occurrences that are in progress. The
+      // occurrence of this reply ends last, so it replaces them.
       end_occurrences(armed, [=](const Occurrence& occurrence) {
         return occurrence.reply_of == module && occurrence.reply != reply && !occurrence.waits;
       });

@@ -65,16 +65,17 @@ class Line {
   /// Starts `program`, which changes the level of an input of the module at `index`.
   void move_input(std::size_t index, const InputProgram& program);
   /// Returns whether something is in progress that ends by itself, usually within milliseconds: a byte on the
-  /// wires, an enabled driver, bytes that a station still has to send, the silence after a Modbus frame, a
-  /// request that a module processes, a delayed reply, a store, the start of a module, or a change of the
-  /// active faults. Events that depend only on the clock do not count, for example a host watchdog, a
-  /// scheduled fault or an input program. Requests that wait in `requests` do not count either.
+  /// wires, an enabled driver, bytes that a station still has to send, the silence after a Modbus frame, the
+  /// turn-around time after a DCON frame, a request that a module processes, a delayed reply, a store, the
+  /// start of a module, or a change of the active faults. Events that depend only on the clock do not count,
+  /// for example a host watchdog, a scheduled fault or an input program. Requests that wait in `requests` do
+  /// not count either.
   [[nodiscard]] bool unsettled() const;
   /// Returns whether the line is unsettled, or a request in `requests` waits or is in progress.
   [[nodiscard]] bool pending() const;
-  /// Returns the silence that modules of this line require between frames, counted from the end of the first
-  /// stop bit of the last byte. Except on an instant line, this is the rest of the stop bits and T3.5, at the
-  /// baud rate and format of the master.
+  /// Returns the silence that modules of this line require between Modbus frames, counted from the end of the
+  /// first stop bit of the last byte. Except on an instant line, this is the rest of the stop bits and T3.5,
+  /// at the baud rate and format of the master.
   [[nodiscard]] VirtualTime rtu_silence() const;
   /// Returns the silence after which earlier bytes cannot belong to the next frame, even if the CRC of these
   /// bytes is wrong. It is counted like `rtu_silence`.

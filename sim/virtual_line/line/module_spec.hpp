@@ -25,7 +25,7 @@ struct ModuleSpec {
 /// wrong and what would be right.
 ModuleSpec parse_module_spec(const std::string& text);
 
-// The steps of parse_module_spec. If a value is wrong, they throw like parse_module_spec.
+// The steps of parse_module_spec. If a key or a value is wrong, they throw like parse_module_spec.
 
 /// Returns a module of this model with factory settings.
 ModuleSpec factory_fresh(const Model& model);

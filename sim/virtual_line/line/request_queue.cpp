@@ -41,9 +41,9 @@ bool RequestQueue::others_use_the_line() const {
          (line_.spacing().last_byte() != own_byte_ && line_.unsettled());
 }
 
-/// Sends the first request. While others use the line, tries again every 1 ms until the deadline. At the
-/// deadline, sends the request anyway, unless the master still has bytes of another program to send. In this
-/// case, reports that the request was not sent.
+/// Sends the first request. While others use the line, tries again every 1 ms until the deadline. If the
+/// master is sending at the deadline, reports that the request was not sent. If only other stations use the
+/// line at the deadline, sends the request anyway.
 void RequestQueue::send() {
   constexpr VirtualTime kBetweenLooks = std::chrono::milliseconds(1);
   Master& master = line_.master();

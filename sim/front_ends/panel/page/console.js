@@ -25,7 +25,7 @@ function described() {
 const isDcon = (text) => /^[$#%@~]/.test(text);
 const hexWord = (value) => value.toString(16).toUpperCase().padStart(4, "0");
 
-/// Returns {label, request} for each read and for each single write of the registers of a model.
+/// Returns {label, request} for each row of a model's register map and each function from 01 to 06 of this row.
 function modbusItems(model) {
   return model.modbus_registers.flatMap(({first, last, functions, meaning}) => functions.flatMap((code) => {
     const span = first === last ? hexWord(first) : `${hexWord(first)}–${hexWord(last)}`;
@@ -138,7 +138,8 @@ export class Console {
     this.replies.scrollTop = this.replies.scrollHeight;
   }
 
-  /// While polling is switched on, sends the request after `delay` ms, and again an interval after each reply.
+  /// While polling is switched on, sends the request after `delay` ms, and again an interval after each reply or
+  /// error.
   schedule(delay) {
     clearTimeout(this.timer);
     if (!this.poll.checked) {

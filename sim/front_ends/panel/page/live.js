@@ -71,8 +71,9 @@ export class Live {
   /// `command` succeeds and the page disconnects before it has sent `undo`, the simulator carries out `undo`.
   tell(command, undo) { return this.send({do: command, undo}); }
 
-  /// Sends a request {line, address, ask} on a line; resolves to {ok, text, meaning, delay}. `meaning` and `delay`, in
-  /// us, may be undefined.
+  /// Sends a request of the page and resolves to the reply. For a request {line, address, ask}, which the simulator
+  /// sends on a line, the reply is {ok, text, meaning, delay}. `delay` is in us. `meaning` and `delay` may be
+  /// undefined.
   send(request) {
     if (this.socket?.readyState !== WebSocket.OPEN) {
       return Promise.resolve({ok: false, text: "error: there is no connection to the simulator"});

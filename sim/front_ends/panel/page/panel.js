@@ -84,8 +84,8 @@ function begin(hello) {
   }, now);
 }
 
-/// Shows only the modules that match the words in the search field. Opens the lines of these modules, or folds the
-/// lines if more than `mostUnfolded` modules match.
+/// Shows only the modules that match the words in the field `find`. Opens the lines of these modules, or folds the
+/// lines if more than `mostUnfolded` modules match. Hides the faults and the console of a line without such modules.
 function find() {
   const words = at("find").value.toLowerCase().split(/\s+/).filter(Boolean);
   const found = lines.map(({view}) => view.matches(words));
@@ -152,8 +152,8 @@ function lost(why) {
   }
 }
 
-/// The header of the page. The stylesheet uses the header's height for the positions of the element `lost` and of
-/// scroll targets.
+/// The header of the page. If the window is wider than 640 px, the stylesheet uses the header's height for the
+/// positions of the element `lost` and of scroll targets.
 const header = document.querySelector(".top");
 const measure = () => document.documentElement.style.setProperty("--top", `${header.offsetHeight}px`);
 new ResizeObserver(measure).observe(header);

@@ -1,4 +1,4 @@
-// The strip: the frames of each line on a time scale.
+// The strip: the frames and notes of each line on a time scale.
 
 import {setAttribute} from "/element.js";
 

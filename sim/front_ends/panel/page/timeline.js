@@ -9,8 +9,8 @@ import {Strip} from "/strip.js";
 /// by one would be slower.
 const mostKept = 1700;
 const trimmedFrom = 2000;
-/// The same limits for entries that wait during a pause. These limits are lower, so that older entries remain in the
-/// list when the waiting entries are added.
+/// The corresponding limits for entries that wait during a pause. These limits are lower, so that older entries remain
+/// in the list when the waiting entries are added.
 const mostWaiting = 1000;
 const waitingTrimmedFrom = 1200;
 /// The minimum time between two drawings of the list by `draw`, in ms. Without this limit, the traffic of a busy line
@@ -97,7 +97,7 @@ export class Timeline {
   }
 
   /// Adds entries during a pause. If too many entries wait, replaces the oldest ones by one entry for each of their
-  /// lines. This entry states how many frames and notes were left out.
+  /// lines. Each new entry states how many frames and notes of its line were left out.
   addWhilePaused(fresh) {
     this.pending.push(...fresh);
     if (this.pending.length > waitingTrimmedFrom) {

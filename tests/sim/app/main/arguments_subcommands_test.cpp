@@ -144,7 +144,7 @@ TEST(Arguments, DescribeHasItsOwnHelp) {
 
 TEST(Arguments, VersionIsThatOfTheFirmware) { EXPECT_EQ(printed({"--version"}), "ex9000-sim D01.00\n"); }
 
-TEST(Arguments, OptionsThatPrintRejectOtherArgumentsExceptVersion) {
+TEST(Arguments, ModelsExampleAndSchemaRejectOtherArgumentsButVersionDoesNot) {
   EXPECT_EQ(printed({"EX9042D", "--version"}), printed({"--version"}));
   expect_error({"--models", "EX9042D"}, "--models: only prints text", "leave out EX9042D");
   expect_error({"--example", "--log"}, "--example: only prints text", "leave out --log");

@@ -226,7 +226,7 @@ TEST(Arguments, AWrongModuleIsRefused) {
   expect_error({""}, "empty argument", "--models");
 }
 
-TEST(Arguments, AWrongRateIsRefusedWithAValidRate) {
+TEST(Arguments, TheMessageAboutAWrongRateNamesAValidRate) {
   for (const char* rate : {"300", "9601", "9600x", "fast", "-1", "0"}) {
     expect_error({"EX9042D", "--baud", rate}, rate, "9600");
   }
@@ -334,7 +334,7 @@ TEST(Arguments, ThreadsAreANumberFrom1To64) {
   }
 }
 
-TEST(Arguments, SpeedIsAFactorWithinLimitsOrMax) {
+TEST(Arguments, SpeedIsAFactorWithinLimitsMaxOrStep) {
   EXPECT_TRUE(all_accepted({"EX9042D"}).speed.paced());
   EXPECT_EQ(all_accepted({"EX9042D"}).speed.factor, 1.0);
   for (const auto& [text, speed] :

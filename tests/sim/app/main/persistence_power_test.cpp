@@ -1,6 +1,6 @@
 // Tests modules whose EEPROM is a file. The power fails, or the program is killed, at random times. Each
-// command that stores must take effect either completely or not at all. If the module has replied to the
-// command, the command must have taken effect completely (wire.md section 8).
+// command that stores must take effect either completely or not at all. If the module has sent a valid
+// reply to the command, the command must have taken effect completely (wire.md section 8).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -93,8 +93,8 @@ class PowerFailureChecker {
     EXPECT_TRUE(answers == after_ || (!acknowledged_ && answers == before_))
         << testing::PrintToString(answers) << "\nbefore: " << testing::PrintToString(before_)
         << "\nafter: " << testing::PrintToString(after_);
-    // Until a store has succeeded, the LED may flash: after an interrupted first write, the memory is not
-    // blank and contains no settings that the module can read (wire.md D8).
+    // Until a store has succeeded, the LED may flash: an interrupted first write can leave a memory that is
+    // not blank and contains no settings that the module can read (wire.md D8).
     EXPECT_TRUE(!anything_stored_ || simulator.tell("1 led") == "on");
     ++(acknowledged_ ? acknowledged_count_ : answers == after_ ? done_count_ : not_done_count_);
     before_ = after_ = answers;

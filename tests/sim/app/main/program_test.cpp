@@ -109,8 +109,9 @@ bool wait_until_full(int pipe) {
   return true;
 }
 
-/// Sends a signal to a process of this test. Returns whether it ends within 60 s while nothing reads its
-/// output, in contrast to SimulatorProcess::end. `end` must be called after that.
+/// Sends `signal` to the process `pid`, which is a child of the test. Returns whether the process ends within
+/// 60 s. Does not read the output of the process, in contrast to SimulatorProcess::end. Call
+/// SimulatorProcess::end after this function.
 bool ends_unread(int pid, int signal) {
   constexpr int kHangMilliseconds = 60'000;
   const auto process = static_cast<int>(syscall(SYS_pidfd_open, pid, 0));
@@ -284,9 +285,9 @@ TEST(Program, WrongArgumentsGiveAOneLineErrorAndStatus2AndCreateNoFiles) {
 }
 
 TEST(Program, WaitingForAnEventInTheFarFutureUsesLittleProcessorTime) {
-  // At the lowest speed, a year takes a thousand years. A 64-bit count of nanoseconds covers only 292 years.
-  // In the first run, the fault "gone" switches off the module's power, so the module causes no earlier
-  // event.
+  // At the lowest speed, a year takes a thousand years. A signed 64-bit count of nanoseconds covers only 292
+  // years. In the first run, the fault "gone" switches off the module's power, so the module causes no
+  // earlier event.
   for (const std::vector<std::string>& far :
        {std::vector<std::string>{"--fault", "gone", "--fault", "gone at 8760h"}, {"--for", "8760h"}}) {
     std::vector<std::string> arguments{"EX9042D", "--speed", "0.001"};

@@ -16,7 +16,7 @@
 namespace ex9000::sim {
 namespace {
 
-/// Both ends of a pipe. Its reading end does not block.
+/// Both ends of a pipe. Neither end blocks.
 struct Pipe {
   Pipe() {
     std::array<int, 2> ends{};
@@ -25,7 +25,7 @@ struct Pipe {
     writer = FileDescriptor(ends[1]);
   }
 
-  /// Returns all bytes that are in the pipe.
+  /// Removes all bytes from the pipe and returns them.
   [[nodiscard]] std::string content() const {
     std::string text;
     std::array<char, 1000> buffer{};

@@ -36,7 +36,7 @@ CHANNELS = {
 
 
 def coils_to_write(model):
-    """Returns the address and the value of each coil write that every export must offer (wire.md section 7).
+    """Returns the address and the value of each coil write that each of these exports must offer (wire.md section 7).
 
     These writes switch the outputs, and clear latches, counters and the timeout status.
     """

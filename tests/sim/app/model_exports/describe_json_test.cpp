@@ -1,5 +1,5 @@
 // Tests the description of models in JSON, for programs. The expected commands, functions and addresses are
-// from wire.md.
+// from wire.md and firmware/extensions.md.
 #include "sim/app/model_exports/formats.hpp"
 
 #include <gtest/gtest.h>

@@ -106,7 +106,7 @@ class Line:
         return list(struct.unpack(f">{count}H", data))
 
     def write_coil(self, address, on):
-        """Writes a coil. Raises ValueError like `_ask`, and if the reply has another address or value."""
+        """Writes a coil. Raises ValueError like `_ask`, and if the reply has another coil address or value."""
         value = 0xFF00 if on else 0x0000
         reply = self._ask(5, address, value)
         if reply != struct.pack(">HH", address, value):

@@ -31,7 +31,7 @@ const sim::Setup& two_lines() {
   return kSetup;
 }
 
-/// Plays `steps` and returns the failure; empty if all steps pass.
+/// Plays `steps` and returns the failure; empty if the run passes.
 std::string failure_of(const std::string& steps, const sim::Setup& setup = two_lines()) {
   const Directory directory;
   write_file(directory / "steps.txt", steps);

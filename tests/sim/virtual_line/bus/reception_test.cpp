@@ -200,8 +200,8 @@ class RetunedListener final : public Station {
   std::vector<Period> periods;
 
  private:
-  /// Returns whether the change begins a new period. A change between 8N1 and 8N2 does not begin
-  /// one, because a receiver ignores a second stop bit.
+  /// Returns whether the change begins a new period. If the rate stays the same, a change
+  /// between 8N1 and 8N2 does not begin a new period, because a receiver ignores a second stop bit.
   static bool begins_anew(hal::SerialMode from, hal::SerialMode to) {
     const bool parity = has_parity(from.format) || has_parity(to.format);
     return from.baud != to.baud || (parity && from.format != to.format);

@@ -29,7 +29,7 @@ class FaultBench {
   }
 
   /// Adds a fault and returns its number. `position` is the module of the fault, counted from 1; nullopt: the
-  /// fault applies to the whole line and all modules.
+  /// fault affects all modules or the wires, depending on its kind.
   std::size_t add(const std::string& text, std::optional<std::size_t> position = std::nullopt) {
     Fault fault = parse_fault(text);
     if (position) {

@@ -1,4 +1,4 @@
-// Tests the list of faults, their removal and their notices.
+// Tests the list of faults, their removal, their notices and their reproducibility.
 #include <gtest/gtest.h>
 
 #include <string>

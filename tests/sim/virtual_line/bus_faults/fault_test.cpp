@@ -88,7 +88,7 @@ TEST(Fault, UsualFaultsHasOneFaultOfEachKind) {
 
 // --- schedules ---
 
-TEST(FaultSchedule, AScheduleWithAtHasATimeAndByDefaultNoDuration) {
+TEST(FaultSchedule, AScheduleWithAtHasATimeAndAnOptionalDuration) {
   const Schedule schedule = parse_fault("gone at 12.5s").schedule;
   EXPECT_EQ(schedule.when, When::At);
   EXPECT_EQ(schedule.time, 12'500ms);
