@@ -167,8 +167,8 @@ void Module::expire_host_watchdog(Time now) {
 
 // --- requests ---
 
-/// Judges the waiting frame if there is one and `until_request` is 0. Then begins to store the settings that
-/// the request changes, or carries out the request.
+/// Judges the waiting frame if there is one and `until_request` is 0. Then calls `continue_store` if the
+/// request changes settings, otherwise `commit`.
 void Module::dispatch(Time now) {
   if (!receiver_.queue().has_frame() || !(until_request(now) == Duration())) {
     return;

@@ -29,15 +29,15 @@ class Device {
   constexpr Device(const Model& model, TimingAt timing_at, const Board& board)
       : board_(board), module_(model, timing_at) {}
 
-  /// Starts the module. Call this once, after the tick has started and before interrupts are enabled.
-  /// `reason`: why the board was reset.
+  /// Starts the module. Call this once, after the tick has started and before the other interrupts are
+  /// enabled. `reason`: why the board was reset.
   void start(ResetReason reason) {
     module_.start(board_.inputs.start(), board_.clock.now(), reason);
     board_.watchdog.feed();
   }
 
   // --- interrupts ---
-  // They must not interrupt each other, so they share one priority.
+  // They must not interrupt each other, so they share one preemption priority.
 
   /// Processes a received byte. Call this for each byte, even if it has an error, but not for a byte that was
   /// received while the module's own driver was on.
@@ -46,7 +46,8 @@ class Device {
     if (!(silence == Duration())) {
       board_.silence_timer.restart(silence);
     } else if (module_.frame_waits()) {
-      // `silence` is 0 after an ASCII host OK, and after an ASCII request if bytes take no time on this line.
+      // For example, `silence` is 0 after an ASCII host OK, and after an ASCII request if bytes take no time
+      // on this line.
       wake();
     }
   }

@@ -18,8 +18,8 @@ inline constexpr Duration kLongestWake = milliseconds(1000);
 ///     both are pending, the interrupt of the silence timer must run first, because a byte after the silence
 ///     does not belong to the frame before the silence.
 ///   - The wake timer. Its interrupt calls `Device::on_wake_timer`. The timer is set to the time until the
-///     next event, at least 1 us and at most `kLongestWake`. If this timer failed, the next tick would
-///     process the event.
+///     next event, at least 1 us and at most `kLongestWake`. If this timer failed, the main loop would
+///     process the event after the next tick.
 ///
 ///     void restart(Duration after)
 ///         Makes the timer expire once, `after` from now, at most 5 us late and never early. Cancels an

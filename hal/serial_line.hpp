@@ -15,7 +15,7 @@ namespace ex9000::hal {
 /// While the driver is off, the receive interrupt calls `Device::on_receive` for each byte, including bytes
 /// with errors. While the driver is on, the receive interrupt does not call this function, because the
 /// received bytes are the echo. When a reply has been sent and the driver is off, an interrupt of the same
-/// priority calls `Device::on_sent`.
+/// preemption priority calls `Device::on_sent`.
 ///
 ///     void open(std::uint32_t baud, LineFormat format)
 ///         Starts to receive at `baud` bits per second (1200 to 115200). Before this call, the driver is off

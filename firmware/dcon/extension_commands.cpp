@@ -38,7 +38,7 @@ Refusal read_extension(Exchange& exchange) {
   const unsigned index = static_cast<unsigned>(address) - row->first;
   const bool is_long = row->has(modbus::kLong);
   if (is_long && index % 2 != 0) {
-    // The low word cannot be read alone: two separate reads could return words of two different values.
+    // `~AAX` never reads the low word alone: two separate reads could return words of two different values.
     return Refusal::OutOfRange;
   }
   put_valid(exchange);

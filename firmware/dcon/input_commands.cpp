@@ -9,7 +9,7 @@ namespace {
 
 constexpr unsigned kNoChannel = kMaxInputs;
 
-/// Returns the input channel of the hex digit N. Returns kNoChannel if `digit` is not an upper-case hex
+/// Returns the input channel that `digit` selects. Returns kNoChannel if `digit` is not an upper-case hex
 /// digit, or if the model does not have this channel.
 unsigned channel_of(const Model& model, std::uint8_t digit) {
   const int channel = hex_value(digit);

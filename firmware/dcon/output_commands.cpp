@@ -34,9 +34,10 @@ Drive group(const Model& model, std::uint8_t selector, int data) {
   return {static_cast<std::uint16_t>(channels), static_cast<std::uint16_t>(value)};
 }
 
-/// Returns the output that `#AABBDD` selects with BB = 1c, Ac or Bc, and its level. `selector` is the first
-/// character of BB. `channel` is the value of its second character, or -1 if that is not an upper-case hex
-/// digit. The mask is 0 if BB has another value, if the model has no such output, or if `data` is not 0 or 1.
+/// Returns the output that `#AABBDD` selects with BB = 1c, Ac or Bc (c: 0 to 7), and its level. `selector` is
+/// the first character of BB. `channel` is the value of the second character of BB, or -1 if this character
+/// is not an upper-case hex digit. The mask is 0 if BB has another value, if the model has no such output, or
+/// if `data` is not 0 or 1.
 Drive single(const Model& model, std::uint8_t selector, int channel, int data) {
   const bool high = selector == 'B';
   if ((selector != '1' && selector != 'A' && !high) || channel < 0 || channel > 7 || data > 1) {

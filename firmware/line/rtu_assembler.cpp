@@ -40,9 +40,9 @@ Verdict RtuAssembler::cut_off(FrameQueue& queue) {
 }
 
 /// Judges the frame. If the CRC of the whole frame is wrong or the first byte is spoiled, ignores a leading
-/// turn-around byte 00. Returns Open if the CRC or the length of the rest is wrong, or if a byte that is not
-/// ignored is spoiled. Queues a frame that is a broadcast or has the address of this module, except a host
-/// OK. Returns NoRoom if another frame is already waiting.
+/// turn-around byte 00. Returns Open if the CRC or the length of the bytes that are not ignored is wrong, or
+/// if one of these bytes is spoiled. Queues a frame that is a broadcast or has the address of this module,
+/// except a host OK. Returns NoRoom if it cannot queue such a frame because another frame is already waiting.
 Verdict RtuAssembler::conclude(FrameQueue& queue) {
   Frame& frame = queue.assembling();
   unsigned offset = 0;

@@ -31,7 +31,8 @@ namespace ex9000 {
 ///     21-24   check                   24-27   check
 constexpr std::size_t kOldCopySize = 28;
 
-/// Zeros in these bytes, which include the check, make a copy of either layout invalid.
+/// Zeros in the bytes from kOldInvalidatedFrom on, which include the check, make a copy of either layout
+/// invalid.
 constexpr std::size_t kOldInvalidatedFrom = 20;
 constexpr std::size_t kOldInvalidatedSize = kOldCopySize - kOldInvalidatedFrom;
 

@@ -26,8 +26,9 @@ class SettingsKeeper {
   [[nodiscard]] bool loading() const { return store_.loading(); }
   /// Returns the settings that a reset now would load, if `certain()`.
   [[nodiscard]] const Settings& stored() const { return store_.stored(); }
-  /// Returns whether the settings could not be read at reset, and no settings have been stored since. The
-  /// memory contained no good copy for this model, and at least one place was not blank or could not be read.
+  /// Returns whether the settings could not be read at reset, and no settings have been stored since.
+  /// Settings cannot be read if the memory contains no good copy for this model, and at least one place is
+  /// not blank or does not answer.
   [[nodiscard]] bool unreadable() const { return store_.found() == SettingsStore::Found::Unreadable; }
 
   /// See SettingsStore::source and SettingsStore::saves.

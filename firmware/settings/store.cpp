@@ -57,7 +57,7 @@ void SettingsStore::done(bool ok) {
 void SettingsStore::begin_copy(std::size_t place) {
   place_ = place;
   done_ = 0;
-  copy_size_ = kMemoryPage;  // the first page contains the real size
+  copy_size_ = kMemoryPage;  // for reading: `read_page` sets the real size after the first page
   attempt_ = 0;
 }
 

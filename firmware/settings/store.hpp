@@ -91,7 +91,8 @@ class SettingsStore {
   }
 
   /// Returns whether the memory did not answer at a place while the settings were loaded, and a later reset
-  /// may find a copy there that is newer than the current copy. A successful save overwrites one such place.
+  /// may find a copy there that is newer than the current copy. If a successful save overwrites such a place,
+  /// this place no longer counts.
   [[nodiscard]] bool place_unread() const;
 
   /// Returns whether a reset now could load a copy that must not be used: the copy of a failed save, or a
@@ -148,7 +149,7 @@ class SettingsStore {
   bool bad_copy_ = false;                 ///< a place of this layout is not blank and has no good copy
   unsigned unread_places_ = 0;            ///< places whose last read got no answer; bit n is place n
   std::size_t current_place_ = kNoPlace;  ///< place of the current copy, the newest good one; or kNoPlace
-  unsigned old_copies_ = 0;               ///< bit n: place n holds a good copy of an older layout
+  unsigned old_copies_ = 0;               ///< bit n: place n holds a valid copy of an older layout
   unsigned copies_to_invalidate_ = 0;     ///< bit n: the copy at place n must be invalidated
 
   Edition edition_;          ///< edition of the current copy

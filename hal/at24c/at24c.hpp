@@ -16,9 +16,9 @@ namespace ex9000::hal {
 /// I2cTransfer.
 ///
 /// The EEPROM acknowledges nothing while it programs a page, so the driver repeats the device address until
-/// the EEPROM acknowledges it or the timeout expires. For a read, the driver sends STOP between the address
-/// and the data, because not every master supports a repeated START. The EEPROM's address counter keeps the
-/// address.
+/// the EEPROM acknowledges it or the timeout expires. For a read, the driver sends STOP between the memory
+/// address and the data, because not every master supports a repeated START. The EEPROM's address counter
+/// keeps the memory address.
 template <class Master>
 class At24c {
   static_assert(kIsI2cMaster<Master>,
@@ -51,7 +51,7 @@ class At24c {
  private:
   enum class Step : std::uint8_t {
     Idle,
-    Addressing,  ///< sends the address for a read
+    Addressing,  ///< sends the memory address for a read
     Reading,
     Writing,      ///< sends bytes of one page
     Programming,  ///< waits until the EEPROM acknowledges again

@@ -10,8 +10,8 @@ class Inputs {
   [[nodiscard]] std::uint16_t levels() const { return levels_; }
   [[nodiscard]] bool level(unsigned channel) const { return (levels_ >> channel & 1U) != 0; }
 
-  /// Sets the level of a channel. Returns whether the level changes. If it does, the caller must report the
-  /// edge to the device (`Device::on_edge`), if the module is powered.
+  /// Sets the level of a channel. Returns whether the level changes. If the level changes while the module is
+  /// powered, the caller must report the edge to the device (`Device::on_edge`).
   bool set(unsigned channel, bool level) {
     const auto bit = static_cast<std::uint16_t>(1U << channel);
     const std::uint16_t before = levels_;

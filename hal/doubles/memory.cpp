@@ -11,7 +11,8 @@ void Memory::begin(bool writing, std::uint16_t address, std::size_t size) {
   }
   if (address + size > kSize || (writing && address / kPage != (address + size - 1) / kPage)) {
     throw std::logic_error(
-        "memory: a job goes beyond the end of the memory, or a write beyond the end of its page");
+        "memory: a job crosses the end of the memory, or a write crosses the end of a page; "
+        "keep each job within the memory, and each write within a page");
   }
   // The bytes that a read needs besides the data: the device address twice, and a word address of two bytes.
   // A write really needs only three, but also counts as four here.

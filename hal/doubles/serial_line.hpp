@@ -23,8 +23,8 @@ class Wire {
   ~Wire() = default;
 };
 
-/// A UART that sends exactly at its baud rate. It does not receive: the simulated module passes received
-/// bytes directly to the device.
+/// A UART that sends bytes without gaps; `Wire::takes` defines how long they take. It does not receive: the
+/// simulated module passes received bytes directly to the device.
 class SerialLine {
  public:
   /// How long the driver is on before the first start bit and after the last stop bit. `release_late` extends

@@ -35,8 +35,8 @@ namespace ex9000::hal::flash {
 /// suspends the erase, except in one case: a write that needs another sector waits for the end of an erase if
 /// no erased sector is left. This occurs in two cases:
 ///
-/// - On the first start with this flash, until the first erase has ended, after 45 ms typically and 400 ms at
-///   most.
+/// - If the store has not erased a sector of this flash yet. The first erase takes 45 ms typically and 400 ms
+///   at most.
 /// - If the store uses sectors faster than it erases them. With the longest times of the data sheet, and
 ///   without resets or failures in between, writes that are at least 12 ms apart never wait. If writes are
 ///   closer together, each sector that has been erased in advance has room for 79 of them.
@@ -311,7 +311,7 @@ class PageStore {
       map_.add(entry_[kPageAt], sequence_, next_);
     }
     ++sequence_;
-    next_ = good ? next_slot(next_) : kNoSlot;  // a sector that fails is erased before its next use
+    next_ = good ? next_slot(next_) : kNoSlot;  // if not good, the sector is erased before its next use
     erases_ahead_ = true;
     if (waited_for_) {
       waited_for_ = false;

@@ -27,8 +27,8 @@ class Sectors {
   [[nodiscard]] unsigned next_to_open() const {
     return first([this](unsigned sector) { return states_[sector] == State::Erased; });
   }
-  /// Returns the sector to erase next; kNone if there is none. Skips `current`, which is the sector that is
-  /// being written or kNone, and the sectors that hold an entry in force according to `map`.
+  /// Returns the `Used` sector to erase next; kNone if there is none. Skips `current`, which is the sector
+  /// that is being written or kNone, and the sectors that hold an entry in force according to `map`.
   [[nodiscard]] unsigned next_to_erase(const SlotMap& map, unsigned current) const {
     return first([&](unsigned sector) {
       return states_[sector] == State::Used && sector != current && !map.uses(sector);

@@ -15,9 +15,9 @@ namespace ex9000::hal::rp2040 {
 class Boot {
  public:
   /// Switches the processor and the flash to the crystal, because the ring oscillator may run at less than 2
-  /// MHz. Blocks for about 5 ms if the crystal starts. If the crystal is not stable after `kMostReads` reads,
-  /// this function returns without the switch. The image then waits for the crystal after it has started the
-  /// watchdog.
+  /// MHz. Blocks for at most about 5 ms if the crystal starts. If the crystal is not stable after
+  /// `kMostReads` reads, this function returns without the switch. The image then waits for the crystal after
+  /// it has started the watchdog.
   [[gnu::always_inline]] static void use_crystal() {
     constexpr unsigned kMostReads = 20'000;  // a read takes at least 0.5 us
     Crystal::start();

@@ -10,8 +10,8 @@ namespace ex9000::hal::rp2040 {
 /// is in RAM. None of them blocks.
 class Crystal {
  public:
-  /// Starts the oscillator. It is `stable` after a start-up delay of 50,176 periods: 4.2 ms at 12 MHz. This
-  /// is the delay that a reset of the MCU sets.
+  /// Starts the oscillator if it is not running. After its start, it becomes `stable` when a start-up delay
+  /// of 50,176 periods is over: 4.2 ms at 12 MHz. This is the delay that a power-on reset sets.
   [[gnu::always_inline]] static void start() {
     constexpr Bits<Control> kRange(0xAA0);
     constexpr Bits<Control> kEnable(0xFABU << 12U);

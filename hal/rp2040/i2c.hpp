@@ -148,7 +148,7 @@ class I2c {
   // --- a transfer ---
 
   void begin_queue(Time now) {
-    // The target can be changed only while the master is off. This write also empties the queues.
+    // The target can be changed only while the master is off. Turning the master off also empties the queues.
     kEnable.write({});
     kTarget.write(Bits<Target>(transfer_->device));
     kEnable.write(kOn);

@@ -30,9 +30,9 @@ class WatchdogRegisters {
     const Bits<Reason> reason = kReason.read();
     if (reason.has(kRequest | kTimeout)) {
       // Only images write the mark. The boot ROM also resets the chip with the watchdog, after it has copied
-      // an image to the flash.
+      // an image to the flash. In an image, only `fault_handler` requests a reset.
       return kMark.read().value() != kOfAnImage.value() ? ResetReason::Software
-             : reason.has(kRequest)                     ? ResetReason::Fault  // only a fault requests a reset
+             : reason.has(kRequest)                     ? ResetReason::Fault
                                                         : ResetReason::ModuleWatchdog;
     }
     // A reset by the watchdog does not change the bits of the last chip-level reset, so these bits are valid

@@ -22,7 +22,8 @@ class OutputPins {
     });
   }
 
-  /// Writes one register for each group that has a channel. The writes are a few processor clocks apart.
+  /// Writes one register for each group that has a channel. The writes are a few processor clocks apart,
+  /// unless an interrupt occurs in between.
   static void drive(std::uint16_t energised) {
     each_group(energised,
                [](const Gpio& gpio, std::uint32_t pins, std::uint32_t levels) { gpio.write(pins, levels); });

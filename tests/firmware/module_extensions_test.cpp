@@ -117,7 +117,7 @@ TEST(InputFilter, TheLevelAtResetIsTheBaselineWithoutFilterTime) {
   EXPECT_EQ(bench.ask("$01L1"), "!000000");
 }
 
-// The module reads its settings, including the filter times, only some milliseconds after the reset.
+// The module knows its settings, including the filter times, only some milliseconds after the reset.
 TEST(InputFilter, ALevelThatChangesWhileTheModuleStartsCountsAfterItsTime) {
   constexpr milliseconds kFilter{30};
   for (int offset = 1; offset < 40; ++offset) {

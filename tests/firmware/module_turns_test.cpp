@@ -1,5 +1,5 @@
 // Tests passes of the main loop (turns) in which the panel is not polled, as on a board between two ticks.
-// Also tests when the module requests another turn immediately, and the command `~**`.
+// Also tests when the module requests that another turn follows immediately, and the command `~**`.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // Plays random sessions on the firmware and on the reference, an independent model of a module. Also replays
-// the transcripts of sessions. The variables apply to the tests that compare the firmware and the reference:
+// the transcripts of sessions. The environment variables apply only to the first two tests:
 //   EX9000_TRANSACTIONS  least number of requests; default 200000, or 50000 without extensions; tests/long
 //                        uses 10000000
 //   EX9000_SEED          seed of the first session, default 9042; each further session has the next number
@@ -24,8 +24,8 @@ namespace {
 /// large so that one step can influence many later steps.
 constexpr unsigned kSteps = 300;
 
-/// Returns each model, and a model with two protocols three times. Without extensions, leaves out the models
-/// that the extensions add.
+/// Returns each model with one protocol once, and each model with two protocols three times. Without
+/// extensions, leaves out the additional models (ModelRow::extension).
 std::vector<const ModelRow*> rows_of(Extensions extensions) {
   std::vector<const ModelRow*> rows;
   for (const ModelRow& row : kModelRows) {

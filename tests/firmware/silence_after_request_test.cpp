@@ -132,7 +132,7 @@ TEST(SilenceAfterRequest, TheInitSwitchIsEvaluatedAtTheEndOfTheSilence) {
   // ends in the middle of the turn-around.
   constexpr microseconds kCharacter{10'000'000 / 1200};
   constexpr milliseconds kMovedBeforeTheEnd{6};
-  // The command sets another baud rate, which is permitted only while INIT* is asserted.
+  // The command sets another baud rate. Outside INIT mode, this is permitted only while INIT* is asserted.
   const std::string command = "%0101400400\r";
   for (const bool asserted : {false, true}) {
     ModuleBench bench("EX9042D,baud=1200");

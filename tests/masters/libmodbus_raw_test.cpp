@@ -21,7 +21,7 @@
 namespace ex9000::system {
 namespace {
 
-using Frame = std::vector<std::uint8_t>;  // without CRC
+using Frame = std::vector<std::uint8_t>;  // without CRC, except for the result of `received`
 
 /// A timeout that only detects a program that hangs.
 constexpr std::chrono::seconds kHang{60};
@@ -56,9 +56,9 @@ Frame received(LibmodbusMaster& master, std::size_t size, std::chrono::milliseco
 
 bool uses_modbus_tcp(LibmodbusMaster& master) { return modbus_get_header_length(master.at(1)) > 1; }
 
-/// Returns a reply of `size` bytes, without its CRC if the CRC is correct. With Modbus TCP, the header
-/// determines the size. Then this function returns the reply without the header, which libmodbus checks in
-/// the tests of libmodbus_test.cpp.
+/// Receives `size` bytes and a CRC, and returns them without the CRC if it is correct. With Modbus TCP, the
+/// header determines the number of bytes, and there is no CRC. Then this function returns the bytes after the
+/// header. libmodbus checks the header in the tests of libmodbus_test.cpp.
 Frame heard(LibmodbusMaster& master, std::size_t size, std::chrono::milliseconds patience) {
   constexpr std::size_t kHeader = 6;  // bytes before the unit
   constexpr std::size_t kLength = 5;  // the low byte of the number of bytes after the header

@@ -99,7 +99,7 @@ void Pacer::follow() {
   arm_timer();
 }
 
-/// Makes masters wait if the line is full. Returns whether masters wait.
+/// Makes masters wait if `is_full()`. Returns whether masters wait.
 bool Pacer::pause_if_full() {
   if (is_full()) {
     paused_ = true;

@@ -89,7 +89,8 @@ struct Face {
   Stored stored;
 };
 
-/// Reads the state without changing the line or the module. `now` is the time of the line's clock.
+/// Reads the state without changing the line or the module. `now` is the present time of the line, at least
+/// the time of the line's clock.
 Face face_of(const SimulatedModule& module, VirtualTime now);
 
 /// Returns `off`, `on`, `flashing`, or `flashing: settings unreadable`.

@@ -107,8 +107,8 @@ class Bench {
       pass_time_until(chip_.memory_due);
     }
   }
-  /// Lets time pass until the reply in progress has been sent and the driver is off. Does nothing if no reply
-  /// is in progress.
+  /// Lets time pass until the reply in progress has been sent and the driver is off. Does nothing if the
+  /// driver is off, or if the module has not written the first byte of the reply to the UART yet.
   void reply_leaves() {
     for (int i = 0; i < 1000 && chip_.driving() &&
                     (chip_.sent_due != Chip::kNever || chip_.line_end_due != Chip::kNever);

@@ -7,7 +7,8 @@
 // first steps come before the turn, and the others after it. scenarios.cpp contains the scenarios of the
 // first two tests.
 //
-// The interrupts and the main loop also share the following data outside the crossings:
+// The interrupts and the main loop also share the following data, which is neither a WrittenByInterrupt nor a
+// WrittenByMainLoop:
 //  - FrameQueue::frames_: the waiting frame belongs to the main loop from the store to `completed_` until the
 //    store to `dropped_`;
 //  - Uart::rest_, a HandedToInterrupt: it belongs to the main loop until the store to `begun_`, then to the

@@ -15,7 +15,8 @@ using Step = std::function<void(Bench&)>;
 struct Scenario {
   const char* name;
   const char* model;
-  /// Changes the settings with which the module starts: the factory settings with 115200 baud.
+  /// Changes the settings with which the module starts. Without this change, they are the factory settings
+  /// with 115200 baud.
   std::function<void(Settings&)> settings;
   Step before;               ///< prepares the module for the turn
   std::vector<Step> script;  ///< the events in their order; each occurs before, during or after the turn
@@ -109,7 +110,7 @@ inline Run play(const Scenario& scenario, const Places& places) {
   for (const auto& foreseen_replies : scenario.replies) {
     foreseen |= replies == foreseen_replies;
   }
-  require(foreseen, "replies " + all_of(replies));
+  require(foreseen, "unexpected replies: " + all_of(replies));
   require(!hardware.driving(), "the driver is still on");
   require(hardware.feeds > feeds_before, "the hardware watchdog was not fed");
   run.outcome = scenario.comes_to(bench);

@@ -22,8 +22,8 @@ inline Step edge(unsigned channel, bool level) {
   return [=](Bench& bench) { bench.edge(channel, level); };
 }
 
-/// Returns one step for each byte of a request, and a last step that waits until the silence timer expires.
-/// The step of the last byte stores its time in Bench::asked with the key `reply`.
+/// Returns one step for each byte of a request, and then the step `silence`. The step of the last byte stores
+/// the time of this byte in Bench::asked with the key `reply`.
 inline std::vector<Step> frame(const std::string& request, const std::string& reply) {
   std::vector<Step> steps;
   for (std::size_t i = 0; i < request.size(); ++i) {

@@ -1,4 +1,4 @@
-// Tests CRC-16/MODBUS. Sources of the examples: wire.md section 7 and Modbus over Serial Line V1.02.
+// Tests CRC-16/MODBUS. Sources of the example frames: wire.md section 7 and Modbus over Serial Line V1.02.
 #include "firmware/line/crc16.hpp"
 
 #include <gtest/gtest.h>

@@ -206,8 +206,9 @@ TEST_P(RtuGaps, SilencesAreHalfABitLongerIfTheUartReportsBytesInTheStopBit) {
 }
 
 // In `LineTiming::at`, the UART reports a byte at the end of its first stop bit. Only 8N2 has a second stop
-// bit. The response delay counts from the end of the last stop bit of a request, so the module adds this time
-// to the delay.
+// bit. `rest_of_stop_bit` is the time from the report of a byte to the end of its last stop bit. The response
+// delay counts from the end of the last stop bit of a request, so the module adds `rest_of_stop_bit` to the
+// delay.
 TEST_P(RtuGaps, TheTimeToTheEndOfTheLastStopBitIsRoundedUp) {
   const std::uint32_t rest = LineTiming::at(baud_, format_).rest_of_stop_bit.microseconds();
   const std::uint32_t exact = format_ == LineFormat::k8N2 ? 1'000'000 : 0;  // in microseconds times baud
@@ -266,8 +267,8 @@ TEST_P(RtuGaps, StrictTimingDoesNotEndAFrameAtAGapShorterThanT35) {
   EXPECT_TRUE(wire_.frames.empty());
 }
 
-// A gap of this length within a frame makes the frame invalid. This gap is before the frame, because the 00
-// does not belong to the frame.
+// A gap of more than T1.5 within a frame makes the frame invalid. A gap after the 00 is before the frame,
+// because the 00 does not belong to the frame.
 TEST_P(RtuGaps, StrictTimingAllowsAGapAfterATurnAround00) {
   assembler_.use(LineTiming::strictly_at(baud_, format_));
   with_gap(behind(0x00, kChannel0On), 1, t15(baud_) + kClock);

@@ -11,7 +11,7 @@ namespace {
 
 using Pattern = StatusLed::Pattern;
 
-/// The last start is 4 ms before the clock wraps, so all intervals longer than 4 ms include the wrap.
+/// The last start is 4 ms before the clock wraps, so every longer interval from this start includes the wrap.
 constexpr Time kStarts[] = {Time(0), Time(123'456'789), Time(0xFFFF'FFFFU - 4'000)};
 
 Time ms(Time start, std::uint32_t after) { return start + milliseconds(after); }

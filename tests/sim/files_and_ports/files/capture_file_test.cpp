@@ -1,5 +1,5 @@
-// Tests the file of a capture: when the program creates or overwrites a file, and when it refuses a path or
-// reports an error.
+// Tests the file of a capture: when the program creates or overwrites a file, when it refuses a path or
+// reports an error, and how it waits for the reader of a pipe.
 #include "sim/files_and_ports/files/capture_file.hpp"
 
 #include <fcntl.h>

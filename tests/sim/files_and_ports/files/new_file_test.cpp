@@ -13,7 +13,7 @@ namespace {
 using system::Directory;
 using system::write_file;
 
-/// Creates a file at `path` as the program does, and keeps it if `keep` is true.
+/// Writes a file at `path` as the program does, and calls NewFile::keep if `keep` is true.
 void make(const std::string& path, bool keep) {
   NewFile file(path, is_there(path));
   write_file(path, "new");

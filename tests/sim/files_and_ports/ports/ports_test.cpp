@@ -169,7 +169,7 @@ TEST(TcpPort, ListensOnAnIpv6Address) {
   EXPECT_NE(simulator.output().find("  TCP " + host + ":"), std::string::npos) << simulator.output();
 }
 
-// The program must not poll clients that have to wait because the line is full.
+// The program must not poll clients that have to wait because many bytes already wait for the line.
 TEST(TcpPort, AWaitingClientUsesLittleProcessorTime) {
   SimulatorProcess simulator({"EX9042D@05,baud=1200", "--tcp", "0"});
   SocketClient flooder(simulator.tcp_port());
@@ -248,7 +248,7 @@ class Cable {
     }
     return bytes;
   }
-  /// Returns the bytes up to CR, or fewer if no byte arrives for a minute or if reading fails.
+  /// Returns the bytes up to and including CR, or fewer if no byte arrives for a minute or if reading fails.
   [[nodiscard]] std::string read_line() const {
     std::string line;
     while ((line.empty() || line.back() != '\r') && read_one(line)) {

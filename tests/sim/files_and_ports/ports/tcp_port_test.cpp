@@ -19,8 +19,8 @@ using boost::asio::ip::tcp;
 
 constexpr std::size_t kMostMasters = 64;
 
-/// Waits for a handler and runs it. Returns false if no handler is ready within 60 s, which only detects a
-/// port that hangs.
+/// Waits for a handler and runs it. Returns false if no handler is ready within 60 s. This limit only detects
+/// a port that hangs.
 bool run_one(boost::asio::io_context& io) { return io.run_one_for(std::chrono::seconds(60)) == 1; }
 
 tcp::socket connected(boost::asio::io_context& io, const TcpPort& port) {

@@ -36,7 +36,8 @@ TEST(Dcon, TheNextMasterDoesNotReceiveAnUnreadReply) {
     // pseudo-terminal.
     control.ok("list");
   }
-  // The program may answer the first command before it processes the end of the visit, but not the second.
+  // The program may answer the first of these two commands before it notices that `impatient` has closed the
+  // pseudo-terminal. It answers the second command only after that.
   control.ok("list");
   control.ok("list");
   Terminal terminal(simulator.tty(), 9600);

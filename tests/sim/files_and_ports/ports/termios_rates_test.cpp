@@ -1,5 +1,5 @@
-// Compares the conversion of rates with the C library, because its cfsetspeed also accepts bits per second.
-// Also tests the flags of line formats.
+// Tests the conversion of rates against cfsetspeed of the C library, which accepts termios constants and
+// rates in bits per second. Also tests the flags of line formats.
 #include <gtest/gtest.h>
 #include <termios.h>
 

@@ -28,7 +28,7 @@ class VisitsTest : public testing::Test {
   int of_b_ = 0;
 };
 
-TEST_F(VisitsTest, ReportsOnlyTheDevicesThatWereVisited) {
+TEST_F(VisitsTest, ReportsOnlyTheDevicesThatWereVisitedIfNoEventIsLost) {
   visit("b");
   visits_.take();
   EXPECT_EQ(of_a_, 0);

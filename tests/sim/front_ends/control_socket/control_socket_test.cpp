@@ -304,7 +304,7 @@ TEST(ControlSocket, ClosedConnectionsLeakNoFileDescriptors) {
   expect_undisturbed(simulator);
 }
 
-// --- the end ---
+// --- the end of the program ---
 
 TEST(ControlSocket, QuitEndsTheProgramWithStatus0AndRemovesLinkAndSocket) {
   Simulator simulator({"EX9055D"});

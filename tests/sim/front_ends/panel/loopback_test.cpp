@@ -7,7 +7,7 @@
 namespace ex9000::sim {
 namespace {
 
-TEST(Loopback, AcceptsItsNamesOnlyWithThePort) {
+TEST(Loopback, AcceptsItsNamesOnlyWithThePortIfThePortIsNot80) {
   for (const std::string name : {"127.0.0.1", "localhost"}) {
     EXPECT_TRUE(is_loopback_host(name + ":9042", 9042));
     EXPECT_TRUE(is_loopback_origin("http://" + name + ":9042", 9042));

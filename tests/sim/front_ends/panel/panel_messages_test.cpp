@@ -1,5 +1,5 @@
-// Tests the messages to a page: first the whole state, then the changes, and a limited number of frames. Also
-// tests the commands of a page.
+// Tests the messages to a page of the panel: first the whole state, then the changes, and a limited number of
+// frames. Also tests the commands of a page.
 #include <gtest/gtest.h>
 
 #include <chrono>

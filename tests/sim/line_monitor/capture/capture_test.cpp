@@ -268,8 +268,8 @@ TEST(Capture, TwoRunsAtTheSpeedMaxGiveTheSameCapture) {
   EXPECT_EQ(packets[0].at("frame.time_epoch").substr(0, 4), "1.10");
 }
 
-/// Returns the log without the notes about delays of the host, the computer that runs the simulator. Such a
-/// delay does not change the events on the line.
+/// Returns the log without the notes about delays of the host, the computer that runs the simulator. Except
+/// for these notes, such a delay changes nothing in the log that the callers of this function check.
 std::string without_delays_of_the_host(const std::string& log) {
   std::string kept;
   std::istringstream lines(log);

@@ -239,7 +239,7 @@ TEST_P(Queue, AFrameAfterAReplyThatALossOfPowerHasEndedIsASeparateFrame) {
   const VirtualTime off = now();
   line_.master().send(kRead1.data(), kRead1.size(), line_.spacing().after_others(kRead1[0]));
   run(milliseconds(200));
-  EXPECT_GT(watch_.last_byte_of_others, off);  // the reply of module 1
+  EXPECT_GT(watch_.last_byte_of_others, off);  // the reply of the module at address 01
 }
 
 TEST_P(Queue, ALongTransmissionDoesNotBlockARequestForEver) {
