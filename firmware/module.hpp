@@ -25,9 +25,9 @@ namespace ex9000 {
 /// An object exists from one reset to the next.
 ///
 /// Interrupts call `edges_need_times`, `frame_waits` and the functions named `on_...`. These interrupts must
-/// not interrupt each other, so they share one priority. If `on_byte` and `on_silence` are both pending,
-/// `on_silence` must run first (hal/one_shot_timer.hpp). The main loop calls the other functions. No function
-/// blocks.
+/// not interrupt each other, so they share one preemption priority. If `on_byte` and `on_silence` are both
+/// pending, `on_silence` must run first (hal/one_shot_timer.hpp). The main loop calls the other functions. No
+/// function blocks.
 class Module {
  public:
   /// `timing_at`: the function that returns the times of the line; must not be null.
@@ -36,8 +36,9 @@ class Module {
   Module(const Module&) = delete;
   Module& operator=(const Module&) = delete;
 
-  /// Starts the module at a reset. Call this once, before interrupts are enabled. `input_levels`: bit n is
-  /// channel n, 1 = +4 to +30 V. These levels do not count as edges. `reason`: why the module was reset.
+  /// Starts the module at a reset. Call this once, before the interrupts that call `on_...` are enabled,
+  /// except the tick. `input_levels`: bit n is channel n, 1 = +4 to +30 V. These levels do not count as
+  /// edges. `reason`: why the module was reset.
   void start(std::uint16_t input_levels, Time now, ResetReason reason = ResetReason::Unknown);
 
   // --- interrupts ---
@@ -67,7 +68,8 @@ class Module {
   // --- main loop ---
 
   /// Samples the INIT* switch, updates the status LED, collects edges, and ends the gap after a reply if the
-  /// gap is over. Call this at every tick and when the time that `idle_for` returned has passed.
+  /// gap is over. Call this at every tick, when the time that `idle_for` returned has passed, and after an
+  /// edge if `edges_need_times()` is true.
   /// `init_switch`: whether INIT* is asserted (tied to GND), not debounced.
   void poll_panel(bool init_switch, Time now);
   /// Does the module's work in one pass of the main loop: completes the start after a reset, updates the
@@ -75,8 +77,8 @@ class Module {
   /// waiting request, if they are due.
   void step(Time now);
   /// Returns how long the main loop may sleep, at most `at_most`. The tick, a waiting frame (`frame_waits`),
-  /// the end of a reply, and a finished memory job must wake the main loop earlier. If the result is 0, call
-  /// `poll_panel` and `step` again immediately.
+  /// an edge while `edges_need_times()` is true, the end of a reply, and a finished memory job must wake the
+  /// main loop earlier. If the result is 0, call `poll_panel` and `step` again immediately.
   [[nodiscard]] Duration idle_for(Time now, Duration at_most) const;
 
   /// Returns the levels to drive: bit n is channel n, 1 = energised. All are 0 until the settings are loaded.

@@ -72,8 +72,11 @@ class Device {
   /// Processes an edge of an input. `channel`: counted from 0; `level`: the level after the edge, true =
   /// logic 1.
   void on_edge(unsigned channel, bool level) {
-    const Time now = module_.edges_need_times() ? board_.clock.now_in_interrupt() : Time();
-    module_.on_edge(channel, level, now);
+    const bool filtered = module_.edges_need_times();
+    module_.on_edge(channel, level, filtered ? board_.clock.now_in_interrupt() : Time());
+    if (filtered) {
+      on_wake_timer();  // `turn` must set the wake timer to the end of the filter time
+    }
   }
   void on_tick() {
     module_.on_tick();
