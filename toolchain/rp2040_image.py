@@ -36,20 +36,20 @@ def checksum(data: bytes) -> int:
 def sealed(elf: bytes) -> bytes:
     """Returns the ELF file with the right checksum in its second stage.
 
-    Raises NotAnImage if `elf` is not a 32-bit little-endian ELF file, or if it has no second stage.
+    Raises NotAnImage if `elf` is not a complete 32-bit little-endian ELF file, or if it has no second stage.
     """
     for offset, address, data in _segments(elf):
         if address == FLASH and len(data) >= SECOND_STAGE:
             end = offset + SECOND_STAGE - 4
             crc = struct.pack("<I", checksum(elf[offset:end]))
             return elf[:end] + crc + elf[end + 4 :]
-    raise NotAnImage(f"there is no second stage of {SECOND_STAGE} bytes at {FLASH:#x}")
+    raise NotAnImage(f"there is no second stage of {SECOND_STAGE} bytes at {FLASH:#x}; name an image for an RP2040")
 
 
 def flash_content(elf: bytes) -> dict[int, bytes]:
     """Returns the pages of the flash that an ELF file uses, by address. Unused bytes of a page are FFh.
 
-    Raises NotAnImage if `elf` is not a 32-bit little-endian ELF file, or if it does not use the first page.
+    Raises NotAnImage if `elf` is not a complete 32-bit little-endian ELF file, or if it does not use the first page.
     """
     pages: dict[int, bytearray] = {}
     for _, start, data in _segments(elf):
@@ -57,7 +57,7 @@ def flash_content(elf: bytes) -> dict[int, bytes]:
             address = start + index
             pages.setdefault(address - address % _PAGE, bytearray(b"\xff" * _PAGE))[address % _PAGE] = byte
     if FLASH not in pages:
-        raise NotAnImage(f"nothing is at the start of the flash, {FLASH:#x}")
+        raise NotAnImage(f"nothing is at the start of the flash, {FLASH:#x}; name an image for an RP2040")
     return {address: bytes(pages[address]) for address in sorted(pages)}
 
 

@@ -32,10 +32,10 @@ class Segment:
 def read(path: Path, memory: Memory) -> list[Segment]:
     """Returns the segments of an image that are loaded and not empty.
 
-    Raises Refusal if the file cannot be read, is not an ELF file for Arm, ends inside its headers, or is not an image
-    for the board of `memory`. The emulators do not check that an image is for their board. Without this check, QEMU
-    would run a wrong file for 60 s, and then the program `run` would report an error. If the wrong file enabled the
-    UART within this time, `run` would not report an error.
+    Raises Refusal if the file cannot be read, is not an ELF file for Arm, ends inside its headers or inside a segment,
+    or is not an image for the board of `memory`. The emulators do not check that an image is for their board. Without
+    this check, QEMU could run a wrong file for 60 s before the program `run` reports an error. If the wrong file
+    enabled the UART within this time, `run` would not report an error.
     """
     try:
         file = path.read_bytes()

@@ -20,8 +20,8 @@ def in_memory(size: int, content: bytes = b"") -> int:
 
 
 def in_file(option: str, path: Path, size: int) -> int:
-    """Locks a memory file, so that no other run can use this file, and returns the descriptor of the file. Creates a
-    missing file, and fills a new or empty file with `size` blank bytes.
+    """Locks a memory file, so that no other run and no simulator can use this file, and returns the descriptor of the
+    file. Creates a missing file, and fills a new or empty file with `size` blank bytes.
 
     Raises Refusal if the file cannot be opened for reading and writing, is locked, or is not empty and does not have
     `size` bytes. The message contains `option`, which is the option of the command line that names the file.
@@ -33,7 +33,9 @@ def in_file(option: str, path: Path, size: int) -> int:
     try:
         fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except OSError as error:
-        raise Refusal(f"{option} {path}: another run uses this file; end that run or name another file") from error
+        raise Refusal(
+            f"{option} {path}: another program uses this file; end that program or name another file"
+        ) from error
     found = os.fstat(descriptor).st_size
     if found == 0:
         os.write(descriptor, _BLANK * size)

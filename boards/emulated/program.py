@@ -44,7 +44,7 @@ def parser_for(emulator: str, preset: str) -> argparse.ArgumentParser:
     """Returns a parser for the arguments that the programs `run` of all boards have in common."""
     parser = argparse.ArgumentParser(
         prog="run",
-        description=f"Runs a firmware image in {emulator}. The first line that it prints is the path of the "
+        description=f"Runs a firmware image in {emulator}. The first line of the output is the path of the "
         "pseudo-terminal that is the module's RS-485 line. Press Ctrl-C or send SIGTERM to end the program.",
     )
     parser.add_argument("image", metavar="IMAGE.elf", type=Path, help=f"an image of the preset {preset}")
@@ -87,7 +87,7 @@ def _signal_descriptor() -> int:
     os.set_blocking(writable, False)
     signal.set_wakeup_fd(writable)
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-        if signal.getsignal(number) != signal.SIG_IGN:  # nohup ignores SIGHUP
+        if signal.getsignal(number) != signal.SIG_IGN:  # nohup makes this program ignore SIGHUP
             signal.signal(number, lambda *_: None)
     return readable
 

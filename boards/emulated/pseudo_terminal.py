@@ -26,8 +26,8 @@ class PseudoTerminal:
     A master is a program that opens the terminal like a serial port. The attribute `master` does not mean such a
     program: it is the descriptor of the other end, which this class reads and writes.
 
-    As on a real line, bytes from the module are lost if no master has the terminal open. Unread bytes are lost when the
-    last master closes the terminal.
+    As on a real line, bytes from the module are lost if no master has the terminal open. Bytes from the module that no
+    master has read are lost when the last master closes the terminal.
     """
 
     def __init__(self) -> None:
@@ -37,7 +37,7 @@ class PseudoTerminal:
         os.close(slave)
         os.set_blocking(self.master, False)
         self.open_events = _watch(self.device)
-        self._written = False  # whether the terminal may contain unread bytes
+        self._written = False  # whether the terminal may contain unread bytes from the module
         self._link: Path | None = None
 
     def link(self, path: Path) -> None:
@@ -75,7 +75,7 @@ class PseudoTerminal:
             self._forget_unread()
 
     def _forget_unread(self) -> None:
-        """Discards unread bytes, so that the next master does not receive a reply to another master.
+        """Discards unread bytes from the module, so that the next master does not receive a reply to another master.
 
         Call this immediately after the last master has closed the terminal, because the next master may read as soon as
         it has opened the terminal.
@@ -103,8 +103,8 @@ class PseudoTerminal:
 
 
 def _watch(device: str) -> int:
-    """Returns an inotify descriptor that is readable after a program has opened or closed `device`. Uses libc, because
-    the standard library of Python has no functions for inotify."""
+    """Returns an inotify descriptor that is readable after a program has opened or closed `device`. Raises Refusal if
+    `device` cannot be watched. Uses libc, because the standard library of Python has no functions for inotify."""
     libc = ctypes.CDLL(None, use_errno=True)
     descriptor = int(libc.inotify_init1(os.O_NONBLOCK | os.O_CLOEXEC))
     events = _IN_OPEN | _IN_CLOSE_WRITE | _IN_CLOSE_NOWRITE

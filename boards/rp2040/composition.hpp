@@ -122,7 +122,7 @@ __attribute__((section(".vectors"), used)) constexpr auto kVectors =
 
 /// Starts the drivers and the module, and then enables the interrupts of `kServed`. The watchdog is the first
 /// driver to start, so that it can reset the MCU if a later step hangs. The outputs are the second, because
-/// their pins float until they start.
+/// their pins drive nothing until the outputs start.
 void start() {
   const ResetReason reason = Watchdog::reset_reason();
   Watchdog::start();

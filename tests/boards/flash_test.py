@@ -92,7 +92,10 @@ class Flash(unittest.TestCase):
             program.chmod(0o755)
             finished = flash("board/any.cfg", path=directory)
         self.assertEqual(finished.returncode, 1)
-        self.assertRegex(finished.stderr, rf"^flash: {IMAGE}: OpenOCD could not write it; connect the debugger .*\n$")
+        self.assertRegex(
+            finished.stderr,
+            rf"^flash: {IMAGE}: OpenOCD could not write or verify the image; connect the debugger .*\n$",
+        )
 
     def test_the_error_of_a_missing_openocd_names_the_package(self) -> None:
         finished = flash("board/any.cfg", path="/nowhere")

@@ -2,7 +2,7 @@
 
 The call graph contains only the location of such a call. The dump of the optimised program
 (-fdump-tree-optimized-lineno) also contains the type of the function pointer, or the slot of the virtual table. A
-parameter type that this module does not understand counts as equal to every type.
+parameter type that this file does not understand counts as equal to every type.
 """
 
 from __future__ import annotations

@@ -98,7 +98,8 @@ class Functions:
 
 def demangle(names: list[str]) -> dict[str, str]:
     """Returns the demangled form of each mangled name."""
-    # c++filt reads one name from each line. It cannot read the suffix of a clone, such as .constprop.0.
+    # c++filt reads one name from each line. The suffix of a clone, such as .constprop.0, is removed, because c++filt
+    # would write it after the parameters, as [clone .constprop.0].
     plain = [name.split(".", 1)[0] for name in names]
     done = subprocess.run(
         ["arm-none-eabi-c++filt"], input="\n".join(plain), capture_output=True, text=True, check=True

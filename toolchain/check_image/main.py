@@ -77,7 +77,9 @@ def _parse(arguments: list[str]) -> argparse.Namespace:
         help="interrupt handlers with a preemption priority of their own; the others share one",
     )
     parser.add_argument(
-        "--verbose", action="store_true", help="also print the deepest calls, and the flash by folder and by symbol"
+        "--verbose",
+        action="store_true",
+        help="also print the deepest calls, the calls through pointers, and the flash by folder and by symbol",
     )
     return parser.parse_args(arguments)
 

@@ -16,8 +16,8 @@ _CONFIGURABLE_FAULTS = range(4, 7)  # MemManage, BusFault, UsageFault
 
 
 class BadVectors(Exception):
-    """The table is missing or too short, contains a value that is not the address of a function, or does not have the
-    reset handler or a handler that --level names."""
+    """The table is missing or too short, contains a value that is neither 0 nor the address of a function, or does not
+    have the reset handler or a handler that --level names."""
 
 
 class Vectors:

@@ -57,12 +57,12 @@ PRODUCTS = (
     Product(
         "firmware", "OpenEX9000 firmware images for Stellaris and Tiva boards", "FIRMWARE",
         {"libstdcxx-arm": "CONTAINS"},
-        "The images are linked with -nostdlib and contain no library.",
+        "The images are linked with -nostdlib and with no library.",
     ),
     Product(
         "firmware-rp2040", "OpenEX9000 firmware images for RP2040 boards", "FIRMWARE",
         {"libstdcxx-arm": "CONTAINS", "libgcc-arm": "STATIC_LINK"},
-        "The images are linked with -nostdlib and contain no library except the division of libgcc.",
+        "The images are linked with -nostdlib and with no library except libgcc, for the division.",
     ),
     Product(
         "package", "ex9000-sim, Debian package", "APPLICATION", {**_SIMULATOR, "glibc": "DYNAMIC_LINK"},

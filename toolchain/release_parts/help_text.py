@@ -76,4 +76,4 @@ def _read_entry(line: str, entries: list[Option]) -> None:
         names, _, value = words.removesuffix(" ...").removesuffix(" REQUIRED").partition(" ")
         entries.append(Option(names.split(","), value, text, repeats))
     else:
-        raise UnknownHelp(f"'{line.strip()}' is neither an option or argument nor part of its description")
+        raise UnknownHelp(f"'{line.strip()}' is neither an option nor an argument nor part of a description")

@@ -62,7 +62,9 @@ _EXIT_STATUS = [
     ".Ql quit ,",
     "the reader of the log or",
     ".Fl \\-for",
-    "has ended the program, an option such as",
+    "has ended the program,",
+    ".Ql describe",
+    "or an option such as",
     ".Fl \\-help",
     "has printed its text, or all files of",
     ".Ql play",
@@ -73,8 +75,10 @@ _EXIT_STATUS = [
     "has failed, or an error has occurred that is not listed under 2, for example a",
     "serial port has disappeared",
     ".It 2",
-    "an argument is wrong, a path or a port is in use, or a file is not an EEPROM",
-    "image",
+    "an argument, a bus file or a file of",
+    ".Ql play",
+    "is wrong, a path or a port is in use or cannot be used, or a file is not an",
+    "EEPROM image",
     ".El",
 ]
 
@@ -143,7 +147,7 @@ def _notes(notes: list[str]) -> list[str]:
 
 
 def _first(lines: list[str]) -> list[str]:
-    """Returns the lines of a section without the macro .Pp before the first paragraph, which is not necessary."""
+    """Returns the lines of a section without the unnecessary macro .Pp before the first paragraph."""
     return lines[1:] if lines[:1] == [".Pp"] else lines
 
 

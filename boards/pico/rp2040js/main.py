@@ -33,8 +33,9 @@ def main(words: list[str]) -> int:
         "--flash",
         metavar="FILE",
         type=Path,
-        help="keep the end of the flash, where the settings are, in this file of 65536 bytes; if the file is missing, "
-        "create it with the memory of a factory-fresh module",
+        help="keep the end of the flash, where images store the settings unless they are built with "
+        "EX9000_MEMORY=eeprom, in this file of 65536 bytes; if the file is missing, create it with the memory of a "
+        "factory-fresh module",
     )
     parser.add_argument(
         "--eeprom",

@@ -228,7 +228,7 @@ TEST(Run, RefusesAFileOfTheMemoryThatItCannotUse) {
   const std::string taken = others / "taken";
   const RunningImage other("EX9042D", {kMemory, taken});
   expect_refusal(directory, {image, kMemory, taken},
-                 {kMemory + " " + taken + ": another run uses this file"});
+                 {kMemory + " " + taken + ": another program uses this file"});
 }
 
 TEST(Run, RefusesALinkThatItCannotCreate) {

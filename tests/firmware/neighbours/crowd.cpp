@@ -213,7 +213,7 @@ void Crowd::exchange() {
     line_.bus().run_until(std::min(line_.bus().next(), end));
   }
   ASSERT_FALSE(collided_) << "two drivers were on";
-  ASSERT_EQ(heard_, expected.reply) << "to " << testing::PrintToString(request);
+  ASSERT_EQ(heard_, expected.reply) << "the reply to " << testing::PrintToString(request);
   if (expected.reply.empty()) {
     ASSERT_TRUE(spoke_.empty());
     ++broadcasts_;

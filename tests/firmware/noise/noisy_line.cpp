@@ -39,7 +39,7 @@ std::string spec_of(Check check) {
 
 double misses(Check check, const FrameBytes& request, double flipped_bit) {
   static std::map<std::pair<FrameBytes, double>, double> known;
-  // For the CRC, the result depends only on the length of the frame, not on its bytes.
+  // For the CRC, the result depends on the length of the frame, but not on its bytes.
   const FrameBytes key = check == Check::Crc ? FrameBytes(request.size()) : request;
   const auto [place, fresh] = known.try_emplace({key, flipped_bit});
   if (fresh) {
@@ -80,7 +80,7 @@ void NoisyLine::come_up() {
 
 FrameBytes NoisyLine::a_request() {
   const unsigned kind = below(3);
-  // There are only a few values because the theory is computed for each different request.
+  // There are only a few values because in DCON the theory is computed separately for each different request.
   constexpr std::uint16_t kOutputValues[] = {0x0000, 0x1FFF, 0x0A5A, 0x15A5};
   const std::uint16_t data = kOutputValues[below(4)];
   if (check_ == Check::Crc) {
@@ -140,9 +140,9 @@ void NoisyLine::exchange(const FrameBytes& request, double flipped_bit, Tally& t
   }
   ASSERT_TRUE(damaged || requests == 1) << "the witness did not receive exactly one request";
   ASSERT_EQ(onlooker_.replies() - replies_before, requests)
-      << "the number of replies differs from the number of received frames";
+      << "the number of replies differs from the number of requests that require a reply";
   if (after.storing != before.storing) {
-    // The command was executed correctly, but later requests must not depend on the stored values.
+    // The command may have changed the stored settings. Later requests must not depend on the new values.
     ++tally.storing;
     line_.bus().run_for(kLongest);
     come_up();

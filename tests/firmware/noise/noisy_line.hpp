@@ -27,7 +27,7 @@ struct Tally {
   std::uint64_t taken_in_data = 0;    ///< of those, accepted as valid frames
   double expected = 0;                ///< expected value of `taken_in_data`
   std::uint64_t taken_otherwise = 0;  ///< accepted although start or stop bits were damaged
-  std::uint64_t storing = 0;          ///< accepted commands that store something
+  std::uint64_t storing = 0;          ///< exchanges with an accepted command that may store something
 };
 
 class NoisyLine final : public sim::Disturbance, public sim::Station {
@@ -53,7 +53,7 @@ class NoisyLine final : public sim::Disturbance, public sim::Station {
   FrameBytes a_request();
   /// Sends `request` while noise flips each bit with the probability `flipped_bit`. In DCON, then sends an
   /// undamaged CR. Checks the effects, and adds the results to `tally`. If the module has received a command
-  /// that stores something, restores its settings and restarts it. Reports failures through GoogleTest.
+  /// that may store something, restores its settings and restarts it. Reports failures through GoogleTest.
   void exchange(const FrameBytes& request, double flipped_bit, Tally& tally);
   /// Ends the noise and waits. In DCON, also sends a CR, which ends a frame that is still incomplete. Then
   /// checks that the module replies correctly to the next frame.

@@ -48,8 +48,8 @@ class Onlooker final : public sim::BusObserver {
     checking_ = true;
   }
 
-  /// Passes a byte that the module receives or has received to the witness. Ignores bytes while the module's
-  /// driver is on. The module may not have processed the byte yet.
+  /// Passes to the witness a byte that has arrived at the module. Ignores the byte if the module's driver is
+  /// on. The module may not have processed the byte yet.
   void hears(std::uint8_t byte, ByteStatus status) {
     if (!driving_) {
       witness_.hears(byte, status == ByteStatus::Good, module_.module().state().in_force.address, now());

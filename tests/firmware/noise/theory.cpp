@@ -28,8 +28,8 @@ double choose(unsigned from, unsigned count) {
   return ways;
 }
 
-/// Returns the number of ways to choose `weight` of `bits` places so that an even number of them is marked,
-/// minus the number of ways with an odd number. `marked`: how many of the `bits` places are marked.
+/// Returns the number of ways to choose `weight` of `bits` places so that an even number of the chosen places
+/// is marked, minus the number of ways with an odd number. `marked`: number of marked places.
 double krawtchouk(unsigned bits, unsigned weight, unsigned marked) {
   double sum = 0;
   for (unsigned j = 0; j <= weight && j <= marked; ++j) {
@@ -171,7 +171,8 @@ double dcon_misses(const std::string& frame, bool checksum, double flipped_bit) 
 
 Interval interval_of(std::uint64_t count) {
   // For at most `kMany` events, finds by bisection the two means at which `count` or more extreme counts have
-  // a probability of 2.5 %. For more events, uses the normal approximation.
+  // a probability of 2.5 %. For 0 events, the lower mean is 0. For more than `kMany` events, uses the normal
+  // approximation.
   const auto at_most = [](std::uint64_t events, double mean) {
     double term = std::exp(-mean);
     double sum = term;

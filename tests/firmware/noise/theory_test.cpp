@@ -13,7 +13,7 @@ namespace ex9000::noise {
 namespace {
 
 /// Returns, for each bit of a frame of `bytes` bytes, the change of the CRC if that bit is flipped. Computes
-/// both CRCs with judges::crc16, without the code of theory.cpp.
+/// the CRCs before and after the flip with judges::crc16, without the code of theory.cpp.
 std::vector<unsigned> syndromes_of(std::size_t bytes) {
   std::vector<std::uint8_t> frame(bytes, 0xA5);
   const unsigned untouched = judges::crc16(frame.data(), bytes);
@@ -30,7 +30,7 @@ std::vector<unsigned> syndromes_of(std::size_t bytes) {
 
 /// The result of `count_misses`, which tries all ways to flip 1 to 4 bits.
 struct Misses {
-  std::array<std::uint64_t, 5> of{};  ///< [n]: number of ways to flip n bits that leave the CRC unchanged
+  std::array<std::uint64_t, 5> of{};  ///< [n]: ways to flip n bits, 1 to 4, that leave the CRC unchanged
   std::uint64_t tried_with_four = 0;  ///< number of ways to flip four bits
 };
 

@@ -22,7 +22,7 @@ std::optional<StoredSettings> read(const Model& model, const std::vector<std::ui
 
 /// Reads each file with the firmware and with an independent reader, and compares both results with the
 /// settings that were stored. The firmware must not write when it reads.
-TEST(StoredBytes, AreReadAsTheSettingsThatWereStoredWithoutAWrite) {
+TEST(StoredBytes, AreReadWithoutAWriteAsTheSettingsThatWereStored) {
   for (const StoredBytes& stored : all_stored_bytes()) {
     FakeMemory memory;
     memory.cells = stored.memory;

@@ -27,7 +27,7 @@ TEST(Places, ShareNoPage) {
   }
 }
 
-TEST(Places, AreBlankIfAndOnlyIfAllBytesAreFF) {
+TEST(Places, AreBlankIfAndOnlyIfAllBytesOfTheFirstPageAreFF) {
   std::array<std::uint8_t, kMemoryPage> page{};
   page.fill(0xFF);
   EXPECT_TRUE(is_blank({page.data(), page.size()}));

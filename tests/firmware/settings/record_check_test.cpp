@@ -72,7 +72,7 @@ class OfOneKind {
       others_ = others;
     }
     ASSERT_EQ(others, others_) << what_ << ": another byte differs";
-    ASSERT_TRUE(checks_.insert(check_in(record)).second) << what_ << ": two have the same check";
+    ASSERT_TRUE(checks_.insert(check_in(record)).second) << what_ << ": two records have the same check";
   }
 
  private:
@@ -101,8 +101,8 @@ TEST(Record, AnyFourAdjacentBytesAreDeterminedByTheCheckAndTheOtherBytes) {
   }
 }
 
-// If the property that the previous test checks is true, this one is true too. This test compares more than
-// 1000 records for each of six groups of adjacent bytes.
+// The property that the previous test checks implies the property that this test checks. This test compares
+// more than 1000 records for each of six groups of adjacent bytes.
 TEST(Record, RecordsThatDifferInUpToFourAdjacentBytesHaveDifferentChecks) {
   OfOneKind lines("address, baud code, format and protocol", 4);
   OfOneKind watchdogs("watchdog and timeout status", 8);

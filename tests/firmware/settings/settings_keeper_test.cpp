@@ -257,7 +257,7 @@ TEST_F(SettingsKeeperTest, StoredSettingsAreUncertainUntilARefusedCopyIsInvalida
   EXPECT_TRUE(keeper_.certain());
 }
 
-TEST(SettingsKeeperAtReset, StoredSettingsAreUncertainIfTheMemoryDidNotAnswerUntilTheyAreStored) {
+TEST(SettingsKeeperAtReset, IfTheMemoryDidNotAnswerTheSettingsAreUncertainUntilASave) {
   FakeMemory memory;
   memory.failing_reads = kReadsOfASilentMemory;
   SettingsKeeper keeper(the_model());
@@ -274,7 +274,7 @@ TEST(SettingsKeeperAtReset, StoredSettingsAreUncertainIfTheMemoryDidNotAnswerUnt
 }
 
 // The copy that could not be read may be the newer one, and a later reset may load it.
-TEST(SettingsKeeperAtReset, StoredSettingsAreUncertainIfOneCopyCouldNotBeReadUntilTheyAreStored) {
+TEST(SettingsKeeperAtReset, IfOneCopyCouldNotBeReadTheSettingsAreUncertainUntilASave) {
   FakeMemory memory;
   put(memory, 0, numbered(5), 8);
   put(memory, 1, numbered(6), 7);

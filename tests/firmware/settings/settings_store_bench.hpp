@@ -53,7 +53,7 @@ class FakeMemory {
     const bool writing = job.kind == MemoryJob::Kind::Write;
     const std::size_t size = job.bytes.size;
     EXPECT_NE(size, 0U);
-    EXPECT_EQ(job.address / kPage, (job.address + size - 1) / kPage) << "a job crosses a page";
+    EXPECT_EQ(job.address / kPage, (job.address + size - 1) / kPage) << "a job crosses the end of a page";
     if (job.address + size > cells.size()) {
       ADD_FAILURE() << "a job goes beyond the end of the memory";
       return false;

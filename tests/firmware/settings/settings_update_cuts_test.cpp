@@ -128,7 +128,8 @@ TEST(UpdateCuts, TwoCutsInARowLeaveTheOldOrTheNewSettings) {
   }
 }
 
-// The power fails at every byte of a save. Each file in stored_bytes/ is the memory before the save.
+// Each file in stored_bytes/ is the memory before a save. The test repeats this save, and the power fails at
+// another byte each time.
 TEST(UpdateCuts, ACutWithDataOfEarlierFirmwareLeavesTheOldOrTheNewSettings) {
   for (const StoredBytes& stored : all_stored_bytes()) {
     Settings changed = stored.settings;

@@ -1,5 +1,5 @@
-// Tests the settings store after a change of the firmware. The memory contains copies of an older layout, or
-// records that have more settings than this firmware supports.
+// Tests the settings store after a change of the firmware. In most tests, the memory contains copies of an
+// older layout, or a record that is longer than this firmware would write.
 #include <gtest/gtest.h>
 
 #include <cstdint>

@@ -80,15 +80,17 @@ inline StoredBytes read_stored_bytes(const std::filesystem::path& path) {
 }
 
 /// Reads all files. Checks that there are at least `kAtLeast` files; increase `kAtLeast` when you add files.
-/// Throws std::runtime_error if a file names an unknown model or no model.
+/// Throws std::runtime_error if a file names an unknown model or no model. Throws std::logic_error if a file
+/// lacks a setting or the number of a setting, or has a byte beyond the end of the memory.
 inline std::vector<StoredBytes> all_stored_bytes() {
   constexpr std::size_t kAtLeast = 62;
   std::vector<StoredBytes> all;
   for (const auto& entry : std::filesystem::directory_iterator(EX9000_STORED_BYTES)) {
     all.push_back(read_stored_bytes(entry.path()));
     if (all.back().model == nullptr) {
-      throw std::runtime_error(entry.path().string() +
-                               ": unknown model; expected a designation of the model table");
+      throw std::runtime_error(
+          entry.path().string() +
+          ": the model is missing or unknown; expected a designation of the model table");
     }
   }
   EXPECT_GE(all.size(), kAtLeast);
