@@ -217,6 +217,18 @@ TEST(SettingsStore, ASaveWritesOneCopyOnceAndReadsItBack) {
   EXPECT_EQ(memory.reads, memory.writes);
 }
 
+TEST(SettingsStore, ASaveWritesOnlyTheBytesOfItsRecord) {
+  constexpr std::size_t kSize = 4 + 51 + 4;  // layout, length and sequence; settings with filters; CRC
+  const Model& inputs = model("EX9053D-M");
+  Settings settings = Settings::factory(inputs);
+  settings.input_filters.set(0, 1);
+  FakeMemory memory;
+  Boot run(memory, inputs);
+  EXPECT_TRUE(run.save(settings));
+  EXPECT_EQ(memory.bytes_written, kSize);
+  EXPECT_TRUE(Boot(memory, inputs).stored() == settings);
+}
+
 TEST(SettingsStore, SavesAlternateBetweenTheCopies) {
   FakeMemory memory;
   Boot run(memory);
@@ -302,6 +314,19 @@ TEST(SettingsStore, SettingsSavedAfterTheMemoryDidNotAnswerAtResetAreFoundAtTheN
   ASSERT_EQ(run.found(), Found::Unreadable);
   EXPECT_TRUE(run.save(numbered(9)));
   EXPECT_TRUE(Boot(memory).stored() == numbered(9));
+}
+
+TEST(SettingsStore, AReadBeforeASaveThatFailsOnceOrTwiceIsRepeated) {
+  for (std::size_t failing = 1; failing < kAttempts; ++failing) {
+    FakeMemory memory;
+    put(memory, 0, numbered(5), 700);
+    memory.failing_reads = kReadsOfASilentMemory;
+    Boot run(memory);
+    ASSERT_EQ(run.found(), Found::Unreadable);
+    memory.failing_reads = failing;
+    EXPECT_TRUE(run.save(numbered(9))) << failing;
+    EXPECT_TRUE(Boot(memory).stored() == numbered(9)) << failing;
+  }
 }
 
 // --- firmware/extensions.md: registers 0x0305 and 0x0306 ---

@@ -177,6 +177,17 @@ TEST(LateDriver, IsDisabledImmediatelyIfItsFaultIsRemoved) {
   EXPECT_FALSE(bench.garbled());
 }
 
+TEST(LateDriver, ANewTimeCountsFromTheEndOfTheReply) {
+  FaultBench bench;
+  bench.at(1).release_driver_late(1h);
+  EXPECT_EQ(bench.ask("$01M", 15ms), kName);
+  bench.at(1).release_driver_late(40ms);
+  bench.run(100ms);
+  const VirtualTime held = bench.recorder().drivers.back().at - bench.recorder().bytes.back().end;
+  EXPECT_GE(held, 40ms);
+  EXPECT_LE(held, 40ms + 3us);
+}
+
 TEST(LateDriver, HoldsTheLineForTheGivenTimeAndBlocksARequestDuringIt) {
   FaultBench bench;
   bench.add("late-driver 20ms");
