@@ -455,8 +455,8 @@ TEST_P(OnBoardForMonths, WorksAcrossTheWrapOfEvery32BitCount) {
     ASSERT_EQ(bench.ask("~010"), "!0100") << round;
   }
   EXPECT_EQ(bench.ask("$01M"), "!01PUMP0");
-  // If the driver gave up a byte on the EEPROM's bus and sent the byte again, the reply would begin 3 ms
-  // later.
+  // If the I2C driver did not detect the end of a byte, its timeout of 3 ms would expire, and the reply would
+  // begin more than 2 ms later.
   EXPECT_LT(std::chrono::duration<double>(longest - shortest).count(), 0.002);
   bench.run_for(seconds(2));
   EXPECT_EQ(bench.ask("~010"), "!0104");

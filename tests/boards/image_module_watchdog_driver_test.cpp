@@ -90,8 +90,8 @@ TEST_P(FaultOnBoard, AHungInterruptHandlerCausesAReset) {
 TEST_P(FaultOnBoard, AStoppedTickCausesAReset) {
   expect_reset("the tick stops", [](BoardBench& bench) {
     bench.mcu->core.write(Core::kTickControl, 4);
-    // The module's clock stops, so the wake timer expires repeatedly. Long accesses make this cheap to
-    // simulate.
+    // The module's clock stops, so the wake timer expires repeatedly. Long accesses make the simulation
+    // faster.
     bench.mcu->set_clocks_an_access(1000);
   });
 }

@@ -1,8 +1,8 @@
 // Tests that the hardware watchdog resets an image if it hangs, if the tick stops, or during an interrupt
-// storm. Also tests that an unexpected interrupt resets the image, and that neither a blocked EEPROM bus nor
-// bytes without a gap do. The image itself is not changed. If a fault requires code, this code is in RAM that
-// the image does not use, and a copy of the vector table in RAM points to it. After a reset, the copy points
-// to the image's own handlers again.
+// storm. Also tests that an unexpected interrupt resets the image, and that a blocked EEPROM bus and bytes
+// without a gap do not reset it. The image itself is not changed. If a fault requires code, this code is in
+// RAM that the image does not use, and a copy of the vector table in RAM points to it. After a reset, the
+// copy points to the image's own handlers again.
 #include <gtest/gtest.h>
 
 #include <string>

@@ -11,7 +11,8 @@
 
 namespace ex9000::registers {
 
-/// Loads an image. `board` is the name of the board's folder, and `model` the rest of the image's name.
+/// Loads an image. `board` is the name of the board's folder, and `model` is the rest of the image's
+/// name.
 inline const Image& image_of(const std::string& board, const std::string& model) {
   return load_image(std::string(EX9000_IMAGES) + "/image_" + board + "_" + model + ".so");
 }

@@ -1,5 +1,5 @@
 // Tests memcpy, memset and memcmp of an image. The compiler generates calls of these functions. memcpy and
-// memset must change every byte of the requested range and no other byte. memcmp must compare only the
+// memset must write every byte of the requested range and no other byte. memcmp must compare only the
 // requested bytes (C17, 7.24.2.1, 7.24.4.1, 7.24.6.1).
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
-// Tests the images for the Pico in the emulator: the pins, the inputs, and the replies with their turn-around
-// times.
+// Tests the images for the Pico in the emulator, for example the pins, the inputs, the line format, and the
+// replies with their turn-around times.
 #include <gtest/gtest.h>
 
 #include <cstdint>

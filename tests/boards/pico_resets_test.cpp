@@ -159,8 +159,8 @@ TEST_F(PicoResets, TheModuleReportsTheReasonOfEachReset) {
   }
 }
 
-/// After a copy to the drive, the boot ROM uses the watchdog to reset the chip, although the watchdog has not
-/// expired.
+/// After a user has copied an image to the drive of the boot ROM, the boot ROM resets the chip through the
+/// watchdog, although the watchdog has not expired.
 TEST_F(PicoResets, TheModuleReportsASoftwareResetAfterACopyToTheDrive) {
   begin();
   bench_.power(false);

@@ -17,8 +17,8 @@ namespace {
 
 constexpr std::size_t kCopied = 3;
 constexpr std::size_t kCleared = 16;
-/// The words of the copied section and of the cleared section, and one word before, between and after these
-/// sections. The extra words show whether the code writes outside the sections.
+/// The number of words in the copied section and in the cleared section, and of the three words before,
+/// between and after these sections. The extra words show whether the code writes outside the sections.
 constexpr std::size_t kWords = 1 + kCopied + 1 + kCleared + 1;
 
 }  // namespace

@@ -30,7 +30,7 @@ std::vector<std::string> names_of(const Groups& groups) {
 inline std::map<std::string, std::string> names_of_peripherals() {
   return {{"receive", name_of({kUartPins.port, kUartPins.first_pin})},
           {"transmit", name_of({kUartPins.port, static_cast<std::uint8_t>(kUartPins.first_pin + 1)})},
-          {"EEPROM clock", "PB2"},  // I2C0 has these pins on all microcontrollers of the family
+          {"EEPROM clock", "PB2"},  // I2C0 has these pins on the LM3S6965 and on the TM4C123
           {"EEPROM data", "PB3"}};
 }
 

@@ -181,7 +181,8 @@ TEST(Wiring, NoTableListsAPinThatTheBoardUsesItself) {
 }
 
 #ifdef EX9000_BOARD_HAS_HEADERS
-/// The LaunchPad's headers according to its user's guide (SPMU296, 2.2), from position 1 on.
+/// The LaunchPad's headers according to its user's guide (SPMU296, "Headers and BoosterPacks"), from
+/// position 1 on.
 const std::map<std::string, std::array<std::string, 10>> kHeaders{
     {"J1", {"3.3V", "PB5", "PB0", "PB1", "PE4", "PE5", "PB4", "PA5", "PA6", "PA7"}},
     {"J2", {"GND", "PB2", "PE0", "PF0", "RESET", "PB7", "PB6", "PA4", "PA3", "PA2"}},

@@ -167,7 +167,7 @@ class Life {
   std::size_t frame_size_ = 0;
 };
 
-/// Returns the index after the plain byte or the code at `at`.
+/// Returns the index after the code at `at`, or after the byte at `at` if no code begins there.
 std::size_t behind(const std::uint8_t* data, std::size_t size, std::size_t at) {
   if (data[at] != kEscape || at + 1 == size) {
     return at + 1;
@@ -181,7 +181,8 @@ bool is_code(const std::uint8_t* data, std::size_t size, std::size_t at, char co
 
 /// In Modbus, replaces the two bytes before each gap with `\c` if at least four plain bytes precede the gap.
 /// In ASCII, inserts `\c` before each CR that follows at least three plain bytes, as long as the input may
-/// grow. Returns the new size in bytes.
+/// grow. A plain byte is a byte that belongs to no code and, in ASCII, is not CR. Returns the new size in
+/// bytes.
 std::size_t mend(std::uint8_t* data, std::size_t size, std::size_t most, bool modbus) {
   std::size_t plain = 0;  // consecutive plain bytes directly before `at`
   for (std::size_t at = kHeader; at < size;) {

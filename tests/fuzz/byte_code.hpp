@@ -16,7 +16,8 @@ namespace ex9000::fuzz {
 ///
 ///     bits 0-2   baud code. 0 to 4: 06 (9600) to 0A; 5 to 7: 03 to 05
 ///     bit 3      checksum
-///     bit 4      counters count rising edges; -M models also require strict gaps
+///     bit 4      counters count rising edges; in an -M model, a gap of more than T1.5 also spoils a Modbus
+///                frame (EX9000_STRICT_GAPS in wire.md 7)
 ///     bit 5      host watchdog enabled with 0.3 s, outputs: power-on value 3, safe value 4
 ///     bit 6      on a model with two protocols, the protocol that is not `usual`
 ///     bit 7      INIT* connected to GND
@@ -43,7 +44,8 @@ namespace ex9000::fuzz {
 ///     \m      the memory stops acknowledging, or acknowledges again
 ///     \r      a reset
 ///
-/// `\` and any other byte after it have no effect.
+/// `\c` and `\p` use only the first 260 bytes since the last gap, reset or (in ASCII) CR. `\` and any other
+/// byte after it have no effect. A `\` at the end of the input has no effect either.
 void live(const Model& model, Protocol usual, const std::uint8_t* data, std::size_t size);
 
 /// Mutates the input with libFuzzer. If `seed` is a multiple of four, also puts `\c` before gaps (if

@@ -1,6 +1,6 @@
 // Lets four clients of Modbus TCP send any bytes to one line, split and joined in any way. The target finds
-// the requests in the bytes of each client independently. Each request except a broadcast must get exactly
-// one reply, unless its client leaves first, and nothing else may arrive.
+// the requests in the bytes of each client without the simulator's code. Each request except a broadcast must
+// get exactly one reply, unless its client leaves first, and nothing else may arrive.
 //
 // The input is a sequence of events:
 //

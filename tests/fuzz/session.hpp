@@ -90,9 +90,9 @@ class Session final : public ModuleObserver {
     } while (module_.sending());
   }
 
-  /// Adds the check, and in ASCII the CR, to a request and sends it. Returns the reply without its check and
-  /// CR, or no bytes if there is no reply. The line must be quiet. The result is valid until the next reply
-  /// begins.
+  /// Adds to a request the CRC, or in ASCII the checksum (if it is enabled) and the CR, and sends it. Returns
+  /// the reply without these additions, or no bytes if there is no reply. The line must be quiet. The result
+  /// is valid until the next reply begins.
   Bytes ask(Bytes request) {
     reply_size_ = 0;
     for (const std::uint8_t each : request) {

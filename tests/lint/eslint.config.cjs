@@ -1,4 +1,4 @@
-// ESLint rules for the panel's page and for the masters in JavaScript. tests/lint-scripts sets NODE_PATH for `require`.
+// ESLint rules for the panel's page and the JavaScript of the tests. tests/lint-scripts sets NODE_PATH for `require`.
 "use strict";
 const js = require("@eslint/js");
 

@@ -207,7 +207,8 @@ FOLDERS = folders()
 
 
 def units_of(folder):
-    """Returns the names of the units of a folder and of all libraries that it links, directly or indirectly."""
+    """Returns the names of the unit `core`, of the units of a folder, and of the units of all folders whose libraries
+    this folder links publicly, directly or indirectly."""
     names = ["core"]
     waiting = [folder]
     while waiting:

@@ -54,7 +54,7 @@ class Programs(unittest.TestCase):
         self.assertIn("memory_test", names)
         self.assertEqual(names - {program.name for program in programs.listed_programs("tests/hal")}, set())
 
-    def test_a_run_uses_every_test_that_tests_sim_lists_by_name_except_those_with_ports(self):
+    def test_a_run_uses_every_test_that_tests_sim_lists_by_name_except_pacer_test_and_tcp_port_test(self):
         text = (programs.ROOT / "tests/sim/CMakeLists.txt").read_text(encoding="utf-8")
         names = set(re.findall(r"ex9000_test\((\w+)", text))
         used = {program.name for program in programs.listed_programs("tests/sim")}

@@ -53,7 +53,7 @@ class StoredCopy {
       : model_(model), bytes_(memory + place), layout_(place >= 0x080 ? 3 : layout_of_old(bytes_)) {}
 
   /// Sets the layout of the copy at `place`: 2 at a place for the older layouts, otherwise 3. In layout 3,
-  /// reduces a length of more than 120. Then writes the correct check.
+  /// reduces a length of more than 120 to 120. Then writes the correct check.
   static void seal(const StoringModel& model, std::uint8_t* memory, std::size_t place) {
     std::uint8_t* bytes = memory + place;
     if (place >= 0x080) {

@@ -190,7 +190,7 @@ void AlarmClock::go_on() {
 /// has stopped before a watched store.
 bool AlarmClock::wait_for_alarm() {
   // The emulator can take seconds for an interrupt storm of 1.6 s of emulated time, and more than `kHang` on
-  // a busy machine. The emulator still replies to reads during that time.
+  // a busy host. The emulator still replies to reads during that time.
   constexpr int kMostQuestions = 5;
   for (int asked = 0; !machine_.gdb().has_packet() && !machine_.gate().has_bytes();) {
     if (!wait_for_any({&machine_.gdb().socket(), &machine_.gate()})) {

@@ -19,8 +19,8 @@ class Halted : public std::runtime_error {
 
 /// The machine is stopped between calls. The same calls have the same effects, independently of the host,
 /// with one exception. When the emulator advances time for a processor that has just gone to sleep, it can
-/// lose the last instructions, depending on the host. About one transcript in a hundred therefore ends
-/// earlier or later than in the previous run, by at most 2 us, or by at most 7 us with input pulses.
+/// omit the time of the last instructions, depending on the host. About one transcript in a hundred therefore
+/// ends earlier or later than in the previous run, by at most 2 us, or by at most 7 us with input pulses.
 ///
 /// The timer GPTM3, which no image uses, generates an interrupt when the requested time, or a part of it, has
 /// elapsed. The interrupt code is in RAM that no image uses. At the end of the requested time, the interrupt
@@ -51,8 +51,8 @@ class AlarmClock {
   /// machine has stopped before a store. Between `set_up` and the first call, the machine must have run.
   bool run_to_store(std::chrono::nanoseconds time);
 
-  /// Halts the whole machine, for example for a reset. Before this call, only the processor waits. After this
-  /// call the machine can be reset or can run again.
+  /// Halts the whole machine, for example for a reset. While the processor waits at the gate, the rest of the
+  /// machine is not halted. After this call the machine can be reset or can run again.
   void halt();
 
   // --- state when the processor last reached the gate ---
@@ -74,7 +74,7 @@ class AlarmClock {
   const char* go_on_ = "c";    ///< the debugger's packet that continues a machine that is not at the gate
   bool at_store_ = false;      ///< the machine has stopped before a store, and the alarm has not occurred yet
   std::string watched_;        ///< the watched range in the debugger's format
-  std::uint32_t ordered_ = 0;  ///< the time from the gate to the next alarm, in clocks
+  std::uint32_t ordered_ = 0;  ///< clocks to the next alarm, before a long time is divided into parts
   std::uint32_t last_report_ = 0;  ///< the last report of the interrupt code
 };
 

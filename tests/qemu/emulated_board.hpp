@@ -33,7 +33,7 @@ class EmulatedBoard {
   /// if the line control register selects a format that modules do not have, or enables the FIFOs.
   [[nodiscard]] hal::SerialMode mode();
 
-  /// Returns the emulator. Call it only while the board is powered.
+  /// Returns the emulator. Call this only while the board is powered.
   Emulator& emulator() { return *emulator_; }
   /// Returns the content of the EEPROM, from its file.
   [[nodiscard]] std::string memory() const { return system::bytes_of_file(directory_ / "memory"); }
@@ -50,7 +50,8 @@ class EmulatedBoard {
   /// function resets an emulator that already exists, which must be halted. The reset makes the emulator read
   /// the EEPROM's file again.
   void supply(bool on);
-  /// Switches the supply off and kills the emulator with SIGKILL. The next `supply` starts a new emulator.
+  /// Switches the supply off and kills the emulator with SIGKILL. The next `supply(true)` starts a new
+  /// emulator.
   void kill();
   /// Resets the machine with the reset pin. The machine must be halted and stays halted. Discards the bytes
   /// from UART0 that have not been read.

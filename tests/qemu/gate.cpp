@@ -1,13 +1,15 @@
-// A plugin for the emulator. AlarmClock uses it. At one specified instruction, which loads a byte, the
-// processor waits until the other end of a socket lets it continue. Only the processor waits, and no emulated
-// time passes. A debugger would halt the whole machine, which takes ten times as long.
+// A plugin for the emulator. AlarmClock and tests/bench/instructions use it. At one specified instruction,
+// which loads a byte, the processor waits until the other end of a socket lets it continue. Only the
+// processor waits, and no emulated time passes. A debugger would halt the whole machine, which takes ten
+// times as long.
 //
 //     -plugin gate.so,address=INSTRUCTION,socket=PATH
 //
 // When the processor executes this instruction, the plugin sends the address from which the instruction loads
-// the byte. The interrupt code of AlarmClock puts the UART flags and the levels of two pins into this
-// address. Then the plugin waits for a byte from the socket. This file declares the required functions of the
-// emulator, because Debian has no package with the header: QEMU 7.2, include/qemu/qemu-plugin.h.
+// the byte, and then waits for a byte from the socket. Before this instruction, the interrupt code of
+// AlarmClock has put the UART flags and the levels of two pins into this address. This file declares the
+// required functions of the emulator, because Debian has no package with the header: QEMU 7.2,
+// include/qemu/qemu-plugin.h.
 #include <sys/socket.h>
 #include <sys/un.h>
 #include <unistd.h>

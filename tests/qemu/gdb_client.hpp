@@ -9,7 +9,8 @@
 namespace ex9000::rig {
 
 /// The parts of GDB's remote protocol that the test bench requires. The client does not acknowledge packets;
-/// QEMU accepts this. Do not send while the machine runs: the machine would stop immediately.
+/// QEMU accepts this. Do not send while the machine runs: the machine would stop immediately. The functions
+/// that send or receive throw std::runtime_error if the emulator closes the connection.
 class GdbClient {
  public:
   explicit GdbClient(UnixSocket socket) : socket_(std::move(socket)) {}
@@ -18,8 +19,8 @@ class GdbClient {
   static std::string framed(const std::string& packet);
   /// Sends one or more results of `framed`, concatenated. Only the last packet may start the machine.
   void send(const std::string& packets) { socket_.send(packets); }
-  /// Returns the next packet without `$`, `#` and the checksum. Throws std::runtime_error if the emulator
-  /// sends nothing for `kHang`.
+  /// Returns the next packet without `$`, `#` and the checksum. Also throws std::runtime_error if the
+  /// emulator sends nothing for `kHang`.
   std::string receive();
   /// Reads the received bytes without blocking. Returns whether a complete packet is there.
   bool has_packet();

@@ -9,8 +9,8 @@
 
 namespace ex9000::rig {
 
-/// Can play several transcripts, one after another. Each model has its own emulator. Time is emulated.
-/// alarm_clock.hpp describes how the host can affect the result.
+/// One object can play several transcripts, one after another. Each model has its own emulator. Time is
+/// emulated. alarm_clock.hpp describes how the host can affect the result.
 class ImageTarget final : public play::Target {
  public:
   void start(const Model& model, const Settings* preset) override;

@@ -10,7 +10,8 @@ namespace ex9000::rig {
 /// Verifies that a lit LED is on steadily and does not flash. A check that waits until the LED goes dark
 /// would take time, but other steps of the transcript measure the time. Therefore the caller assumes that the
 /// LED is on steadily, and this class compares the assumption with later states. A flashing LED is never lit
-/// for longer than `kPhase`. This class treats an LED that goes dark earlier as a flashing one.
+/// for longer than `kPhase`. If the LED is dark less than `kPhase` after the assumption, this class reports
+/// that the LED flashes.
 class LampWatch {
  public:
   /// How long the LED is lit when it flashes at 2 Hz after a timeout. Flashes for other reasons are shorter.

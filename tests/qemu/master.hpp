@@ -17,7 +17,7 @@ inline Settings ascii(const Model& model) {
 
 /// Waits 5 ms, discards the bytes that have arrived, and sends a request. Returns the reply, which ends when
 /// the module switches its driver enable off. If the reply has not ended 250 ms after the request, returns
-/// the bytes that have arrived until then; none if there is no reply.
+/// the bytes that have arrived until then; none if there is no reply. The UART of the module must be on.
 inline TimedModule::Bytes reply_of(TimedModule& module, const TimedModule::Bytes& request) {
   constexpr std::chrono::milliseconds kSilence{5};  // longer than T3.5 at 9600 baud
   constexpr std::chrono::milliseconds kLongestReply{250};

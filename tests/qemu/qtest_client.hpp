@@ -11,7 +11,8 @@
 namespace ex9000::rig {
 
 /// QEMU's qtest protocol: one line for each command and each reply. All functions that send a command throw
-/// std::runtime_error if the emulator reports an error or does not reply within `kHang`.
+/// std::runtime_error if the emulator reports an error, closes the connection, or does not reply within
+/// `kHang`.
 class QtestClient {
  public:
   explicit QtestClient(UnixSocket socket);

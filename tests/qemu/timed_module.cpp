@@ -73,7 +73,7 @@ void TimedModule::pulse_input(unsigned channel, std::uint32_t count) {
 void TimedModule::run_for(nanoseconds time) { run_until(now_ + time); }
 
 void TimedModule::run_until(nanoseconds when) {
-  // Shorter than the shortest phase of a flashing LED, so that LampWatch misses none.
+  // Shorter than the shortest phase of a flashing LED, so that LampWatch misses no phase.
   constexpr milliseconds kAtOnce{50};
   while (powered() && now_ < when) {
     const nanoseconds time = std::min<nanoseconds>(when - now_, kAtOnce);

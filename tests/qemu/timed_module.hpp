@@ -47,24 +47,25 @@ class TimedModule : public EmulatedBoard {
   /// Makes `run_to_store` stop the module before each store to one of the `size` bytes from the bus address
   /// `address` on. Until `kill`, no other function may run the module.
   void watch_stores(std::uint32_t address, std::uint32_t size) { clock_->watch_stores(address, size); }
-  /// Runs until the module is about to execute the next watched store, or until the `time` of the first call
-  /// has passed since that call. Returns whether the module has stopped before a store. Does not change
+  /// Runs until the module is about to execute the next watched store, but not longer than
+  /// AlarmClock::run_to_store permits. Returns whether the module has stopped before a store. Does not change
   /// `now()`.
   bool run_to_store(std::chrono::nanoseconds time) { return clock_->run_to_store(time); }
 
   /// Runs until the watchdog or the image is about to reset the module. `event` is an event that the emulator
   /// must then send: it sends `WATCHDOG` only for a reset by the watchdog, and `SHUTDOWN` for both resets.
-  /// Throws std::runtime_error if this event does not occur within `time`. Call `reset` before the module
-  /// runs again.
+  /// Throws std::runtime_error if this event does not occur within `time`. `now()` omits up to 50 ms of the
+  /// time before the reset. Call `reset` before the module runs again.
   void run_to_reset(const std::string& event, std::chrono::nanoseconds time);
 
   /// Waits up to 100 ms until the driver enable is off, then sends bytes in `mode`. Returns when the last
   /// byte has ended. The module loses bytes that arrive while its driver enable is on. The emulated UART has
   /// no parity and no framing errors. Therefore a byte in which a receiver in the module's mode finds such an
-  /// error arrives as a break, which is an error too.
+  /// error arrives as a break, which is an error too. The rate of `mode` must not be 0.
   void send(const Bytes& bytes, hal::SerialMode mode);
-  /// Returns the bytes that the module has sent since the last call, as a receiver in `mode` samples them,
-  /// including those with errors. No time passes.
+  /// Returns the bytes that the module has sent since the last call or since its last start, whichever is
+  /// later, as a receiver in `mode` samples them, including those with errors. Returns no bytes if the supply
+  /// is off. No time passes.
   Bytes hear(hal::SerialMode mode);
   /// Returns whether the module is powered and its driver enable was on at the last stop.
   [[nodiscard]] bool speaks() const { return powered() && clock_->driver_on(); }

@@ -201,7 +201,7 @@ class Board {
       const floats = this.chip.level(number) === null && this.outside[number] === null
         && this.chip.pull(number) === null;
       if (floats && pin.inputEnable) {
-        throw new Error(`GPIO${number} floats`);
+        throw new Error(`GPIO${number}: the enabled input floats; expected a pull, or a part that drives the pin`);
       }
     });
   }
@@ -261,7 +261,7 @@ class Board {
 
   setFormat(name) {
     if (!Object.hasOwn(FORMATS, name)) {
-      throw new Error(`${name} is no line format`);
+      throw new Error(`format ${name}: there is no such line format; expected 8N1, 8N2, 8E1 or 8O1`);
     }
     this.masterFormat = FORMATS[name];
     this.listener.format = this.masterFormat;

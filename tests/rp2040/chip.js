@@ -1,5 +1,6 @@
-// One RP2040, from its start to the next reset or power-off: rp2040js with the models in this folder. It starts in the
-// state in which the boot ROM calls the second stage. Source: RP2040 data sheet, 2.8.1 (boot sequence).
+// One RP2040, from its start to the next reset or power-off: rp2040js with the models in this folder. Its first
+// instruction is that of the second stage, in the state in which the boot ROM calls the second stage. Source: RP2040
+// data sheet, 2.8.1 (boot sequence).
 "use strict";
 const { RP2040, GPIOPinState } = require("rp2040js");
 const { Processor } = require("./core");
@@ -14,7 +15,7 @@ const RAM = 0x20000000;
 const SECOND_STAGE = 0x20041f00;
 const SECOND_STAGE_SIZE = 256;
 const RING_OSCILLATOR = 6.5e6;
-const BOOT_ATTEMPT = 4e6; // ns, the time between two attempts of the boot ROM; the ring oscillator clocks it
+const BOOT_ATTEMPT = 4e6; // ns between two attempts of the boot ROM, which the ring oscillator clocks
 const PAD_AFTER_RESET = 0x56;
 const NO_FUNCTION = 0x1f;
 const UART_FUNCTION = 2;
@@ -180,7 +181,7 @@ class Chip {
     const stage = board.flash.content.slice(0, SECOND_STAGE_SIZE);
     const end = SECOND_STAGE_SIZE - 4;
     if (crc32(stage.subarray(0, end)) !== new DataView(stage.buffer).getUint32(end, true)) {
-      throw new Error("the checksum of the second stage is wrong");
+      throw new Error("second stage: the checksum is wrong; expected the CRC-32 of the 252 bytes before it");
     }
     mcu.sram.set(stage, SECOND_STAGE - RAM);
     mcu.flash.fill(0); // the flash is not mapped

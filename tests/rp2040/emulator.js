@@ -10,7 +10,7 @@ let board = null;
 const integer = (text) => {
   const value = Number(text);
   if (!Number.isSafeInteger(value)) {
-    throw new Error(`${text} is not an integer`);
+    throw new Error(`${text}: the argument is wrong; expected an integer of at most 2^53 - 1`);
   }
   return value;
 };
@@ -190,7 +190,7 @@ const COMMANDS = {
 function execute(line) {
   const [name, ...words] = line.split(" ");
   if (!Object.hasOwn(COMMANDS, name)) {
-    throw new Error(`there is no command ${name}`);
+    throw new Error(`${name}: there is no such command; expected one of COMMANDS in emulator.js`);
   }
   return COMMANDS[name](...words) ?? "";
 }

@@ -45,7 +45,8 @@ int spawn(int end) {
   const int failed = posix_spawnp(&pid, words[0], &actions, nullptr, words.data(), environment().data());
   posix_spawn_file_actions_destroy(&actions);
   if (failed != 0) {
-    throw std::runtime_error(std::string("node: ") + std::strerror(failed));
+    throw std::runtime_error(std::string("node: cannot start: ") + std::strerror(failed) +
+                             "; expected an installed Node.js");
   }
   return pid;
 }
@@ -55,7 +56,7 @@ int spawn(int end) {
 EmulatorProcess::EmulatorProcess() {
   std::array<int, 2> ends{};
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) {
-    throw std::runtime_error("socketpair");
+    throw std::runtime_error("emulator: cannot create its sockets; expected a socket pair");
   }
   pid_ = spawn(ends[1]);
   close(ends[1]);
@@ -73,7 +74,7 @@ std::string EmulatorProcess::execute(const std::string& command) {
   for (std::size_t sent = 0; sent < line.size();) {
     const ssize_t size = ::send(socket_, line.data() + sent, line.size() - sent, MSG_NOSIGNAL);
     if (size <= 0) {
-      throw std::runtime_error("the emulator has ended");
+      throw std::runtime_error("emulator: it has ended; expected it to take the command");
     }
     sent += static_cast<std::size_t>(size);
   }
@@ -93,7 +94,7 @@ std::string EmulatorProcess::read_line() {
     const ssize_t size =
         poll(&ready, 1, kHangMilliseconds) == 1 ? read(socket_, buffer.data(), buffer.size()) : 0;
     if (size <= 0) {
-      throw std::runtime_error("the emulator does not reply");
+      throw std::runtime_error("emulator: it has ended or sent nothing for 60 s; expected a reply");
     }
     unread_.append(buffer.data(), static_cast<std::size_t>(size));
     end = unread_.find('\n');

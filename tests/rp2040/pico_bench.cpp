@@ -43,7 +43,7 @@ unsigned pin_of(const Groups& groups, unsigned channel) {
     }
     channel -= group.count;
   }
-  throw std::out_of_range("there is no pin for the channel");
+  throw std::out_of_range("channel: the board has no pin for it; expected a channel of kInputs or kOutputs");
 }
 
 /// Returns a sector of a page store, with `entries` entries, which contain the pages of `memory` in turn.

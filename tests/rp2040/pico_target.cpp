@@ -96,7 +96,8 @@ void PicoTarget::end() {
   const auto counts = bench_.counts();
   for (const char* wrong : {"lost", "early", "late", "shorts", "timeouts", "requests"}) {
     if (counts.at(wrong) != 0) {
-      throw std::runtime_error(std::string(wrong) + ": " + std::to_string(counts.at(wrong)));
+      throw std::runtime_error(std::string(wrong) + ": the count is " + std::to_string(counts.at(wrong)) +
+                               "; expected 0");
     }
   }
 }

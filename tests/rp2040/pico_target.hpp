@@ -32,7 +32,7 @@ class PicoTarget final : public play::Target {
   /// different levels, or if the watchdog has reset the chip.
   void end() override;
 
-  /// Returns the total virtual time of all transcripts that have ended.
+  /// Returns the total virtual time of the transcripts for which `end` has been called.
   [[nodiscard]] std::chrono::nanoseconds played() const { return played_; }
 
  private:

@@ -29,7 +29,7 @@ class Found:
         self.edges = {}  # number of edges that one interrupt serves -> its instructions
 
     def add(self, counter):
-        """Replaces each count by that of a counter.Counter if that is higher."""
+        """Replaces each count if the count of `counter`, a counter.Counter, is higher."""
         self.received_byte = max(self.received_byte, counter.received_byte.count)
         self.sent_byte = max(self.sent_byte, counter.sent_byte.count)
         for mine, its in ((self.interrupts, counter.interrupts), (self.edges, counter.edges)):
@@ -69,10 +69,10 @@ def capacity(found):
     return "\n".join(
         [
             f"computed, not measured, for a TM4C123 at {HERTZ // 1_000_000} MHz with {CYCLES_AN_INSTRUCTION} cycles "
-            f"per instruction and {CYCLES_AROUND_AN_INTERRUPT} around an interrupt:",
+            f"per instruction and {CYCLES_AROUND_AN_INTERRUPT} for the entry and exit of an interrupt:",
             f"  eight edges at once take {sum(ports) / HERTZ * 1e6:.1f} us, a received byte {byte / HERTZ * 1e6:.1f} "
             f"us of the {BITS_A_CHARACTER / BAUD * 1e6:.1f} us that it takes on the line at {BAUD} baud",
-            f"  all eight inputs at the same time, both edges counted, the line saturated at {BAUD} baud, "
+            f"  all eight inputs at the same time, both edges of each pulse served, the line saturated at {BAUD} baud, "
             f"{LEFT_TO_THE_MAIN_LOOP:.0%} left to the main loop: {math.floor(pulses / 100) * 100} pulses a second "
             "on each input",
             f"  an edge is served within {math.ceil(wait * 1e6)} us, even if all other interrupts are pending: each "

@@ -66,9 +66,8 @@ class Counter:
     """A listener for execution.follow.
 
     A pass of a request is a whole transaction: the interrupts and the turns of the main loop from `begin` to `end`. The
-    pass excludes the tick: the interrupt of the tick, the turns that only the tick has woken, and in other turns the
-    code at the addresses `of_the_tick`. The pass also excludes the alarm of this tool: its interrupt, and the turns
-    that only the alarm has woken.
+    pass excludes the interrupts of the tick and of the alarm of this tool, and the turns in which no other interrupt
+    occurs. In all other turns, the pass excludes the code at the addresses `of_the_tick`.
     """
 
     def __init__(self, handlers, sleeps, of_the_tick, numbers):
@@ -110,7 +109,7 @@ class Counter:
         """Waits until execution.follow has read the line that Emulator.write_sync_line has written. Call
         write_sync_line first. Raises RuntimeError if this takes longer than `patience` seconds."""
         if not self._seen.wait(patience):
-            raise RuntimeError("the emulator's log does not continue")
+            raise RuntimeError(f"emulator: its log does not continue; expected the next line within {patience} s")
         self._seen.clear()
 
     # --- events from execution.follow ---

@@ -121,8 +121,8 @@ def main(arguments):
         description="Counts the instructions that firmware images execute in an emulator for whole transactions, from "
         "the first received byte until the driver enable is off and the main loop sleeps. It counts all interrupts "
         "and the main loop without the tick, and prints the median of the passes (see --passes). For single "
-        "interrupts it prints the highest count. It also prints the difference from the record. The exit status is 1 "
-        "if a count has grown by more than 5 % since it was recorded.",
+        "interrupts it prints the highest count. It also prints the difference from the record. Without --record, the "
+        "exit status is 1 if a count has grown by more than 5 % since it was recorded.",
     )
     parser.add_argument("folder", help="folder with the images, as ELF files")
     parser.add_argument(
@@ -133,7 +133,7 @@ def main(arguments):
     )
     parser.add_argument(
         "--profile", default="", metavar="TEXT",
-        help="print the instructions of each function in results whose names contain TEXT"
+        help="for results whose names contain TEXT, print how many instructions each function executes"
     )
     parser.add_argument("--passes", type=int, default=100, help="maximum number of passes of each request (100)")
     parser.add_argument(
@@ -142,7 +142,9 @@ def main(arguments):
         metavar="FILE",
         help="the plugin tests/qemu/gate.cpp, built by a preset for the host (default: host-debug)",
     )
-    parser.add_argument("--all", action="store_true", help="count every request on every model that supports it")
+    parser.add_argument(
+        "--all", action="store_true", help="count every request on each of the tool's models that supports it"
+    )
     parser.add_argument(
         "--jobs", type=int, default=os.cpu_count() or 1, help="number of concurrent sessions"
     )
@@ -153,7 +155,7 @@ def main(arguments):
         parser.error(f"{options.folder}: names no board; add --board {' or --board '.join(BOARDS)}")
     board = BOARDS[options.board]
     if options.record and (options.only or options.all):
-        parser.error("--record: requires all counts; omit --only and --all")
+        parser.error("--record: the record must not depend on --only or --all; omit these options")
     before = recorded(board.record)
     counts = {}
     found = Found()
@@ -172,6 +174,6 @@ def main(arguments):
         return 0
     grown = [name for name, count in counts.items() if name in before and count > GROWTH * before[name]]
     if grown:
-        print(f"grown by more than 5 %: {'; '.join(grown)}; if this is intended, repeat the command with --record",
-              file=sys.stderr)
+        print(f"{'; '.join(grown)}: grown by more than 5 %; if this is intended, repeat the command with --record and "
+              "without --only and --all", file=sys.stderr)
     return 1 if grown else 0

@@ -12,11 +12,11 @@ Model = collections.namedtuple("Model", "name inputs outputs modbus")
 
 
 class Request:
-    """A request to repeat. Each pass sends one of the `frames`, in turn: a request that changes a setting has several
-    frames, so that the setting changes in each pass. Before each pass, the session sends the frames of `before`, which
-    it does not count. If `before` has as many frames as `frames`, and more than one, the session sends only one of them
-    before each pass, in turn. `settles`: how long the session then waits, in seconds. `passes`: the maximum number of
-    passes."""
+    """A request to repeat. Each pass sends one of the `frames`, in turn. Before each pass, the session sends the frames
+    of `before`, which it does not count. If `before` has as many frames as `frames`, and more than one, the session
+    sends only one of them before each pass, in turn. A request that changes a stored value has several frames, or
+    frames in `before`, so that the value changes in each pass. `settles`: how long the session waits after `before`, in
+    seconds. `passes`: the maximum number of passes."""
 
     def __init__(
         self,

@@ -11,7 +11,7 @@ from instruction_counts.requests import DONE, IGNORED, ascii_requests, crc16, dc
 # In seconds of emulated time.
 DEBOUNCE = 0.03
 PATIENCE = 0.25  # maximum time until a reply is complete
-DRIVER_OFF = 0.0006  # after a reply, at 115200 baud
+DRIVER_OFF = 0.0006  # maximum time from a reply until the driver enable is off, at 115200 baud
 DRIVER_OFF_AT_9600 = 0.01
 BYTE = 10 / 115200
 BYTE_AT_9600 = 10 / 9600
@@ -94,12 +94,12 @@ class Session:
         for command in commands:
             self._say(dcon(command, False), BYTE_AT_9600)
             if not self._hear(b"\r").startswith(b"!"):
-                raise RuntimeError(f"{self._model.name} rejects {command}")
+                raise RuntimeError(f"{self._model.name}: no valid reply to {command}; expected a reply with !")
             self._run(DRIVER_OFF_AT_9600)
         self._emulator.power_down()
         self._power_up(True)
         if not self._is_there():
-            raise RuntimeError(f"{self._model.name} does not answer")
+            raise RuntimeError(f"{self._model.name}: no reply after the set-up; expected a reply from address 01")
         self.counter.forget()
 
     def _power_up(self, init):
@@ -150,7 +150,7 @@ class Session:
             self._let_counter_catch_up()
             if is_over():
                 return
-        raise RuntimeError(f"{self._model.name}: {name} does not end")
+        raise RuntimeError(f"{self._model.name}: {name} does not end; expected its end within {PASS} s")
 
     def _let_counter_catch_up(self):
         """Waits until the counter has read the log up to now. The emulator does not run during this time."""

@@ -26,8 +26,8 @@ using Contents = std::array<std::uint8_t, kStoredMemory>;
 /// The results of power cuts during one command, or while the module finishes an update.
 struct Cuts {
   /// The number of points at which the power was cut. Each event of the EEPROM (EepromChip::on_event) is one
-  /// point. If a page is being programmed at the event, each byte of the page is a point instead. The end of
-  /// a command is also a point.
+  /// point. If a page is being programmed at the event, each byte that is being programmed is a point
+  /// instead. The end of a command is also a point.
   std::size_t points = 0;
   std::size_t cuts = 0;  ///< each point counts once for each effect that a cut may have on the EEPROM
   /// Each of the contents that the cuts left, once. The value is true if the command was certainly done at
@@ -107,10 +107,11 @@ class CutBench {
   [[nodiscard]] std::uint16_t outputs_before(const Settings& settings) const;
 
   /// Starts the module with `contents` and reads all its settings. For that, uses the protocol, address,
-  /// checksum, baud rate and line format of the first of `guesses` to which the module replies. Modbus has no
-  /// register for the data format. If `thoroughly` is true, first starts the module in INIT mode and reads
-  /// the format there; otherwise takes the format of a Modbus module from the guess. Also checks that reading
-  /// changes no output, and that the module writes nothing to the EEPROM unless it has an update to finish.
+  /// checksum, baud rate and line format of the first of `guesses` to which the module replies. No Modbus
+  /// register contains the whole data format. If `thoroughly` is true, first starts the module in INIT mode
+  /// and reads the format there; otherwise takes the format of a Modbus module from the guess. Also checks
+  /// that reading changes no output, and that the module writes nothing to the EEPROM unless it has an update
+  /// to finish.
   Found come_up(const Contents& contents, const std::vector<Settings>& guesses, bool thoroughly);
 
  private:

@@ -122,8 +122,8 @@ class PowerCutsOf : public testing::TestWithParam<ImageName> {
   /// second command, during which the test cuts the power at every point. If `first` is the first store after
   /// an update and the cut has left the update unfinished, the module finishes it before the second command,
   /// and the test also cuts the power at every point of that time. If `pairs` is SIZE_MAX, each of the
-  /// contents forms pairs with all commands that change its settings; otherwise it forms a pair with a random
-  /// one.
+  /// contents forms pairs with all commands that `storing_from` returns; otherwise it forms one pair, with a
+  /// random one of these commands.
   void cut_twice(const State& state, const StoringCommand& first, std::size_t pairs) {
     const Cuts cuts = bench_.cut_everywhere(state.contents, state.settings, first);
     const Settings unfinished = first.done_to(state.settings, cuts.outputs);

@@ -14,8 +14,8 @@ namespace ex9000::registers {
 enum class Beginning : std::uint8_t {
   Factory,  ///< blank, unless the command requires other settings
   Full,     ///< two copies of layout 3
-  Updated,  ///< two copies of layout 2, as firmware before layout 3 writes them
-  Longer,   ///< as Full, but the newer record has 96 bytes of settings, as from newer firmware
+  Updated,  ///< two copies of layout 2, which older firmware has written
+  Longer,   ///< as Full, but the newer record has 96 bytes of settings, like a record of newer firmware
 };
 
 struct State {

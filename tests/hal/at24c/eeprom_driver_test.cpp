@@ -417,7 +417,7 @@ TYPED_TEST(Eeprom, ALineStuckForAShortTimeCausesNoFalseSuccessAndNoLastingFailur
          {Instant(microseconds(40)), Instant(milliseconds(2)), Instant(milliseconds(6))}) {
       for (int step = 0; step < 33; ++step) {
         SCOPED_TRACE(std::string(line == Line::Clock ? "clock" : "data") + " for " +
-                     std::to_string(held.count()) + ", step " + std::to_string(step));
+                     std::to_string(held.count()) + " ps, step " + std::to_string(step));
         typename TestFixture::TheBench bench(TypeParam::kBehaviour);
         Net& net = line == Line::Clock ? bench.clock_net() : bench.data_net();
         Timeline& timeline = bench.wires->timeline;

@@ -39,7 +39,7 @@ struct Tear {
 
 class FlashChip {
  public:
-  static constexpr std::uint32_t kBegin = 0x1F'2000;  ///< address of the store; the firmware is below it
+  static constexpr std::uint32_t kBegin = 0x1F'2000;  ///< address of the store; the model has no other bytes
   static constexpr std::uint32_t kSector = 4096;
   static constexpr std::uint32_t kPageOfFlash = 256;
   static constexpr unsigned kSectorsOfStore = 14;

@@ -25,7 +25,7 @@ using hal::flash::Session;
 constexpr std::uint64_t kForever = UINT64_MAX;
 constexpr std::uint32_t kBaud = 115'200;
 constexpr std::uint8_t kBaudCode = 0x0A;
-constexpr std::uint64_t kReplyLimit = 200'000;  ///< us after the request, wire.md section 7
+constexpr std::uint64_t kReplyLimit = 200'000;  ///< us; wire.md section 7
 
 /// A board (hal/board.hpp) with a flash, timers and a line. Its clock returns the time of the flash chip. Its
 /// inputs, outputs, switch, LED and watchdog do nothing.
@@ -127,8 +127,8 @@ class ModuleOnFlash {
     longest = std::max(longest, latency);
     return {line.reply.begin(), line.reply.end() - 2};
   }
-  /// Sends a request to store a timeout of the host watchdog, which depends on `number`. Returns whether the
-  /// module replied that the timeout is stored.
+  /// Sends a request to store a timeout of the host watchdog. `number` determines this timeout. Returns
+  /// whether the module replied that the timeout is stored.
   bool store(unsigned number) {
     const auto timeout = static_cast<std::uint8_t>(number % 250 + 1);
     const Frame request{1, 0x06, 0x01, 0xE8, 0x00, timeout};
@@ -227,7 +227,7 @@ TEST(FlashDevice, StoresWithShortPausesSucceedInTimeWithErasesOf400Milliseconds)
     module.run(500'000 - i % 50 * 7'333);
   }
   EXPECT_LE(module.longest, kReplyLimit);
-  std::printf("stores 140 to 500 ms apart, erase 400 ms: longest reply after %.1f ms\n",
+  std::printf("stores with pauses of 140 to 500 ms, erase 400 ms: slowest reply after %.1f ms\n",
               static_cast<double>(module.longest) / 1e3);
 }
 
@@ -241,7 +241,7 @@ TEST(FlashDevice, StoresBackToBackSucceedInTimeWithErasesOf45Milliseconds) {
   }
   EXPECT_LE(module.longest, kReplyLimit);
   EXPECT_GT(chip.suspensions, kStores / 10);
-  std::printf("%u stores back to back, every %.1f ms, erase 45 ms: longest reply after %.1f ms\n", kStores,
+  std::printf("%u stores back to back, every %.1f ms, erase 45 ms: slowest reply after %.1f ms\n", kStores,
               static_cast<double>(chip.now - began) / 1e3 / kStores,
               static_cast<double>(module.longest) / 1e3);
 }
@@ -263,7 +263,7 @@ TEST(FlashDevice, StoresBackToBackAreStoredOrRefusedInTimeWithErasesOf400Millise
   }
   EXPECT_LE(module.longest, kReplyLimit);
   std::printf(
-      "%u stores back to back, every %.1f ms, erase 400 ms: longest reply after %.1f ms, %u refused\n",
+      "%u stores back to back, every %.1f ms, erase 400 ms: slowest reply after %.1f ms, %u refused\n",
       kStores, static_cast<double>(chip.now - began) / 1e3 / kStores,
       static_cast<double>(module.longest) / 1e3, refused);
   EXPECT_EQ(module.timeout(), expected);

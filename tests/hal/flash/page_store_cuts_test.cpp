@@ -109,9 +109,9 @@ class PageStoreCuts : public testing::Test {
   }
 
   /// Cuts the power at each operation during `write` and the pause after it, including an erase that has
-  /// begun before. For each operation, tries the tears that `tears_of` returns; if `in_every_way` is false,
-  /// tries only some of them. After each cut, checks the store. At the end, carries out `write` without a
-  /// cut.
+  /// begun before `write`. For each operation, tries the tears that `tears_of` returns; if `in_every_way` is
+  /// false, tries only some of them. After each cut, checks the store. At the end, sets `state` to the state
+  /// after `write` and the pause without a cut.
   void cut_everywhere(State& state, const Write& write, bool in_every_way = true) {
     State whole = state;
     bool reported = false;

@@ -45,7 +45,7 @@ TEST(PageStore, KeepsPagesThroughAReset) {
   }
 }
 
-/// The flashes of modules in use hold these bytes, so later firmware must read them.
+/// The flashes of modules in use hold bytes in this format, so later firmware must be able to read it.
 TEST(PageStore, ReadsAndWritesTheSameBytesAsEarlierFirmware) {
   constexpr std::array<std::uint8_t, 8> kMarkOfAnErasedSector{0x45, 0x58, 0x39, 0xC6, 0xA7, 0x9B, 0x53, 0x1D};
   // Sequence 7, page 3, a content of the bytes 0 to 31, and the CRC-32 of all these bytes.

@@ -20,9 +20,10 @@ FlashChip settled(const FlashChip::Times& times) {
   return chip;
 }
 
-/// Writes a page and reads it back, at most `most` times, once every `period` microseconds. If this takes
-/// longer than `period`, the next write follows immediately. Returns the number of writes before the first
-/// write that fails or whose page is wrong; `most` if there is none.
+/// Writes a page and reads it back, at most `most` times. Each write begins at least `period` microseconds
+/// after the previous write began. If a write and its read take longer than `period`, the next write follows
+/// immediately. Returns the number of writes before the first write that fails or whose page is wrong; `most`
+/// if there is none.
 unsigned writes_without_failure(Session& run, FlashChip& chip, std::uint64_t period, unsigned most) {
   for (unsigned writes = 0; writes < most; ++writes) {
     const std::uint64_t next = chip.now + period;

@@ -1,5 +1,6 @@
-// Counts the erases of each sector over many stores, and compares the result with the manufacturer's
-// guarantee. Also checks that neither reads nor resets without a store erase or program anything.
+// Counts the erases of each sector over many stores of one or four pages, and compares the result with the
+// manufacturer's guarantee. Also checks that neither reads nor resets without a store erase or program
+// anything.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,7 +13,7 @@ namespace {
 
 /// The guaranteed number of erase cycles of a sector: W25Q16JV data sheet, "Features".
 constexpr double kCycles = 100'000;
-/// The required number of stores until a sector wears out.
+/// The required number of stores until a sector wears out, if there is no reset.
 constexpr double kRequired = 10e6;
 
 class PageStoreWear : public testing::Test {
@@ -34,7 +35,7 @@ class PageStoreWear : public testing::Test {
 
   /// Carries out `store` many times. Calculates how many stores are possible before a sector wears out, from
   /// the erases of the sector that was erased most often. Checks and returns this number. Also checks that
-  /// the sectors wear out evenly.
+  /// the sectors that are erased wear out evenly.
   template <class Store>
   double stores_until_worn(const char* what, Store store) {
     constexpr unsigned kStores = 20'000;
@@ -52,8 +53,10 @@ class PageStoreWear : public testing::Test {
       sectors += erases != 0 ? 1U : 0U;
     }
     const double stores = kStores * kCycles / most;
-    std::printf("%s: %u stores, %u erases of %u sectors, at most %u of one; %.1f million stores\n", what,
-                kStores, all, sectors, most, stores / 1e6);
+    std::printf(
+        "%s: %u stores, %u erases of %u sectors, at most %u of one; "
+        "%.1f million stores until a sector has 100,000 erase cycles\n",
+        what, kStores, all, sectors, most, stores / 1e6);
     EXPECT_LE(most, all / sectors + 2) << "one sector is erased more often than the others";
     EXPECT_GE(stores, kRequired);
     return stores;
@@ -126,8 +129,10 @@ TEST_F(PageStoreWear, AllowsAMillionStoresIfEachFollowsAReset) {
     most = std::max(most, chip_.erases[sector] - before[sector]);
   }
   const double stores = kResets * kCycles / most;
-  std::printf("a store after each reset: %u stores, at most %u erases of one sector; %.1f million stores\n",
-              kResets, most, stores / 1e6);
+  std::printf(
+      "a store after each reset: %u stores, at most %u erases of one sector; "
+      "%.1f million stores until a sector has 100,000 erase cycles\n",
+      kResets, most, stores / 1e6);
   EXPECT_GE(stores, 1e6);
 }
 

@@ -103,8 +103,8 @@ class Sending : public testing::TestWithParam<std::tuple<bool, std::uint32_t, Li
   [[nodiscard]] Instant character() const { return Instant(bits() * 1'000'000'000'000 / baud()); }
 
   /// Checks the conditions that must always hold: all bytes are on the line with correct parity and a correct
-  /// first stop bit. The driver is switched on once, before the first byte, and stays on at least until the
-  /// end of the last stop bit.
+  /// first stop bit. The RS-485 driver is switched on once, before the first byte, and stays on at least
+  /// until the end of the last stop bit.
   void expect_whole(const UartBench& bench, const std::vector<std::uint8_t>& bytes) {
     ASSERT_EQ(bench.line.heard.size(), bytes.size());
     for (std::size_t i = 0; i < bytes.size(); ++i) {
@@ -125,7 +125,7 @@ TEST_P(Sending, TheDriverIsOnForAllBytesAndOffWithinOneCharacterAfterThem) {
     for (const Instant latency :
          {Instant(0), Instant(microseconds(2)), Instant(microseconds(10)), 3 * character() / 10}) {
       for (const Instant phase : {Instant(0), Instant(1'230'000)}) {
-        SCOPED_TRACE(std::to_string(size) + " bytes, latency " + std::to_string(latency.count()));
+        SCOPED_TRACE(std::to_string(size) + " bytes, latency " + std::to_string(latency.count()) + " ps");
         UartBench bench(chip(), baud(), format());
         bench.mcu.core.set_latency(latency);
         bench.mcu.run_for(character() + phase);
@@ -174,7 +174,7 @@ TEST_P(Sending, ItsOwnEchoIsNotReceived) {
 
 TEST_P(Sending, ManyRepliesCanBeSentInSequence) {
   UartBench bench(chip(), baud(), format());
-  for (int i = 0; i < 300; ++i) {  // past the wrap of 8-bit counts
+  for (int i = 0; i < 300; ++i) {  // more than 2^8, so that an 8-bit count would wrap
     bench.line.heard.clear();
     bench.line.drives.clear();
     const std::vector<std::uint8_t> bytes = some_bytes(1 + static_cast<std::size_t>(i) % 3);

@@ -15,8 +15,8 @@ namespace {
 
 using hal::rp2040::Flash;
 
-/// A flash chip. It throws an exception if the driver makes an error, for example if a program operation is
-/// not enabled.
+/// A flash chip. It throws an exception for some errors of the driver, for example for a program operation
+/// without Write Enable.
 class Chip {
  public:
   static constexpr std::size_t kSize = 2 * 1024 * 1024;
@@ -100,7 +100,7 @@ class Chip {
   void erase() {
     begin();
     if (bytes_.size() != 4) {
-      throw std::runtime_error("an erase with data");
+      throw std::runtime_error("an erase with an incomplete address, or with data");
     }
     const std::size_t first = address() / hal::kFlashSector * hal::kFlashSector;
     std::fill_n(content.begin() + static_cast<std::ptrdiff_t>(first), hal::kFlashSector, std::uint8_t{0xFF});

@@ -38,7 +38,8 @@ struct OutputKind {
   using Pins = hal::stellaris::OutputPins<kGroups, kChannels, is_active_high>;
 };
 
-/// A resistor holds each pin at its inactive level while the microcontroller does not drive the pin.
+/// A resistor holds the pin of each channel at the inactive level while the microcontroller does not drive
+/// this pin.
 template <class Kind>
 class Outputs : public testing::Test {
  protected:
@@ -144,14 +145,14 @@ TYPED_TEST(Inputs, StartReturnsThePresentLevels) {
   }
 }
 
-TYPED_TEST(Inputs, APinWithoutAChannelIsNotReported) {
+TYPED_TEST(Inputs, APinWithoutAChannelIsNotInTheLevelsAtStart) {
   this->bench.pins.at(kBeyond.port, kBeyond.pin)
       .drive(End::Board, TypeParam::kActiveHigh ? Drive::High : Drive::Low);
   EXPECT_EQ(TypeParam::Pins::start(), 0U);
 }
 
 TYPED_TEST(Inputs, EachEdgeIsReportedOnceWithItsChannelAndLevel) {
-  this->bench.mcu.core.hold(true);  // the test calls the driver, not the interrupts
+  this->bench.mcu.core.hold(true);  // the test calls the driver, so no interrupt must call it
   TypeParam::Pins::start();
   for (unsigned channel = 0; channel < kChannels; ++channel) {
     for (const bool level : {true, false}) {

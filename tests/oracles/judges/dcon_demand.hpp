@@ -13,7 +13,7 @@ namespace ex9000::judges {
 
 namespace detail {
 
-/// Returns the value of `digits`; no value if a character is not an upper-case hex digit.
+/// Returns the value of `digits`, modulo 2^32; no value if a character is not an upper-case hex digit.
 constexpr std::optional<unsigned> hex_number(Bytes digits) {
   unsigned number = 0;
   for (const std::uint8_t digit : digits) {

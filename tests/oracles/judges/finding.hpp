@@ -8,8 +8,8 @@ namespace ex9000::judges {
 
 struct Finding {
   enum class Kind {
-    Nothing,    ///< no complete frame, or one with a line error, a wrong length, CRC or checksum
-    Foreign,    ///< not for the module
+    Nothing,    ///< no new complete frame, or a frame that is spoiled or has a wrong length, CRC or checksum
+    Foreign,    ///< for another module, or an ASCII broadcast other than `#**` and `~**`
     Request,    ///< for the module, which may reply once
     Broadcast,  ///< for every module; none replies
     HostOk,     ///< for this module or for every module; restarts the host watchdog; no reply

@@ -17,8 +17,8 @@ inline bool begins_like(Bytes reply, Bytes request, std::size_t bytes) {
          std::equal(reply.begin(), reply.begin() + bytes, request.begin());
 }
 
-/// Returns whether the request is correct and the reply has the form for functions 01 and 02: the byte count
-/// and the bits. Unused bits of the last byte must be 0.
+/// Returns whether the request has a permitted length and quantity, and the reply has the form for functions
+/// 01 and 02: the byte count and the bits. Unused bits of the last byte must be 0.
 inline bool are_bits(Bytes request, Bytes reply) {
   if (request.size != 6) {
     return false;
@@ -56,9 +56,9 @@ inline bool is_server_id(Bytes reply) {
          reply[5] == 0xFF;
 }
 
-/// Returns whether the request is correct and the reply has the form for function 2B: MEI type, code,
-/// conformity level, "more follows", next object and number of objects, and then id, length and text of each
-/// object.
+/// Returns whether the request has the right length and MEI type 0E, and the reply has the form for function
+/// 2B: MEI type, code, conformity level, "more follows", next object and number of objects, and then id,
+/// length and text of each object.
 inline bool is_identification(Bytes request, Bytes reply) {
   if (request.size != 5 || reply.size < 8 || !begins_like(reply, request, 4) || request[2] != 0x0E ||
       reply[4] != 0x82 || reply[5] != 0 || reply[6] != 0 || reply[7] == 0) {

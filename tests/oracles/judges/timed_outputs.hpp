@@ -16,7 +16,7 @@ namespace ex9000::judges {
 class TimedOutputs {
  public:
   /// Call this when a request that ended at `last` has been received. The request can restart the running
-  /// timer of an output with a shorter time. This changes no values, so `started` is not called.
+  /// timer of an output with a shorter time. Such a restart changes no values, so `started` is not called.
   void may_be_restarted(const Demand& demand, Microseconds last) {
     for (unsigned channel = 0; channel < ends_.size(); ++channel) {
       if (starts(demand, channel)) {

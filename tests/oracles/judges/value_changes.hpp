@@ -70,7 +70,7 @@ class ValueChanges {
 
  private:
   /// An upper bound for the number of commands that take effect in one turn of the main loop. A turn
-  /// completes the store of at most one broadcast, and then executes at most one waiting frame.
+  /// completes the store of at most one command, and then executes at most one waiting frame.
   static constexpr unsigned kMostInATurn = 3;
 
   struct Causes {

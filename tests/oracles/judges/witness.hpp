@@ -58,7 +58,8 @@ struct Listening {
 ///    does not have.
 ///
 /// This class does not check that the host watchdog or a timer expires in time, that a reply waits for the
-/// response delay, or that requests restart the host watchdog if register 0x0251 is 1.
+/// response delay, that requests restart the host watchdog if register 0x0251 is 1, or that the module
+/// refuses an ASCII write of a timed output whose form is wrong.
 ///
 /// `now` must not decrease from one call to the next, except that `reply_begins` gets the time at which the
 /// driver was switched on.
@@ -386,7 +387,8 @@ class Witness {
                    "if its "
                    "store has failed";
     }
-    return refuses_outputs && !may_fail ? "only an output command is refused for a timeout" : nullptr;
+    return refuses_outputs && !may_fail ? "only an output command is refused because of the timeout status"
+                                        : nullptr;
   }
 
   /// Returns why the module cannot have executed the request, or null if the module can have executed it.

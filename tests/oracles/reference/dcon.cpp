@@ -145,7 +145,7 @@ std::string Module::set_configuration(const std::string& body) {
   stored_.address = address;
   stored_.baud_code = baud_code;
   stored_.format = format;
-  // The new address is in force immediately. In INIT mode the module continues to reply as 00.
+  // The new address is in force immediately. In INIT mode the module uses address 00 until reset.
   if (!init_mode_) {
     address_ = address;
   }
