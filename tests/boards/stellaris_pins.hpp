@@ -34,6 +34,8 @@ inline std::map<std::string, std::string> names_of_peripherals() {
           {"EEPROM data", "PB3"}};
 }
 
+/// JTAG uses PC0 to PC3, and on the LM3S6965 also PB7. A resistor joins PB7 and PD1 on the EK-TM4C123GXL. The
+/// README of the EK-TM4C123GXL lists more pins that a module does not use.
 inline const std::array<std::string, 5> kReservedPins{"PC0", "PC1", "PC2", "PC3", "PB7"};
 
 }  // namespace ex9000::board

@@ -170,7 +170,7 @@ TEST(Wiring, TheOutputPinsAndTheSignalPinsAreDistinct) {
   }
 }
 
-TEST(Wiring, NoTableListsAPinThatTheBoardUsesItself) {
+TEST(Wiring, NoTableListsAReservedPin) {
   for (const Table& table : {table_of("pin"), table_of("signal")}) {
     for (const Row& row : table) {
       for (const std::string& pin : kReservedPins) {
