@@ -25,7 +25,7 @@ class BoardBench {
   void power_on();
   void power_off();
   [[nodiscard]] bool powered() const { return run_.has_value(); }
-  /// Resets the microcontroller through its reset pin.
+  /// Resets the microcontroller through its reset pin. The supply must be on.
   void reset();
   /// Runs until `when`. If the supply is off, only lets time pass. Throws Fault if the image causes one.
   /// Counts resets by the image or its watchdog and continues after them.

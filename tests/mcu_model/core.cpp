@@ -120,8 +120,7 @@ void Core::interrupt_line_of(unsigned interrupt, bool asserted) {
   }
 }
 
-/// Returns the exception to serve next; 0 if there is none. Does not consider whether interrupts are
-/// disabled.
+/// Returns the exception to serve next; 0 if there is none. Ignores whether `hold` delays all exceptions.
 unsigned Core::next_to_serve() const {
   const std::uint64_t candidates = waiting();
   unsigned best = 0;

@@ -173,8 +173,8 @@ void Microcontroller::pass_all(Instant to) {
   }
 }
 
-/// If the test has requested that the firmware hangs here, lets time pass until a C++ exception, for example
-/// a ResetRequest, ends it.
+/// If the test has requested that the firmware hangs here, lets time pass until a C++ exception is thrown,
+/// for example a ResetRequest.
 void Microcontroller::hang_if_requested() {
   if (hangs_ == Hangs::MainLoop && !core.in_handler()) {
     run_until(kNever);

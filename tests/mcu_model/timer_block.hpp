@@ -58,7 +58,7 @@ class TimerBlock final : public Peripheral {
       case kConfiguration:
       case kMode:
         if (running) {
-          fault(offset, "the timer is enabled");
+          fault(offset, "the configuration or the mode is written while the timer is enabled");
         }
         (offset == kMode ? mode_ : configuration_) = value;
         break;

@@ -90,7 +90,7 @@ void UartPort::write(std::uint32_t offset, std::uint32_t value) {
       break;
     case kControl:
       if (shifting_) {
-        fault(offset, "a character is being sent");
+        fault(offset, "the control register is written while a character is being sent");
       }
       if ((value & 1U) != 0 && !divisors_latched_) {
         fault(offset, "divisors have no effect until the line control register is written");

@@ -37,7 +37,8 @@ std::size_t ControlClient::offer(const std::string& bytes) {
 void ControlClient::close_writing() { shutdown(fd_, SHUT_WR); }
 
 /// Waits for bytes and stores them. Returns false if the connection has ended. Throws std::runtime_error
-/// after 60 s, which only detects a program that hangs.
+/// if neither bytes nor the end of the connection arrive within 60 s. This timeout only detects a program
+/// that hangs.
 bool ControlClient::read_more() {
   constexpr int kHangMilliseconds = 60'000;
   pollfd ready{fd_, POLLIN, 0};

@@ -39,9 +39,9 @@ constexpr std::array<std::pair<Verdict, const char*>, 6> kVerdicts{{
     {Verdict::BadCheck, "BadCheck"},
     {Verdict::TooShort, "TooShort"},
     {Verdict::TooLong, "TooLong"},
-    // Open, Ignored and NoRoom are not required. `note` never records LineError or Overrun, because it passes
-    // each byte to the assembler without an error. See tests/firmware/line/*_assembler_test.cpp for these
-    // verdicts.
+    // Open, Ignored and NoRoom are not required. LineError and Overrun are not required either: `note` passes
+    // each byte to the assembler without an error, so the assembler does not return them. See
+    // tests/firmware/line/*_assembler_test.cpp for tests of LineError and Overrun.
 }};
 
 std::string hex_code(unsigned code) {

@@ -17,7 +17,8 @@ class Coverage {
  public:
   /// Records the verdict on the bytes `sent`, and the rows or the refusal that they reach. `module` must have
   /// received and processed these bytes. `heard` is its reply. Without a reply, only the rows of host OK and
-  /// `#**` count as reached.
+  /// `#**` count as reached. A request for several rows of the register map reaches only the row of its first
+  /// address.
   void note(const Module& module, const play::Bytes& sent, const play::Bytes& heard);
 
   /// Returns the ids that the transcripts must reach, but have not reached.

@@ -19,7 +19,7 @@ inline std::uint64_t number_in_environment(const char* variable, std::uint64_t o
   const std::string digits = text;
   if (digits.empty() || digits.size() > 18 || digits.find_first_not_of("0123456789") != std::string::npos) {
     throw std::runtime_error(std::string(variable) + "=" + digits +
-                             ": not a number; expected up to 18 decimal digits");
+                             ": wrong value; expected up to 18 decimal digits");
   }
   return std::stoull(digits);
 }
@@ -30,8 +30,9 @@ inline std::uint64_t number_in_environment(const char* variable, std::uint64_t o
 inline bool all_cases_requested() {
   const char* const which = std::getenv("EX9000_CUTS");  // NOLINT(concurrency-mt-unsafe): tests set none
   if (which != nullptr && std::string(which) != "all") {
-    throw std::runtime_error("EX9000_CUTS=" + std::string(which) +
-                             ": write EX9000_CUTS=all, or leave it out for the short form");
+    throw std::runtime_error(
+        "EX9000_CUTS=" + std::string(which) +
+        ": unknown value; set EX9000_CUTS=all for all cases, or do not set EX9000_CUTS for some cases");
   }
   return which != nullptr;
 }

@@ -39,8 +39,9 @@ class SettingsReader {
       : model_(model), frame_format_(frame_format), exchange_(std::move(exchange)) {}
 
   /// Reads the settings. Returns nullopt if the first reply is missing or has a wrong length. Throws
-  /// std::out_of_range or std::invalid_argument if a later reply is missing or too short. No Modbus register
-  /// contains the whole data format, so with Modbus the result contains the argument `format` instead.
+  /// std::out_of_range or std::invalid_argument if a later reply is missing or lacks a number. No Modbus
+  /// register contains the whole data format, so with Modbus the result contains the argument `format`
+  /// instead.
   std::optional<Settings> read(std::uint8_t format);
 
   /// Sends a DCON command, given without its address: the delimiter and the text after the address. Returns

@@ -98,7 +98,8 @@ inline std::size_t bytes_of_settings(const Settings& settings) {
 /// The number of bytes of all settings that this firmware supports.
 inline constexpr std::size_t kSupportedSettings = 55;
 
-/// Extends the valid record of layout 3 at `place` to `length` bytes of settings. The settings that this
+/// Extends the valid record of layout 3 at `place` to `length` bytes of settings. The record must have at
+/// least 19 bytes of settings, because the factory value of each later setting is 0. The settings that this
 /// firmware supports, but that the record lacks, get their factory values. The bytes after them get the
 /// values of `unknown_byte`.
 inline void lengthen(const Model& model, std::uint8_t* memory, std::size_t place, std::uint8_t length) {

@@ -23,7 +23,8 @@ std::uint8_t other_baud_code(std::uint8_t code) { return code == kFactoryBaudCod
 
 constexpr std::uint8_t kNewAddress = 0x2B;
 constexpr std::uint8_t kNewTimeout = 0x64;
-// 0.5 s. A master can read all settings in this time, even with a response delay of kNewDelay.
+// 0.5 s. At 9600 baud or more, a master can read all settings of a model with up to 8 inputs in this time,
+// even with a response delay of kNewDelay.
 constexpr std::uint8_t kShortTimeout = 0x05;
 constexpr std::uint8_t kNewDelay = 2;
 constexpr std::uint16_t kNewValue = 0x3C96;

@@ -34,7 +34,7 @@ struct StoringCommand {
   /// Applies the expected change to the settings. `outputs`: the outputs before the command.
   std::function<void(Settings&, std::uint16_t outputs)> change;
   /// Returns the outputs after the command or the timeout. `done`: the settings after it. `outputs`: the
-  /// outputs before it. This function is empty if the outputs do not change.
+  /// outputs before it. This function is empty if the command never drives outputs.
   std::function<std::uint16_t(const Settings& done, std::uint16_t outputs)> drive;
   bool answered = true;  ///< false for a broadcast and for a timeout of the host watchdog
 
