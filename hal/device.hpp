@@ -82,6 +82,8 @@ class Device {
     module_.on_tick();
     on_wake_timer();
   }
+  /// Makes the next call of `turn` poll INIT* and collect edges, and wakes the main loop. Call this when the
+  /// wake timer expires.
   void on_wake_timer() {
     times_due_.store_in_interrupt(times_due_.load() + 1U);
     wake();
@@ -154,8 +156,8 @@ class Device {
     board_.line.send(reply);
   }
 
-  /// Returns whether the tick has occurred or the wake timer has expired since the last call, or whether an
-  /// event was already due at the end of the last pass. Also returns true in the first pass.
+  /// Returns whether `on_wake_timer` has run since the last call, or whether an event was already due at the
+  /// end of the last pass. Also returns true in the first pass.
   bool panel_is_due() {
     const std::uint32_t times_due = times_due_.load();
     const bool due = due_now_ || times_due != times_seen_;
@@ -216,7 +218,7 @@ class Device {
   std::uint32_t wakes_seen_ = 0;
   std::uint32_t times_seen_ = 0;  ///< the value of `times_due_` that has been processed
   WrittenByInterrupt<std::uint32_t> wakes_;
-  WrittenByInterrupt<std::uint32_t> times_due_;  ///< number of ticks and of expiries of the wake timer
+  WrittenByInterrupt<std::uint32_t> times_due_;  ///< number of calls of `on_wake_timer`
   Module module_;
 };
 

@@ -6,7 +6,7 @@ import unittest
 import programs
 
 # In the areas of these files, no unit contains them. Headers of the tests replace the first two. Only panel_server.cpp
-# includes the third, and no unit contains panel_server.cpp.
+# and the generated page_files.cpp include the third, and no unit contains these two sources.
 REACHED_BY_NONE = {"hal/registers/bus.hpp", "hal/cortex_m/processor.hpp", "sim/front_ends/panel/page_files.hpp"}
 
 

@@ -344,7 +344,7 @@ Transcript transcript_of(const std::string& path, const Source& source, const Mo
     transcript.steps.push_back({raw.number, text, parse_action(text)});
     check_channel(*run.model, transcript.steps.back().action);
     if (requires_bus(transcript.steps.back().action)) {
-      fail("'" + text + "': only scenarios have this step, and they have no 'model:' line");
+      fail("'" + text + "': only scenarios have this step; remove the step or the 'model:' lines");
     }
   }
   return transcript;

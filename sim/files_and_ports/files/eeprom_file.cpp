@@ -110,7 +110,7 @@ EepromFile::EepromFile(std::string path)
   }
   if (flock(file_.get(), LOCK_EX | LOCK_NB) != 0) {
     fail(path_ + ": " +
-         (errno == EWOULDBLOCK ? "is in use by another simulator; end that simulator or name another path"
+         (errno == EWOULDBLOCK ? "is in use by another program; end that program or name another path"
                                : reason() + "; name another path"));
   }
   found_ = image_in(file_, path_);

@@ -5,7 +5,8 @@
 
 namespace ex9000::sim {
 
-/// Bytes of one frame arrive without a gap, so a very short silence ends a frame with a correct CRC.
+/// If the CRC is correct, the frame is complete, and a very short silence ends it. Any other frame may be
+/// incomplete, because it can arrive in pieces, so only a longer silence ends it.
 LineTiming instantly(std::uint32_t /*baud*/, LineFormat /*format*/) {
   constexpr Duration kSilence(6);
   constexpr Duration kQuiet = milliseconds(2);
