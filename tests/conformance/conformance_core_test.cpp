@@ -1,4 +1,4 @@
-// Plays all transcripts on the core in virtual time.
+// Plays all transcripts on the core in virtual time. Checks that transcripts with long waits are marked slow.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -37,8 +37,8 @@ TEST(Conformance, TheCorePassesAllTranscriptsWhichCoverAllModelsRowsRefusalsAndV
   for (const std::string& id : coverage.missing()) {
     ADD_FAILURE() << id << " is not reached by any transcript";
   }
-  std::printf("core: %zu files, %zu runs, %zu steps, %zu rows and refusals reached\n", files.size(), runs,
-              steps, coverage.reached());
+  std::printf("core: %zu files, %zu runs, %zu steps, %zu rows, refusals and verdicts reached\n", files.size(),
+              runs, steps, coverage.reached());
 }
 
 TEST(Conformance, WaitsAreUnderTwoSecondsUnlessTheFileIsMarkedSlow) {

@@ -20,8 +20,8 @@ namespace ex9000::registers {
 namespace {
 
 /// Folders with transcripts whose results depend on the drivers of the line, of the pins and of the EEPROM:
-/// these transcripts test the timing of bytes, baud rates, the state after a reset, edges and levels, and the
-/// time that a store takes. The other folders mostly test the contents of replies.
+/// these transcripts test the timing of bytes, baud rates, the state after a reset, edges and levels, and
+/// stored settings. The other folders mostly test the contents of replies.
 constexpr std::array<const char*, 4> kFoldersOfDrivers{"framing", "init", "inputs", "persistence"};
 
 /// Returns whether the test plays a file on an image. All files run on the images of the LaunchPad
