@@ -47,9 +47,9 @@ TEST(Neighbours, AnswerOnlyOwnRequestsAt9600BaudWhileOneCounts250PulsesPerSecond
   }
 }
 
-TEST(Neighbours, AnswerOnlyOwnRequestsAt115200BaudWhileOneCounts32000PulsesPerSecond) {
+TEST(Neighbours, AnswerOnlyOwnRequestsAt115200BaudWhileOneCounts30000PulsesPerSecond) {
   Crowd crowd(115200, number_in_environment("EX9000_SEED", 1));
-  crowd.pulser().start(32'000);
+  crowd.pulser().start(30'000);
   run(crowd, std::chrono::seconds(
                  std::min<std::uint64_t>(number_in_environment("EX9000_VIRTUAL_SECONDS", 60) / 15, 600)));
   crowd.pulser().stop();
