@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 #include <iomanip>
+#include <limits>
 #include <sstream>
 #include <string_view>
 
@@ -39,7 +40,8 @@ std::string decimal_text(VirtualTime time, std::int64_t unit) {
 }  // namespace
 
 VirtualTime parse_time(const std::string& text) {
-  long double value = 0;  // holds each number of nanoseconds of a year exactly; double does not
+  static_assert(std::numeric_limits<long double>::digits >= 55, "a year has less than 2^55 ns");
+  long double value = 0;
   const char* const end = text.data() + text.size();
   const auto [rest, error] = std::from_chars(text.data(), end, value, std::chars_format::fixed);
   const std::string_view unit(rest, static_cast<std::size_t>(end - rest));

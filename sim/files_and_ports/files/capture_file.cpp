@@ -29,7 +29,7 @@ CaptureFile::CaptureFile(const std::string& path, const std::string& place, Give
     fail(where_ + ": the pipe has no reader; start its reader first");
   }
   struct stat status {};
-  if (!file_.is_open() || fstat(file_.get(), &status) != 0 || fcntl(file_.get(), F_SETFL, 0) != 0) {
+  if (!file_.is_open() || fstat(file_.get(), &status) != 0 || fcntl(file_.get(), F_SETFL, O_APPEND) != 0) {
     fail(where_ + ": " + reason() + "; name a path that can be written");
   }
   regular_ = S_ISREG(status.st_mode);
