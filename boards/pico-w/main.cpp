@@ -1,3 +1,3 @@
 #include "boards/pico-w/board.hpp"
-// composition.hpp must follow board.hpp. All boards of the family use the same composition.hpp.
+// composition.hpp must follow board.hpp. All boards with an RP2040 use the same composition.hpp.
 #include "boards/rp2040/composition.hpp"

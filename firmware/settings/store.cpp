@@ -6,8 +6,8 @@ namespace ex9000 {
 
 // --- jobs ---
 
-/// Returns the number of bytes that the next job reads or writes: up to the end of the page or of the copy.
-/// This is not the size of a job that invalidates a copy.
+/// Returns the size in bytes of the read or write that begins at `done_`: up to the end of the page or of the
+/// copy. A job that invalidates a copy has another size.
 std::size_t SettingsStore::page_size() const {
   const std::size_t left = copy_size_ - done_;
   return left < kMemoryPage ? left : kMemoryPage;

@@ -239,10 +239,9 @@ std::string maps_text(const Models& models) {
       "Addresses count from 0, as on the line; PLC numbers count from 1 after the digit of their table. "
       "Writes store their values in the EEPROM, except writes ";
   text += outputs ? "of `outputs` and of `timed output`, and writes " : "";
-  text +=
-      "that clear latches, counters or the count of timeouts. "
-      "Writes that drive outputs get exception 04 while the timeout status is set. "
-      "Baud codes are those of `CC` above.\n";
+  text += "that clear latches, counters or the count of timeouts. ";
+  text += outputs ? "Writes that drive outputs get exception 04 while the timeout status is set. " : "";
+  text += "Baud codes are those of `CC` above.\n";
   for (const SharedMap& map : shared_maps(models)) {
     text += models.size() > 1 ? "\n#### " + joined(map.models, ", ") + "\n" : "";
     text += "\n" + map.table;

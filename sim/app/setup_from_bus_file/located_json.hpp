@@ -10,7 +10,7 @@ namespace ex9000::sim {
 struct LocatedJson {
   nlohmann::ordered_json value;  ///< keeps the order of members, because faults are numbered in that order
   /// Line numbers by the path of a value, for example `lines[0].modules[1].baud`; the path of the whole file
-  /// is "".
+  /// is "". If a key has the form of a path, its number may be that of the other value.
   std::map<std::string, unsigned> lines;
 };
 
