@@ -441,7 +441,8 @@ TEST(DescribeMarkdown, ShowsMeaningAndRangeOfARegister) {
     EXPECT_TRUE(has(text, " | " + std::string(row.meaning) + " |\n")) << row.id;
   }
   EXPECT_TRUE(
-      has(text, "| read, write | 1 to 247; not by broadcast | stored address, in force from the next reset on |"));
+      has(text,
+          "| read, write | 1 to 247; not by broadcast | stored address, in force from the next reset on |"));
   EXPECT_TRUE(has(text, "| read | - | input counters |"));
 }
 
