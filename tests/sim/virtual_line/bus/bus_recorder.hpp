@@ -1,4 +1,4 @@
-// Records the bytes on a virtual line, and when stations enable or disable their drivers.
+// Records the complete bytes on a virtual line, and when stations enable or disable their drivers.
 #pragma once
 
 #include <cstdint>

@@ -46,7 +46,7 @@ class Listener final : public Station {
   BusEnd& wire_;
 };
 
-/// A station whose end of the wires the test controls. It does not listen.
+/// A station whose end of the wires the test controls. The station does not listen.
 class Sender final : public Station {
  public:
   void run() override {}

@@ -117,7 +117,7 @@ TEST_F(ModuleWireTest, LimitsTheNumberOfStoredLateReplies) {
   EXPECT_GT(wires.happened.size(), 65'000U);
 }
 
-TEST_F(ModuleWireTest, ReportsTheEndOfEachReplyThatIsLostBecauseTooManyAreLate) {
+TEST_F(ModuleWireTest, ReportsTheEndOfAReplyThatIsLostBecauseTooManyAreLate) {
   watch();
   fate.late_by = 1h;
   for (int i = 0; i < 30'000; ++i) {

@@ -1,5 +1,5 @@
-// A line with faults. Records the bytes that the master receives, the events on the bus, and the notices of
-// the faults.
+// A line with faults. Records the bytes that the master receives, the notices of the faults, and what
+// BusRecorder records.
 #pragma once
 
 #include <chrono>
@@ -29,7 +29,7 @@ class FaultBench {
   }
 
   /// Adds a fault and returns its number. `position` is the module of the fault, counted from 1; nullopt: the
-  /// fault affects all modules or the wires, depending on its kind.
+  /// fault is not limited to one module.
   std::size_t add(const std::string& text, std::optional<std::size_t> position = std::nullopt) {
     Fault fault = parse_fault(text);
     if (position) {
@@ -61,9 +61,10 @@ class FaultBench {
     return heard_.empty() || heard_.back() != '\r' ? heard_ : heard_.substr(0, heard_.size() - 1);
   }
 
-  /// Returns everything that the master has received since the last `forget` or the start of the last `ask`.
+  /// Returns everything that the master has received since the last `forget` or the start of the last `ask`,
+  /// or since the construction of this object if neither has been called.
   [[nodiscard]] const std::string& heard() const { return heard_; }
-  /// Returns whether at least one byte had an error since the last `forget` or the start of the last `ask`.
+  /// Returns whether at least one byte of `heard` had an error.
   [[nodiscard]] bool garbled() const { return garbled_; }
   void forget() {
     heard_.clear();

@@ -1,4 +1,4 @@
-// Tests the times at which faults occur.
+// Tests when faults occur, and how long they last.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -104,7 +104,7 @@ TEST(Hang, StopsRepliesUntilTheModuleWatchdogResetsTheModule) {
   EXPECT_EQ(bench.at(1).watchdog_resets(), 1U);
 }
 
-TEST(Hang, BeginsAfterTheReplyThatTriggersIt) {
+TEST(Hang, DoesNotStopTheReplyThatTriggersIt) {
   FaultBench bench;
   bench.add("hang every 2nd reply");
   EXPECT_EQ(bench.ask("$01M"), kName);
@@ -114,7 +114,7 @@ TEST(Hang, BeginsAfterTheReplyThatTriggersIt) {
   EXPECT_EQ(bench.at(1).watchdog_resets(), 1U);
 }
 
-/// The causes of a reset.
+/// Some ways to reset a module, each with its name.
 const std::pair<const char*, std::function<void(FaultBench&)>> kResets[] = {
     {"reset", [](FaultBench& bench) { bench.at(1).reset(); }},
     {"supply",
