@@ -60,7 +60,7 @@ class Gpio {
     make(pins, function, kPeripheralPulledUp);
   }
 
-  /// Makes the pins in `outputs` drive their level, and lets the other pins in `pins` float.
+  /// Makes the pins in `outputs` drive their level, and the other pins in `pins` inputs. Pulls do not change.
   static void choose_outputs(std::uint32_t pins, std::uint32_t outputs) {
     kDriveClear.write(Bits<Drive>(pins & ~outputs));
     kDriveSet.write(Bits<Drive>(outputs));

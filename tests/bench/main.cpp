@@ -30,10 +30,11 @@ class Reporter final : public benchmark::ConsoleReporter {
   static void report_demand(const Run& run) {
     constexpr double kNoLimit = std::numeric_limits<double>::infinity();
     const double figure = counter(run, "figure", 0);
-    const bool meets =
-        figure >= counter(run, "at_least", -kNoLimit) && figure <= counter(run, "at_most", kNoLimit);
-    if (!meets) {
-      std::cerr << run.benchmark_name() << ": " << figure << " is outside the limits for a quiet machine\n";
+    const double at_least = counter(run, "at_least", -kNoLimit);
+    const double at_most = counter(run, "at_most", kNoLimit);
+    if (figure < at_least || figure > at_most) {
+      std::cerr << run.benchmark_name() << ": the figure is " << figure << "; expected " << at_least << " to "
+                << at_most << " on a quiet machine\n";
     }
   }
 

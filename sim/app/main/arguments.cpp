@@ -367,10 +367,10 @@ Parsed parse_arguments(int argc, const char* const* argv) {
                  "set the seed of random faults and bouncing inputs; the same seed repeats them (default: 1)")
       ->type_name("NUMBER");
   add_writing(app, texts.writing);
-  app.add_flag(
-      "--strict-gaps", texts.line.strict_gaps,
-      "reject a Modbus frame with a gap of more than 1.5 characters, and do not insert the silence that a "
-      "master omits between frames");
+  app.add_flag("--strict-gaps", texts.line.strict_gaps,
+               "make modules ignore a Modbus frame with a gap of more than 1.5 characters, and do not insert "
+               "the silence that a "
+               "master omits between frames");
   app.add_flag("--example", example, "print an example of a bus file and exit");
   app.add_flag("--schema", schema, "print the JSON Schema of bus files and exit");
   app.add_flag("--models", models, "list the models and exit");

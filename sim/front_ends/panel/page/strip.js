@@ -122,8 +122,9 @@ export class Strip {
       seen.forEach((lane) => this.drawName(lane));
     }
     this.drawScale(width, bottom, span);
+    const which = this.moved ? "Earlier" : "The last";
     setAttribute(this.canvas, "aria-label",
-      `The last ${span / 1000} ms of ${this.lines.length} line${this.lines.length > 1 ? "s" : ""}`);
+      `${which} ${span / 1000} ms of ${this.lines.length} line${this.lines.length > 1 ? "s" : ""}`);
   }
 
   tenths(width) { return width < 500 ? [0, 5, 10] : [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10]; }
