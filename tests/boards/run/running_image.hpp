@@ -44,6 +44,16 @@ class RunningImage {
     return {File{image}, options};
   }
 
+  /// Ends the program with SIGTERM. The program then waits for the end of its emulator, which holds the lock
+  /// of a memory file too, so that the next run can use this file.
+  ~RunningImage() {
+    if (process_.pid() > 0) {
+      process_.end(SIGTERM);
+    }
+  }
+  RunningImage(const RunningImage&) = delete;
+  RunningImage& operator=(const RunningImage&) = delete;
+
   /// Returns the first line of the program's output, which is the path of the terminal.
   [[nodiscard]] std::string tty() const { return process_.output().substr(0, process_.output().find('\n')); }
   ChildProcess& process() { return process_; }
