@@ -1,11 +1,12 @@
 // Runs the examples in each section of the documents that has a `text` block. A `sh` block runs in one
-// terminal if it starts a simulator that runs until it is stopped. All other `sh` and `python` blocks run in
-// a second terminal, and the `text` blocks are their expected output. A `json` block is the content of the
-// file `bus.json`. Apart from this file, the working directory at first contains only links to `boards` and
-// `build`, because the examples use the programs and images there. For the line `sim/run`, the test runs only
-// the last command of sim/run. The script itself also installs packages and builds the simulator;
-// tests/first-command runs the script. Another test in this file checks that the tables of the documents list
-// all options, control commands and faults.
+// terminal if it begins with a command that starts a simulator that runs until it is stopped. All other `sh`
+// blocks and all `python` blocks run in a second terminal. The `text` blocks are the expected output of the
+// second terminal. A `json` block is the content of the file `bus.json`. Apart from this file, the working
+// directory at first contains only links to `boards` and `build`, because the examples use the programs and
+// images there. For the line `sim/run`, the test runs only the last command of sim/run. The script itself
+// also installs packages and builds the simulator; tests/first-command runs the script. Another test in this
+// file checks that the tables of the documents list the options, control commands and faults in the output of
+// `ex9000-sim --help`.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -51,8 +52,8 @@ std::vector<std::string> documents() {
   return paths;
 }
 
-/// Returns the last command of sim/run, without the arguments that sim/run passes on. Throws
-/// std::runtime_error if sim/run starts no simulator.
+/// Returns the last command of sim/run, with `ex9000-sim` in place of the path, and without the arguments
+/// that sim/run passes on. Throws std::runtime_error if sim/run starts no simulator.
 std::string command_of_sim_run() {
   const std::string program = "exec \"$here/build/host/sim/ex9000-sim\" ";
   std::ifstream file(EX9000_PROJECT "/sim/run");
@@ -84,7 +85,7 @@ std::vector<Section> sections_of(const std::string& document) {
   return result;
 }
 
-/// Replaces the port of the documents, which may be in use on this machine.
+/// Replaces the TCP port 5020 of the documents, which may be in use on this machine.
 void replace_port(std::string& text, const std::string& port) {
   const std::string written = "5020";
   for (auto at = text.find(written); at != std::string::npos; at = text.find(written, at + port.size())) {
@@ -107,8 +108,8 @@ bool requires_pymodbus(const Section& section) {
   });
 }
 
-/// Returns whether the block starts a simulator that runs until it is stopped. `ex9000-sim describe` and
-/// `ex9000-sim play` end by themselves.
+/// Returns whether the block begins with a command that starts a simulator that runs until it is stopped.
+/// `ex9000-sim describe` and `ex9000-sim play` end by themselves.
 bool starts_the_simulator(const Block& block) {
   const auto begins_with = [&](const char* text) { return block.text.rfind(text, 0) == 0; };
   return begins_with("ex9000-sim ") && !begins_with("ex9000-sim describe") && !begins_with("ex9000-sim play");

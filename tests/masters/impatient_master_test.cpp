@@ -1,4 +1,4 @@
-// Tests masters that begin a request without the silence that a real line requires.
+// Tests the simulator with masters that begin a request without the silence that a real line requires.
 #include <gtest/gtest.h>
 
 #include <string>

@@ -36,8 +36,8 @@ const ANSWERS = {
 const refused = (frame) => frame[1] <= 0x02 && word(frame, 4) > 2000;
 
 /**
- * Returns whether the library treats a correct reply to "on" as "off". Without Modbus TCP it then reports a CRC error,
- * because it expects the CRC of "off".
+ * Returns whether the request writes "on" with function 05. The library treats the correct reply to it as "off".
+ * Without Modbus TCP, the library then reports a CRC error, because it expects the CRC of "off".
  */
 const misread = (frame) => frame[1] === 0x05 && word(frame, 4) === 0xff00;
 

@@ -1,4 +1,4 @@
-// A Modbus master on a pseudo-terminal or over Modbus TCP that uses libmodbus.
+// A Modbus master that uses libmodbus, on a pseudo-terminal or over Modbus TCP.
 #pragma once
 
 #include <modbus/modbus.h>

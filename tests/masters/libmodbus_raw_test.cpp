@@ -1,4 +1,4 @@
-// Tests unmodified libmodbus on one line with two modules. Sends the raw requests of
+// Tests the simulator with unmodified libmodbus, on one line with two modules. Sends the raw requests of
 // tests/masters/conversation.txt, which include functions for which libmodbus has no call.
 #include <gtest/gtest.h>
 #include <modbus/modbus.h>
@@ -21,7 +21,8 @@
 namespace ex9000::system {
 namespace {
 
-using Frame = std::vector<std::uint8_t>;  // without CRC, except for the result of `received`
+/// The bytes of a frame without its CRC. `received` and `heard` can also return other bytes.
+using Frame = std::vector<std::uint8_t>;
 
 /// A timeout that only detects a program that hangs.
 constexpr std::chrono::seconds kHang{60};
@@ -58,7 +59,7 @@ bool uses_modbus_tcp(LibmodbusMaster& master) { return modbus_get_header_length(
 
 /// Receives `size` bytes and a CRC, and returns them without the CRC if it is correct. With Modbus TCP, the
 /// header determines the number of bytes, and there is no CRC. Then this function returns the bytes after the
-/// header. libmodbus checks the header in the tests of libmodbus_test.cpp.
+/// header, or an incomplete header. libmodbus checks the header in the tests of libmodbus_test.cpp.
 Frame heard(LibmodbusMaster& master, std::size_t size, std::chrono::milliseconds patience) {
   constexpr std::size_t kHeader = 6;  // bytes before the unit
   constexpr std::size_t kLength = 5;  // the low byte of the number of bytes after the header
@@ -73,7 +74,7 @@ Frame heard(LibmodbusMaster& master, std::size_t size, std::chrono::milliseconds
   return frame;
 }
 
-/// Returns the frame in the format of the program's log, without its CRC.
+/// Returns the frame in the format of the simulator's log, without its CRC.
 std::string logged(const Frame& frame) {
   std::ostringstream text;
   text << "master " << std::hex << std::uppercase << std::setfill('0');

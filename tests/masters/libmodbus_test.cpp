@@ -1,6 +1,6 @@
-// Tests unmodified libmodbus on one line with two modules. Uses every function for which libmodbus has a
-// call. The expected values are from firmware/wire.md 7. The expected exceptions of the gateway are from
-// sim/docs/integrations.md.
+// Tests the simulator with unmodified libmodbus, on one line with two modules. Uses every function for which
+// libmodbus has a call. The expected values are from firmware/wire.md 7. The expected exceptions of the
+// gateway are from sim/docs/integrations.md.
 #include <gtest/gtest.h>
 #include <modbus/modbus.h>
 
@@ -113,8 +113,8 @@ TEST_P(Libmodbus, ReadsBackTheValuesThatItHasWrittenAndReportsTheServerIds) {
 }
 
 TEST_P(Libmodbus, BroadcastsAndHostOkHaveNoReply) {
-  // The line runs in real time. If the next request came before the simulator has read this one, both would
-  // form one frame on a serial line, so the test waits until the simulator has logged this one.
+  // The line runs in real time. If a request came before the simulator has read the previous one, both would
+  // form one frame on a serial line, so the test waits after each request until the simulator has logged it.
   const auto fails_with = [this](int error, int result, const std::string& frame) {
     const bool failed = result == -1 && errno == error;
     return failed && modules_.simulator().wait_for("> master  " + frame);
@@ -169,7 +169,7 @@ TEST_P(Libmodbus, RejectedRequestsGetTheirExceptionAndDoNotChangeTheTimeout) {
        [&](modbus_t* m) { return modbus_read_input_bits(m, 7, 2, bits.data()); }, kInputs},
       {EMBXILADD, "03 in a hole",
        [&](modbus_t* m) { return modbus_read_registers(m, kAddress, 3, words.data()); }},
-      {EMBXILADD, "04 where only 03 reads",
+      {EMBXILADD, "04 on a register that only 03 reads",
        [&](modbus_t* m) { return modbus_read_input_registers(m, kAddress, 1, words.data()); }},
       {EMBXILADD, "05 beyond the row", [](modbus_t* m) { return modbus_write_bit(m, 13, 1); }},
       {EMBXILADD, "05 on an input", [](modbus_t* m) { return modbus_write_bit(m, 0x0020, 1); }, kInputs},
@@ -178,19 +178,19 @@ TEST_P(Libmodbus, RejectedRequestsGetTheirExceptionAndDoNotChangeTheTimeout) {
       {EMBXILADD, "0F beyond the row", [&](modbus_t* m) { return modbus_write_bits(m, 12, 2, bits.data()); }},
       {EMBXILADD, "10 on the code",
        [&](modbus_t* m) { return modbus_write_registers(m, kCode + 1, 2, words.data()); }},
-      {EMBXILVAL, "01 of none", [&](modbus_t* m) { return modbus_read_bits(m, 0, 0, bits.data()); }},
-      {EMBXILVAL, "02 of none", [&](modbus_t* m) { return modbus_read_input_bits(m, 0, 0, bits.data()); },
-       kInputs},
-      {EMBXILVAL, "03 of none",
+      {EMBXILVAL, "01 with quantity 0", [&](modbus_t* m) { return modbus_read_bits(m, 0, 0, bits.data()); }},
+      {EMBXILVAL, "02 with quantity 0",
+       [&](modbus_t* m) { return modbus_read_input_bits(m, 0, 0, bits.data()); }, kInputs},
+      {EMBXILVAL, "03 with quantity 0",
        [&](modbus_t* m) { return modbus_read_registers(m, kCode, 0, words.data()); }},
-      {EMBXILVAL, "04 of none",
+      {EMBXILVAL, "04 with quantity 0",
        [&](modbus_t* m) { return modbus_read_input_registers(m, 0, 0, words.data()); }, kInputs},
-      {EMBXILVAL, "05 off on the timeout status",
+      {EMBXILVAL, "05 with 0000 on the timeout status",
        [](modbus_t* m) { return modbus_write_bit(m, kTimeoutStatus, 0); }},
       {EMBXILVAL, "06 address 248", [](modbus_t* m) { return modbus_write_register(m, kAddress, 248); }},
       {EMBXILVAL, "06 timeout 256", [](modbus_t* m) { return modbus_write_register(m, kTimeout, 256); },
        kInputs},
-      {EMBXILVAL, "0F of none", [&](modbus_t* m) { return modbus_write_bits(m, 0, 0, bits.data()); }},
+      {EMBXILVAL, "0F with quantity 0", [&](modbus_t* m) { return modbus_write_bits(m, 0, 0, bits.data()); }},
       {EMBXILVAL, "10 address 0, rate code 0",
        [&](modbus_t* m) { return modbus_write_registers(m, kAddress, 2, words.data()); }},
   };

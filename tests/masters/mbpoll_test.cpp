@@ -1,6 +1,6 @@
-// Tests unmodified mbpoll on one line with two modules. Uses every Modbus function that mbpoll supports. The
-// expected values are from firmware/wire.md 7. The expected exceptions of the gateway are from
-// sim/docs/integrations.md.
+// Tests the simulator with unmodified mbpoll, on one line with two modules. Uses every Modbus function that
+// mbpoll supports. The expected values are from firmware/wire.md 7. The expected exceptions of the gateway
+// are from sim/docs/integrations.md.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -131,7 +131,7 @@ using MbpollOverModbusTcp = Mbpoll;
 TEST_P(MbpollOverModbusTcp, NamesTheExceptionsOfTheGateway) {
   expect_refusal({"-a", "3", "-t", "0", "-r", "0"}, "Target device failed to respond");
   expect_refusal({"-a", "3", "-t", "0", "-r", "0"}, "Target device failed to respond", {"1"});
-  // mbpoll also sends 255 for the addresses 248 to 254.
+  // mbpoll also sends 255 if its only address is one of 248 to 254.
   expect_refusal({"-a", "255", "-t", "0", "-r", "0"}, "Gateway path unavailable");
   expect_refusal({"-a", "255", "-t", "4", "-r", "0x1E8"}, "Gateway path unavailable", {"1"});
 }

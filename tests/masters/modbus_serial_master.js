@@ -26,7 +26,7 @@ const REQUESTS = {
 const read = (frame, { buffer }) => [frame[0], frame[1], buffer.length, ...buffer];
 
 /**
- * Returns the frame of the reply to function 2B. Of the reply's header, the library returns only the conformity level.
+ * Returns the frame of the reply to function 2B. The library returns only the conformity level of the reply's header.
  * The modules never set "more follows".
  */
 function identification(frame, { data, conformityLevel }) {

@@ -60,8 +60,8 @@ def turnaround(arguments):
 
 
 class IdentificationRequest(ReadDeviceInformationRequest):
-    """A request of function 2B with the length of its reply. Without that length, the library waits for a pause or for
-    its timeout."""
+    """A request of function 2B with the length of its reply. Without that length, the library waits after a reply that
+    is not an exception: for a pause on a serial line, and for its timeout with RTU frames over TCP."""
 
     def __init__(self, data, reply_size):
         super().__init__(data[1], data[2])

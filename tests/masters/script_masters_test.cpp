@@ -1,5 +1,5 @@
-// Tests masters in Python and JavaScript (tests/masters/) that use unmodified third-party libraries, on the
-// pseudo-terminal, as RTU frames over TCP, and over Modbus TCP.
+// Tests the simulator with masters in Python and JavaScript (tests/masters/) that use unmodified third-party
+// libraries. The masters use the pseudo-terminal, RTU frames over TCP, and Modbus TCP.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -36,8 +36,8 @@ class ScriptMaster : public testing::TestWithParam<Master> {
     }
   }
   static void expect_to_pass(std::vector<std::string> arguments) {
-    // Only detects a master that hangs: a conversation takes less than five minutes. The limit is below that
-    // of CTest, so that the test fails with the name of the library.
+    // The limit of `timeout` only detects a master that hangs: a conversation takes less than five minutes.
+    // The limit is below that of CTest, so that the test fails with the name of the library.
     std::vector<std::string> command{"timeout", "1200"};
     command.insert(command.end(), GetParam().command.begin(), GetParam().command.end());
     command.insert(command.end(), arguments.begin(), arguments.end());

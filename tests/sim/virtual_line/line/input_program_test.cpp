@@ -21,7 +21,8 @@ InputProgram parsed(const std::string& text) { return parse_input_program(text, 
 /// The times at which the level of an input changes, and the new levels.
 using Moves = std::vector<std::pair<VirtualTime, bool>>;
 
-/// A module whose input `program` changes. The program starts when the line's time is 100 ms.
+/// A module and a program that changes the level of one of its inputs. The program starts when the line's
+/// time is 100 ms.
 class InputBench {
  public:
   explicit InputBench(const std::string& program, const std::string& edge = "falling", std::uint64_t seed = 1)
@@ -84,7 +85,7 @@ TEST(InputProgram, AKeyIsPressedOnceOrPeriodically) {
   EXPECT_EQ(parsed("3 key at 1s for 300ms bounce 10us").bounce, 10us);
 }
 
-TEST(InputProgram, AnInvalidProgramIsRefusedWithTheErrorAndTheExpectedSyntax) {
+TEST(InputProgram, AnInvalidProgramIsRefusedWithTheErrorAndTheCorrection) {
   struct Refused {
     const char* text;
     const char* names;
