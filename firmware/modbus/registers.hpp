@@ -315,8 +315,7 @@ inline constexpr auto kWordRegisters = table<WordRegister>({
         "line-tallies",
         "counts of the line: bus messages, bus errors, exceptions, messages for this module or for all "
         "modules, those without a reply, overruns, damaged bytes, frames lost because no buffer was free; "
-        "they "
-        "wrap",
+        "they wrap",
         "",
         {0x0308, Width::Eight, Needs::Nothing, kReadRegisters, kExtension, 0, 0, read_tally, nullptr}},
     // This row is documentation only. The receiver detects a host OK, so no function uses this row.

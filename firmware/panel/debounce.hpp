@@ -31,7 +31,7 @@ class Debounce {
   /// Returns the last accepted level; false if none has been accepted since reset.
   [[nodiscard]] bool level() const { return level_; }
   /// Returns when to sample the switch again, at most 1 ms after the last sample. Disarmed before the first
-  /// sample, and if the level of the last sample has been accepted.
+  /// sample, and while no level is waiting to be accepted.
   [[nodiscard]] Deadline next_sample() const { return next_sample_; }
 
  private:

@@ -331,7 +331,7 @@ Parsed parse_arguments(int argc, const char* const* argv) {
                  "set the line's format: 8N1, 8N2, 8E1 or 8O1 (default: the first module's)")
       ->type_name("FORMAT");
   app.add_option("--line", texts.line.kind,
-                 "paced (default): bytes take as long as on a real line; instant: bytes take no time")
+                 "set how long bytes take: paced (default): as long as on a real line; instant: no time")
       ->type_name("paced|instant");
   app.add_option("--control", texts.control, "create a UNIX socket for commands at this path")
       ->type_name("PATH");
@@ -369,8 +369,7 @@ Parsed parse_arguments(int argc, const char* const* argv) {
   add_writing(app, texts.writing);
   app.add_flag("--strict-gaps", texts.line.strict_gaps,
                "make modules ignore a Modbus frame with a gap of more than 1.5 characters, and do not insert "
-               "the silence that a "
-               "master omits between frames");
+               "the silence that a master omits between frames");
   app.add_flag("--example", example, "print an example of a bus file and exit");
   app.add_flag("--schema", schema, "print the JSON Schema of bus files and exit");
   app.add_flag("--models", models, "list the models and exit");

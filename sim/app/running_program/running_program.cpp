@@ -237,8 +237,9 @@ void RunningProgram::start() {
   }
 }
 
-/// Creates the files, prints the greeting, and starts paced lines. The other steps of the start that can fail
-/// come first, so that no file is created if one of them fails.
+/// Creates the missing EEPROM files, begins the capture, prints the greeting, and starts paced lines. The
+/// other steps of the start that can fail come first. If one of them fails, no EEPROM file is created, and an
+/// existing capture file keeps its content.
 void RunningProgram::begin() {
   make_files_and_greet();
   for (const auto& running : lines_) {

@@ -133,8 +133,8 @@ const std::array<BusFileKey<LineSetup>, 12> line_keys{{
      "paced: bytes take as long as on a real line; instant: bytes take no time (default: paced)",
      [](LineSetup& line, const Node& value) { line.instant = parse_line_kind(value.text()); }},
     {"strict-gaps", kFlag,
-     "makes modules ignore a Modbus frame with a gap of more than 1.5 characters, and adds no silence "
-     "between frames",
+     "makes modules ignore a Modbus frame with a gap of more than 1.5 characters; the simulator then "
+     "does not insert the silence that a master omits between frames",
      [](LineSetup& line, const Node& value) { line.strict_gaps = value.flag(); }},
     {"modules", R"({"type": "array", "minItems": 1, "items": {"$ref": "#/$defs/module"}})",
      "the modules, at least one",
@@ -151,7 +151,8 @@ const std::array<BusFileKey<ModuleObject>, 12> module_keys{{
     {"model", kText, "the model, as --models lists it, in upper or lower case, with or without EX; required",
      [](ModuleObject& /*module*/, const Node& /*value*/) {
      }},  // read_module has read it already, because other keys depend on it
-    {"address", R"({"type": "string", "pattern": "^[0-9A-Fa-f]{1,2}$"})", "hex, as in $AA2 (default 01)",
+    {"address", R"({"type": "string", "pattern": "^[0-9A-Fa-f]{1,2}$"})",
+     "the address of the module, one or two hex digits (default 01)",
      [](ModuleObject& module, const Node& value) { set_address(module.spec, value.text()); }},
     {"protocol", R"({"enum": ["ascii", "modbus"]})",
      "the module's protocol (default: modbus for -M models, else ascii)", take_setting<&Node::text>},

@@ -39,10 +39,9 @@ struct Schedule {
   enum class When { Always, At, EveryTime, EveryReply, Probably, AfterWrites };
 
   When when = When::Always;
-  VirtualTime time{0};  ///< At: from the start of the line's time; EveryTime: the period
-  std::uint64_t count =
-      1;  ///< EveryReply: 10 means every 10th reply; AfterWrites: number of writes to the EEPROM
-  double probability = 0;  ///< Probably: the probability for each reply
+  VirtualTime time{0};      ///< At: from the start of the line's time; EveryTime: the period
+  std::uint64_t count = 1;  ///< EveryReply: 10 means every 10th reply; AfterWrites: number of EEPROM writes
+  double probability = 0;   ///< Probably: the probability for each reply
   /// How long the fault lasts after it begins. A hang and foreign traffic have no duration. For the others,
   /// nullopt means: a fault that depends on replies lasts until the end of the reply, and any other fault is
   /// permanent. A power cut always has a duration.

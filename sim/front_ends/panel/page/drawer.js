@@ -28,7 +28,7 @@ function settingRows(inputs) {
     ["Host watchdog restarted by", ({fedByRequests}) => fedByRequests ? "host OK and requests" : "host OK"],
     ["Timeout status", ({timedOut}) => timedOut ? "set" : "clear"],
     ["Reset status", (settings, {listening}, guard) =>
-      listening && guard?.resetStatus ? "reset since the last query" : "–"],
+      listening && guard?.resetStatus ? "reset since the last $AA5" : "–"],
     ["Module watchdog", (settings, {resets}) => `${resets} ${resets === 1 ? "reset" : "resets"}`],
   ];
 }

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Checks the properties of the nodes in the flows against node_red_contrib_modbus.json.
+"""Checks the Node-RED flows of `ex9000-sim describe`. node_red_contrib_modbus.json lists the properties of nodes.
 
 Also checks the ids, wires and positions of the nodes.
 """
@@ -28,17 +28,17 @@ def wrong_properties(node):
             yield f"{node['type']} requires {key}"
     for key, values in known.get("values", {}).items():
         if key in node and node[key] not in values:
-            yield f"{key} of {node['type']} is {node[key]}"
+            yield f"{node['id']}: {key} is {node[key]}; expected one of {', '.join(map(str, values))}"
 
 
 def wrong_wires(node, nodes):
     known = KNOWN["nodes"][node["type"]]
     if known.get("config"):
         if "wires" in node:
-            yield f"{node['type']} has no outputs"
+            yield f"{node['id']}: has wires; a node of the type {node['type']} has no outputs"
         return
     if len(node["wires"]) != known["outputs"]:
-        yield f"{node['type']} has {known['outputs']} outputs"
+        yield f"{node['id']}: has wires for {len(node['wires'])} outputs; {node['type']} has {known['outputs']}"
     for target in (target for output in node["wires"] for target in output):
         if target not in nodes or KNOWN["nodes"][nodes[target]["type"]].get("inputs", 0) == 0:
             yield f"a wire of {node['id']} has no valid target"
@@ -52,7 +52,7 @@ def mistakes(all_nodes):
     """Returns descriptions of the errors in a flow; an empty list if the flow is valid."""
     unknown = {node["type"] for node in all_nodes} - set(KNOWN["nodes"])
     if unknown:
-        return [f"there is no node {', '.join(unknown)}"]
+        return [f"unknown type of node {', '.join(unknown)}; expected one of {', '.join(KNOWN['nodes'])}"]
     nodes = {node["id"]: node for node in all_nodes}
     found = [] if len(nodes) == len(all_nodes) else ["two nodes have the same id"]
     for node in all_nodes:

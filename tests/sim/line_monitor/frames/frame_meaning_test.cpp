@@ -195,7 +195,7 @@ TEST(ModbusMeaning, ReadingRegister3038WithAnotherQuantityOrLengthIsNotAHostOk) 
   EXPECT_FALSE(has(of_request(FrameBytes{0x01, 0x03, 0x30, 0x38, 0x00, 0x01, 0x00}), "host OK"));
 }
 
-TEST(ModbusMeaning, AnAddressOutsideTheMapIsReportedAsUnknown) {
+TEST(ModbusMeaning, AnAddressThatTheMapDoesNotListForTheFunctionIsReportedAsUnknown) {
   EXPECT_TRUE(has(of_request(FrameBytes{0x01, 0x01, 0x04, 0x00, 0x00, 0x01}), "unknown address"));
   EXPECT_TRUE(has(of_request(FrameBytes{0x01, 0x06, 0x01, 0xE2, 0x00, 0x01}), "unknown address"));
   EXPECT_TRUE(has(of_request(FrameBytes{0x01, 0x03, 0x00, 0x10, 0x00, 0x01}), "unknown address"));
