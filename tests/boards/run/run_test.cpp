@@ -37,8 +37,8 @@ TEST(Run, LibmodbusReadsBackTheCoilsThatItHasWritten) {
   modbus_t* const module = master.at(1);
   const std::array<std::uint8_t, 13> written{1, 0, 1, 1, 0, 0, 0, 1, 0, 0, 0, 0, 1};
   std::array<std::uint8_t, 13> read{};
-  ASSERT_EQ(modbus_write_bits(module, 0, 13, written.data()), 13);
-  ASSERT_EQ(modbus_read_bits(module, 0, 13, read.data()), 13);
+  ASSERT_EQ(modbus_write_bits(module, 0, 13, written.data()), 13) << modbus_strerror(errno);
+  ASSERT_EQ(modbus_read_bits(module, 0, 13, read.data()), 13) << modbus_strerror(errno);
   EXPECT_EQ(read, written);
   EXPECT_EQ(modbus_write_bit(module, 13, 1), -1);
   EXPECT_EQ(errno, EMBXILADD);
