@@ -36,8 +36,9 @@ inline constexpr Pin kDriverEnable{Port::C, 6};
 inline constexpr Pin kInitSwitch{Port::F, 4};  ///< SW1
 inline constexpr Pin kStatusLed{Port::F, 3};   ///< green
 
-/// The pins in the order of the channels. Outputs begin with the first eight pins, inputs with the second
-/// eight. A model with more than eight outputs has no inputs, and vice versa, so it can use all pins.
+/// The pins in the order of the channels. Outputs begin with the first eight pins, and inputs begin with
+/// the second eight. A model with more than eight outputs has no inputs, and a model with more than eight
+/// inputs has no outputs, so each such model can use both groups.
 inline constexpr std::array<PinGroup, 2> kFirstEight{PinGroup{Port::A, 2, 6}, PinGroup{Port::D, 2, 2}};
 inline constexpr std::array<PinGroup, 2> kSecondEight{PinGroup{Port::E, 0, 6}, PinGroup{Port::B, 4, 2}};
 inline constexpr std::array<PinGroup, 4> kOutputs{kFirstEight[0], kFirstEight[1], kSecondEight[0],

@@ -28,8 +28,9 @@ inline constexpr Pin kDriverEnable{Port::A, 6};
 inline constexpr Pin kInitSwitch{Port::A, 7};
 inline constexpr Pin kStatusLed{Port::F, 0};
 
-/// The pins in the order of the channels. Outputs begin with the first eight pins, inputs with the second
-/// eight. A model with more than eight outputs has no inputs, and vice versa, so it can use all pins.
+/// The pins in the order of the channels. Outputs begin with the first eight pins, and inputs begin with
+/// the second eight. A model with more than eight outputs has no inputs, and a model with more than eight
+/// inputs has no outputs, so each such model can use both groups.
 inline constexpr std::array<PinGroup, 2> kFirstEight{PinGroup{Port::D, 2, 6}, PinGroup{Port::G, 0, 2}};
 inline constexpr std::array<PinGroup, 3> kSecondEight{PinGroup{Port::B, 0, 2}, PinGroup{Port::B, 4, 3},
                                                       PinGroup{Port::C, 4, 3}};

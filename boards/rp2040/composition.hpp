@@ -73,7 +73,7 @@ struct MemoryOnBoard<Memory::Eeprom> {
 };
 using Settings = MemoryOnBoard<kMemory>;
 
-/// The drivers that the firmware requires. hal/board.hpp names for each member the header that describes it.
+/// The drivers that the firmware requires. For each member, hal/board.hpp names the header that describes it.
 struct Board {
   Clock clock;
   Line line;

@@ -48,7 +48,7 @@ static_assert(
     hal::kIsOneShotTimer<LineEndTimer>,
     "LineEndTimer: lacks a function, or a function has a wrong signature; see hal/one_shot_timer.hpp");
 
-/// The drivers that the firmware requires. hal/board.hpp names for each member the header that describes it.
+/// The drivers that the firmware requires. For each member, hal/board.hpp names the header that describes it.
 struct Board {
   Clock clock;
   Line line;

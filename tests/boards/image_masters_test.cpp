@@ -1,4 +1,4 @@
-// Tests unmodified third-party masters with the image of the EX9042D-M on an emulated board. CMake builds one
+// Tests the image of the EX9042D-M on an emulated board with unmodified third-party masters. CMake builds one
 // test program for each emulated board. The expected values come from firmware/wire.md section 7.
 #include <gtest/gtest.h>
 #include <modbus/modbus.h>

@@ -28,8 +28,8 @@ std::uint64_t pulses_of(const play::Transcript& transcript) {
   return pulses;
 }
 
-/// Returns an estimate of the duration of the transcript in emulated time: the waits, and 100 us for each
-/// pulse. Does not count the time of frames, resets and power cycles.
+/// Returns a rough measure of the length of a run, which only sorts the runs: the waits, and 100 us for each
+/// pulse. A pulse itself takes about 8 us of emulated time. Does not count frames, resets and power cycles.
 std::chrono::microseconds duration_of(const play::Transcript& transcript) {
   constexpr std::chrono::microseconds kPulse{100};
   return runner::waits_of(transcript) + kPulse * static_cast<std::int64_t>(pulses_of(transcript));

@@ -22,7 +22,7 @@ struct Master {
 };
 
 const std::string kScripts = EX9000_MASTERS;
-/// Debian's Python, even if PATH contains another one, because the library is Debian's as well.
+/// Uses Debian's Python, even if PATH contains another one, because pymodbus is a package of Debian.
 const Master kPymodbus{"pymodbus", {"/usr/bin/python3", kScripts + "/pymodbus_master.py"}};
 const std::string kModules = std::string("NODE_PATH=") + EX9000_NODE_MODULES;
 const Master kModbusSerial{"modbus-serial", {"env", kModules, "node", kScripts + "/modbus_serial_master.js"}};

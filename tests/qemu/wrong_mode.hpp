@@ -13,7 +13,9 @@ namespace ex9000::rig {
 using hal::SerialMode;
 
 struct Arrival {
-  std::chrono::nanoseconds at;  ///< time from the first start bit to the end of this byte for the receiver
+  /// Time from the first start bit until the receiver has the byte: the end of the byte if all bytes arrive
+  /// unchanged, otherwise the middle of its first stop bit.
+  std::chrono::nanoseconds at;
   std::uint8_t byte;
   ByteStatus status;
 };

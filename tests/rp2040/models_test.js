@@ -1,5 +1,6 @@
-// Tests what the models report, how long their operations take, and which accesses they reject: errors on a real chip,
-// errors of an image, and accesses that a model does not support. Also tests the trace.
+// Tests what the models report, how long their operations take, and which accesses they reject. A model
+// rejects an access that is an error on a real chip, that shows an error of the firmware, or that the model does not
+// support. Also tests the trace.
 "use strict";
 const assert = require("node:assert/strict");
 const fs = require("node:fs");
@@ -215,7 +216,7 @@ test("a UART rejects accesses to its registers in a wrong order", () => {
   assert.throws(() => off.writeUint32(0x30, 0x301), /divisors have no effect/);
 });
 
-test("the flash takes time for an erase, a suspend and a program, and rejects commands that it cannot execute", () => {
+test("the flash takes time to erase, suspend and write, and rejects commands that it cannot execute", () => {
   const time = new Time();
   const flash = new FlashChip(time, new Uint8Array(FLASH_SIZE));
   const send = (...bytes) => {
@@ -247,7 +248,7 @@ test("the flash takes time for an erase, a suspend and a program, and rejects co
   send(0x02, 0x1e, 0, 0, 0x5a);
   assert.throws(() => send(0x7a), /resume while it is busy/);
   time.advanceTo(time.now + 399e3);
-  assert.equal(send(0x05, 0)[1] & 1, 1, "a program takes 400 us");
+  assert.equal(send(0x05, 0)[1] & 1, 1, "writing a page takes 400 us");
   time.advanceTo(time.now + 1e3);
   assert.equal(send(0x03, 0x1e, 0, 0, 0)[4], 0x5a, "another sector can be programmed");
   send(0x7a);
@@ -291,7 +292,7 @@ test("a power failure during an erase erases some bytes of the sector and leaves
   assert.ok(sector.includes(0) && sector.includes(0xff));
 });
 
-test("the SSI rejects a frame before its setup and a setting while it is enabled, and frames take time", () => {
+test("the SSI takes time for each frame, and rejects frames before its set-up and new settings while enabled", () => {
   const { mcu, time } = setUp();
   const flash = new FlashChip(time, new Uint8Array(FLASH_SIZE).fill(0x5a));
   const pins = new QspiPins(mcu, "IO_QSPI", flash);
@@ -358,7 +359,7 @@ test("the watchdog keeps its scratch registers, and the source of a chip-level r
   assert.throws(() => chipReset.writeUint32(8, 0));
 });
 
-test("an I2C master reports a low queue and rejects accesses at wrong times, and an EEPROM programs for 5 ms", () => {
+test("an I2C master reports a nearly empty queue and rejects untimely accesses; an EEPROM write takes 5 ms", () => {
   const { mcu, time } = setUp();
   const master = mcu.i2c[0];
   correctI2c(master);
@@ -373,7 +374,7 @@ test("an I2C master reports a low queue and rejects accesses at wrong times, and
   time.advanceTo(time.now + 400_000);
   assert.equal(master.readUint32(0x34) & 0x200, 0x200, "STOP");
   assert.equal(eeprom.content[0], 0xff);
-  time.advanceTo(time.now + 4.5e6); // the program began during the 400 us
+  time.advanceTo(time.now + 4.5e6); // the write cycle began during the 400 us
   assert.equal(eeprom.content[0], 0xff);
   time.advanceTo(time.now + 0.5e6);
   assert.equal(eeprom.content[0], 0x42);

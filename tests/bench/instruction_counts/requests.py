@@ -13,10 +13,10 @@ Model = collections.namedtuple("Model", "name inputs outputs modbus")
 
 class Request:
     """A request to repeat. Each pass sends one of the `frames`, in turn. Before each pass, the session sends the frames
-    of `before`, which it does not count. If `before` has as many frames as `frames`, and more than one, the session
-    sends only one of them before each pass, in turn. A request that changes a stored value has several frames, or
-    frames in `before`, so that the value changes in each pass. `settles`: how long the session waits after `before`, in
-    seconds. `passes`: the maximum number of passes."""
+    of `before`, which it does not count. If `before` and `frames` have the same number of frames, and this number is
+    greater than 1, the session sends only one frame of `before` before each pass, in turn. A request that changes a
+    stored value has several frames, or frames in `before`, so that the value changes in each pass. `settles`: how long
+    the session waits after `before`, in seconds. `passes`: the maximum number of passes."""
 
     def __init__(
         self,
@@ -112,7 +112,7 @@ def modbus_requests(model, general):
             request("03 read code, address, baud rate", "01 03 01E2 0004"),
             request("03 read watchdog timeout", "01 03 01E8 0001"),
             request("05 protocol", "01 05 0100 0000", "01 05 0100 FF00", until=STORE),
-            request("05 timeout status, clear already", "01 05 010D FF00"),
+            request("05 timeout status that is clear", "01 05 010D FF00"),
             request("06 address", "01 06 01E4 0005", "01 06 01E4 0001", until=STORE),
             request("06 address as it is", "01 06 01E4 0001"),
             request("06 baud rate", "01 06 01E5 0006", "01 06 01E5 000A", until=STORE),
@@ -198,7 +198,7 @@ def ascii_requests(model, general, checksum):
             request("~AAO(Name)", "~01Oabcdef", "~01Oghijkl", until=STORE),
             request("~**", "~**", until=DONE),
             request("~AA0", "~010"),
-            request("~AA1 clear already", "~011"),
+            request("~AA1 timeout status that is clear", "~011"),
             request("~AA2", "~012"),
             request("~AA3EVV", "~0130FE", "~0130FF", until=STORE),
             request("refused", "$01Z"),

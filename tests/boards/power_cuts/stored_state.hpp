@@ -30,8 +30,8 @@ struct State {
 /// command permit.
 State begin_at(Beginning beginning, const Model& model, const StoringCommand& command);
 
-/// Returns the settings with which a module must start. StoredCopy, which has no code of the firmware, reads
-/// them. If there is no good copy, returns the factory settings.
+/// Returns the settings with which a module must start. Reads them with StoredCopy, which
+/// shares no code with the firmware. If there is no good copy, returns the factory settings.
 Settings settings_in(const Model& model, const Contents& contents);
 
 /// Returns the outputs of a module after its start (wire.md section 2).

@@ -1,5 +1,5 @@
-// Tests records of different lengths, for example of firmware with more or fewer settings, and which of two
-// copies is newer.
+// Tests records of different lengths, for example records of firmware with more or fewer settings. Also tests
+// which of two copies is newer.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -171,7 +171,7 @@ TEST(SettingsStore, AfterAnUnreadableCopyANoisyReadOfTheOtherIsRetried) {
   EXPECT_TRUE(store.stored() == numbered(6));
 }
 
-TEST(SettingsStore, AfterACorruptedCopyAReadOfTheOtherThatFailsTwiceIsRepeated) {
+TEST(SettingsStore, IfOneCopyIsCorruptAReadOfTheOtherCopyIsRepeatedAfterTwoFailures) {
   FakeMemory memory;
   put(memory, 0, numbered(5), 8);
   corrupt(memory, 0);
@@ -273,7 +273,7 @@ TEST(SettingsStore, ASaveOverwritesACorruptedCopyAndNotTheGoodOne) {
   }
 }
 
-TEST(SettingsStore, AfterASaveUnreadableSettingsAreReadable) {
+TEST(SettingsStore, ASaveReplacesCorruptSettings) {
   FakeMemory memory;
   put(memory, 0, numbered(5), 700);
   put(memory, 1, numbered(6), 701);
@@ -316,7 +316,7 @@ TEST(SettingsStore, SettingsSavedAfterTheMemoryDidNotAnswerAtResetAreFoundAtTheN
   EXPECT_TRUE(Boot(memory).stored() == numbered(9));
 }
 
-TEST(SettingsStore, AReadBeforeASaveThatFailsOnceOrTwiceIsRepeated) {
+TEST(SettingsStore, IfAReadBeforeASaveFailsOnceOrTwiceItIsRepeated) {
   for (std::size_t failing = 1; failing < kAttempts; ++failing) {
     FakeMemory memory;
     put(memory, 0, numbered(5), 700);

@@ -1,5 +1,5 @@
-// Tests power cuts during the first save after a firmware update, and during the save of a long record:
-// wire.md section 8, "The power may fail at any time, also during a write."
+// Tests power cuts during the first save after a firmware update, and during a save to a memory with a record
+// that is longer than the records of this firmware: wire.md section 8, "The power may fail at any time, also during a write."
 #include <gtest/gtest.h>
 
 #include <cstddef>
@@ -128,8 +128,8 @@ TEST(UpdateCuts, TwoCutsInARowLeaveTheOldOrTheNewSettings) {
   }
 }
 
-// Each file in stored_bytes/ is the memory before a save. The test repeats this save, and the power fails at
-// another byte each time.
+// Each file in stored_bytes/ contains a memory after a store of earlier firmware. The test saves changed
+// settings to this memory once for each number of written bytes, and the power fails after this number.
 TEST(UpdateCuts, ACutWithDataOfEarlierFirmwareLeavesTheOldOrTheNewSettings) {
   for (const StoredBytes& stored : all_stored_bytes()) {
     Settings changed = stored.settings;
