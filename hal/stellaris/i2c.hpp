@@ -179,7 +179,8 @@ class I2c {
   }
 
   void next(Bits<ControlStatus> status, Time now) {
-    if (status.has(kError)) {
+    // The data sheet of the TM4C123 does not say that lost arbitration sets the error bit too.
+    if (status.has(kError | kArbitrationLost)) {
       // There is no other master, so lost arbitration means that a line is stuck.
       give_up(status.has(kArbitrationLost) ? I2cResult::Failed : I2cResult::NoAcknowledge);
       return;

@@ -42,7 +42,8 @@ class SystemControl {
  public:
   /// Switches the processor to `clock`. Call this once after reset, when the watchdog is running.
   /// Blocks until the crystal has started, which can take some milliseconds, and the PLL has locked, which
-  /// takes a few hundred microseconds more. If the PLL never locks, the watchdog resets the MCU.
+  /// takes a few hundred microseconds more. If the PLL never locks, the watchdog resets the MCU. If the
+  /// crystal never starts, the processor and the watchdog have no clock, and the outputs stay off.
   static void use(const ClockTree& clock) {
     constexpr Bits<Rcc> kBypass(1U << 11U);
     constexpr Bits<Rcc> kPowerDown(1U << 13U);

@@ -275,7 +275,8 @@ void I2cBlock::move_is_over() {
 }
 
 void I2cBlock::fail(std::uint32_t bits) {
-  status_ = kError | bits;
+  const bool is_error = bits != kArbitrationLost || !behaviour_.loss_is_no_error;
+  status_ = bits | (is_error ? kError : 0);
   moves_.clear();
   if ((bits & kArbitrationLost) != 0) {
     owns_bus_ = false;

@@ -18,6 +18,7 @@ struct I2cBehaviour {
   bool stop_interrupts = false;     ///< a STOP without a byte raises an interrupt, like a byte
   bool stops_after_error = false;   ///< a STOP requested with a byte is sent even without an acknowledge
   bool waits_for_free_bus = false;  ///< a START on a busy bus waits for a reset; false: it loses arbitration
+  bool loss_is_no_error = false;    ///< lost arbitration does not set the error bit
 };
 
 class I2cBlock final : public Peripheral {

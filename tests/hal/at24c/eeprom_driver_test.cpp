@@ -166,6 +166,10 @@ struct Tm4cTellsStops {
   static constexpr Family kFamily = Family::Tm4c;
   static constexpr I2cBehaviour kBehaviour{true, true, false};
 };
+struct Tm4cLosesWithoutError {
+  static constexpr Family kFamily = Family::Tm4c;
+  static constexpr I2cBehaviour kBehaviour{false, false, false, true};
+};
 struct Lm3sWaits {
   static constexpr Family kFamily = Family::Lm3s;
   static constexpr I2cBehaviour kBehaviour{true, false, true};
@@ -186,7 +190,7 @@ class Eeprom : public testing::Test {
     EXPECT_EQ(back, bytes);
   }
 };
-using Kinds = testing::Types<Lm3sPlain, Tm4cPlain, Tm4cTellsStops, Lm3sWaits>;
+using Kinds = testing::Types<Lm3sPlain, Tm4cPlain, Tm4cTellsStops, Tm4cLosesWithoutError, Lm3sWaits>;
 TYPED_TEST_SUITE(Eeprom, Kinds);
 
 TYPED_TEST(Eeprom, ReadsTheStoredBytesAtAnyAddress) {
