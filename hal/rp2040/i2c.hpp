@@ -61,6 +61,7 @@ class I2c {
   struct Interrupts;
   struct TransmitThreshold;
   struct ClearAll;
+  struct ClearAbort;
   struct Enable;
   struct Status;
   struct HoldTime;
@@ -77,6 +78,7 @@ class I2c {
   static constexpr Register<Interrupts> kRawInterrupts{kBase + 0x34};
   static constexpr Register<TransmitThreshold> kTransmitThreshold{kBase + 0x3C};
   static constexpr Register<ClearAll> kClearAll{kBase + 0x40};
+  static constexpr Register<ClearAbort> kClearAbort{kBase + 0x54};
   static constexpr Register<Enable> kEnable{kBase + 0x6C};
   static constexpr Register<Status> kStatus{kBase + 0x70};
   static constexpr Register<HoldTime> kHoldTime{kBase + 0x7C};
@@ -152,7 +154,8 @@ class I2c {
     kEnable.write({});
     kTarget.write(Bits<Target>(transfer_->device));
     kEnable.write(kOn);
-    (void)kClearAll.read();  // a read clears all flags that software can clear
+    (void)kClearAll.read();    // a read clears all flags that software can clear
+    (void)kClearAbort.read();  // after an abort, the queue discards commands until this read
     deadline_.set(now + kTimeout);
     fill(now);
   }

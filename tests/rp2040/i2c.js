@@ -9,6 +9,7 @@ const HIGH_COUNT = 0x14;
 const LOW_COUNT = 0x18;
 const INTERRUPT_MASK = 0x30;
 const RAW_INTERRUPTS = 0x34;
+const CLEAR_ABORT = 0x54;
 const HOLD_TIME = 0x7c;
 const SPIKE_LENGTH = 0xa0;
 
@@ -23,12 +24,14 @@ function correctI2c(master) {
   const i2c = master;
   const read = i2c.readUint32.bind(i2c);
   const write = i2c.writeUint32.bind(i2c);
+  let flushed = false; // after an abort, the queue discards commands until CLEAR_ABORT is read
   const raw = () => {
     const low = i2c.enable & ON && i2c.txFIFO.itemCount <= i2c.txThreshold;
     return (i2c.intRaw & ~QUEUE_LOW) | (low ? QUEUE_LOW : 0);
   };
   i2c.checkInterrupts = () => i2c.rp2040.setInterrupt(i2c.irq, (raw() & i2c.intEnable) !== 0);
   i2c.readUint32 = (offset) => {
+    flushed = (flushed || (i2c.intRaw & ABORTED) !== 0) && offset !== CLEAR_ABORT;
     const value = offset === RAW_INTERRUPTS ? raw() : read(offset);
     i2c.checkInterrupts();
     return value;
@@ -37,7 +40,8 @@ function correctI2c(master) {
     if (WHILE_OFF.includes(offset) && i2c.enable & ON) {
       i2c.error(`register 0x${offset.toString(16)} is written while the master is on`);
     }
-    if (offset === DATA_COMMAND && i2c.intRaw & ABORTED) {
+    flushed = flushed || (i2c.intRaw & ABORTED) !== 0;
+    if (offset === DATA_COMMAND && flushed) {
       i2c.error("a command is queued before the abort is cleared, and is discarded");
     }
     if (offset === DATA_COMMAND && (i2c.txFIFO.full || !(i2c.enable & ON))) {
