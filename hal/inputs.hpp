@@ -4,9 +4,14 @@
 #include <type_traits>
 #include <utility>
 
+#include "firmware/time.hpp"
 #include "hal/promise.hpp"
 
 namespace ex9000::hal {
+
+/// A weak pull of a microcontroller has up to 80 kΩ. In this time, it changes the level of an open pin with a
+/// wire of 10 nF. If `start` read the pin earlier, the later edge would count as a pulse.
+inline constexpr Duration kPullsSettle = milliseconds(1);
 
 /// The input channels. The edge interrupt calls `Device::on_edge` for each edge. Edges of a channel that
 /// occur before the interrupt runs may share one call. The interrupt must clear the edge flag of a channel

@@ -16,6 +16,7 @@
 #include "hal/cortex_m/system_tick.hpp"
 #include "hal/device.hpp"
 #include "hal/flash/page_store.hpp"
+#include "hal/pause.hpp"
 #include "hal/pl011/uart.hpp"
 #include "hal/rp2040/clocks.hpp"
 #include "hal/rp2040/flash.hpp"
@@ -126,20 +127,22 @@ __attribute__((section(".vectors"), used)) constexpr auto kVectors =
 void start() {
   const ResetReason reason = Watchdog::reset_reason();
   Watchdog::start();
-  Resets::stop_second_core();
-  Resets::release(Block::Pins | Block::Pads | Block::Timer);
+  Resets::restart_second_core();
+  Resets::restart(Block::Pins | Block::Pads | Block::Timer);
   board.outputs.start();
   board.line.start();
   board.init_switch.start();
   board.status_led.start();
+  board.inputs.make_inputs();
   Clocks::use<kClock>();
-  Resets::release(Settings::kBlocks | Block::Uart0);  // a UART without a clock would stay in reset
+  Resets::restart(Settings::kBlocks | Block::Uart0);  // a UART without a clock would stay in reset
   Gpio::make_peripheral(kUartPins.mask(), Function::Uart);
   Settings::start(board.memory);
   SilenceTimer::start();
   LineEndTimer::start();
   WakeTimer::start();
   Tick::start();
+  hal::pause(board.clock, hal::kPullsSettle);
   device.start(reason);
   Interrupts::enable(start_up::numbers_of(kServed));
 }

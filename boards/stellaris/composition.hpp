@@ -15,6 +15,7 @@
 #include "hal/cortex_m/interrupts.hpp"
 #include "hal/cortex_m/system_timer.hpp"
 #include "hal/device.hpp"
+#include "hal/pause.hpp"
 #include "hal/stellaris/i2c.hpp"
 #include "hal/stellaris/inputs.hpp"
 #include "hal/stellaris/interrupts.hpp"
@@ -155,6 +156,7 @@ void start() {
   board.line.start();
   board.init_switch.start();
   board.status_led.start();
+  board.inputs.make_inputs();
   SystemControl::use(kClock);
   Gpio(kUartPins.port).make_peripheral<kFamily, kUartPins.mask(), kUartFunction>();
   board.memory.master().start();
@@ -162,6 +164,7 @@ void start() {
   LineEndTimer::start();
   WakeTimer::start();
   board.clock.start();
+  hal::pause(board.clock, hal::kPullsSettle);
   device.start(reason);
   Interrupts::enable(start_up::numbers_of(kServed), static_cast<std::uint32_t>(kLineInterrupt));
 }

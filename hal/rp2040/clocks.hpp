@@ -73,7 +73,7 @@ class Clocks {
     constexpr Bits<PllPower> kMainOff(1U << 0U);
     constexpr Bits<PllPower> kDividersOff(1U << 3U);
     constexpr Bits<PllPower> kOscillatorOff(1U << 5U);
-    Resets::release(static_cast<std::uint32_t>(Block::SystemPll));
+    Resets::restart(static_cast<std::uint32_t>(Block::SystemPll));
     kPllControl.write(kReferenceDividedBy1);
     kPllFeedback.write(Bits<PllFeedback>(clock.multiplier));
     kPllPower.clear(kMainOff | kOscillatorOff);

@@ -13,9 +13,11 @@ namespace ex9000::hal::rp2040 {
 template <const auto& groups, unsigned channels, bool active_high>
 class InputPins {
  public:
+  /// Makes the pins inputs. Call this once, kPullsSettle before `start`.
+  static void make_inputs() { Gpio::make_input(kPins, !active_high); }
+
   /// Enables edge interrupts and returns the levels; bit n is channel n. Each later edge is flagged.
   static std::uint16_t start() {
-    Gpio::make_input(kPins, !active_high);
     Gpio::watch_edges(kPins);
     const std::uint32_t levels = settle(kPins).levels;
     unsigned of_channels = 0;

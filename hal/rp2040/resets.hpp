@@ -24,18 +24,24 @@ constexpr std::uint32_t operator|(std::uint32_t a, Block b) { return a | static_
 
 class Resets {
  public:
-  /// Releases `blocks` from reset and waits for a few clocks until they can be used. Their clocks must run.
-  /// If the clock of a block does not run, this function waits until the watchdog resets the MCU.
-  static void release(std::uint32_t blocks) {
+  /// Resets `blocks` and waits for a few clocks until they can be used. Their clocks must run. If the clock
+  /// of a block does not run, this function waits until the watchdog resets the MCU. The blocks are in reset
+  /// already, except after a reset of only the processor, for example by a debug probe.
+  static void restart(std::uint32_t blocks) {
+    kReset.set(Bits<Reset>(blocks));
     kReset.clear(Bits<Reset>(blocks));
     while ((kDone.read().value() & blocks) != blocks) {
     }
   }
 
-  /// Keeps the second core in reset until the next reset of the MCU.
-  static void stop_second_core() {
+  /// Resets the second core, which may run after a reset of only the first one. It then sleeps in the boot
+  /// ROM. It does not stay in reset, because a debug probe cannot connect to a core in reset.
+  static void restart_second_core() {
     constexpr Bits<ForceOff> kSecondCore(1U << 16U);
     kForceOff.set(kSecondCore);
+    while (!kForceOff.read().has(kSecondCore)) {
+    }
+    kForceOff.clear(kSecondCore);
   }
 
  private:

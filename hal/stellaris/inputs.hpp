@@ -13,6 +13,17 @@ namespace ex9000::hal::stellaris {
 template <const auto& groups, unsigned channels, bool active_high>
 class InputPins {
  public:
+  /// Makes the pins inputs. Call this once, kPullsSettle before `start`.
+  static void make_inputs() {
+    unsigned first = 0;
+    for (const PinGroup& group : groups) {
+      if (first < channels) {
+        Gpio(group.port).make_input(group.mask(), !active_high);
+        first += group.count;
+      }
+    }
+  }
+
   /// Enables edge interrupts and returns the levels; bit n is channel n, 1 = logic 1. Each later edge is
   /// flagged. An edge during the read would count as two edges, so this function reads again until no edge
   /// occurs during the read.
@@ -23,7 +34,6 @@ class InputPins {
       if (first < channels) {
         const Gpio gpio(group.port);
         const std::uint32_t pins = group.mask();
-        gpio.make_input(pins, !active_high);
         gpio.watch_edges(pins);
         levels |= ((settle(gpio, pins, pins) >> kLevels & pins) >> group.first_pin) << first;
         first += group.count;

@@ -156,6 +156,26 @@ TEST_P(StartUp, ConfiguresInputPinsWithAPullToTheInactiveLevel) {
   EXPECT_TRUE(bench.net(init).level());
 }
 
+TEST_P(StartUp, GivesThePullsOfTheInputsAMillisecondBeforeTheFirstReadOfTheLevels) {
+  come_up();
+  for (unsigned channel = 0; channel < image.inputs; ++channel) {
+    const PinPlace pin = image.input_pins.at(channel);
+    SCOPED_TRACE(std::string(1, pin.port) + std::to_string(pin.pin));
+    const std::uint32_t base = bench.mcu->port(pin.port).base();
+    const std::uint32_t mask = 1U << pin.pin;
+    const auto& all = bench.mcu->recorded();
+    const auto read = std::find_if(all.begin(), all.end(), [&](const Access& each) {
+      return !each.write && (each.address & ~0xFFFU) == base && (each.address & 0xFFFU) < 0x400 &&
+             ((each.address & 0xFFFU) >> 2U & mask) != 0;
+    });
+    ASSERT_NE(read, all.end());
+    const std::size_t enabled = first_setting(base + GpioPort::kEnable, mask);
+    ASSERT_LT(enabled, all.size());
+    EXPECT_GE(read->at - all.at(enabled).at, milliseconds(1));
+    EXPECT_LT(first_setting(base + GpioPort::kPullDown, mask), enabled);
+  }
+}
+
 TEST_P(StartUp, AssignsTheUartAndI2cPinsAsTheFamilyRequires) {
   come_up();
   for (const PinPlace pin : {image.receive, image.transmit, PinPlace{'B', 2}, PinPlace{'B', 3}}) {

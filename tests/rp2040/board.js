@@ -8,6 +8,7 @@ const { FORMATS, Receiver, Sender } = require("./line");
 const { CHIP_RESET, REASON, SCRATCH_REGISTERS } = require("./system");
 
 const PINS = 30;
+const PULL = 700e3; // ns until a pull has changed the level of an open pin: 80 kΩ and a wire of 9 nF
 
 class Board {
   // `image` is the content of the flash from its first byte on. `pins` contains the numbers of the pins transmit,
@@ -41,6 +42,8 @@ class Board {
       parity: 0 };
     this.lastStop = 0;
     this.levels = new Array(PINS).fill(false);
+    this.pulls = this.levels.map((_, number) => this.time.createAlarm(
+      () => this.setLevel(number, this.target(number))));
   }
 
   // --- supply and resets ---
@@ -61,6 +64,11 @@ class Board {
       this.end();
       this.startCold(CHIP_RESET.run);
     }
+  }
+
+  // Resets only the processor, as a debug probe does. All other parts of the chip keep their state.
+  resetProcessor() {
+    this.chip?.resetProcessor();
   }
 
   // Starts the image as after a copy to the drive RPI-RP2: the boot ROM has reset the chip with the watchdog.
@@ -109,6 +117,7 @@ class Board {
     this.clock.end();
     this.chip = null;
     this.driverOn = false;
+    this.pulls.forEach((pull) => pull.cancel());
     this.flash.interrupt();
     this.eeprom.reset();
     for (let number = 0; number < PINS; number += 1) {
@@ -176,7 +185,21 @@ class Board {
     if (own !== null && outside !== null && own !== outside && !isBus) {
       this.counts.shorts += 1;
     }
-    const level = own ?? outside ?? chip.pull(number) ?? false;
+    if (own !== null || outside !== null || this.target(number) === this.levels[number]) {
+      this.pulls[number].cancel();
+      this.setLevel(number, this.target(number));
+    } else if (!this.pulls[number].scheduled) {
+      this.pulls[number].schedule(PULL);
+    }
+  }
+
+  // Returns the level that the pin has when its pull has had time to change it.
+  target(number) {
+    return this.chip.level(number) ?? this.outside[number] ?? this.chip.pull(number) ?? false;
+  }
+
+  setLevel(number, level) {
+    const { chip } = this;
     const pin = chip.mcu.gpio[number];
     this.levels[number] = level;
     if (pin.rawInputValue !== level) {

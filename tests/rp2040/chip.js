@@ -16,6 +16,9 @@ const SECOND_STAGE = 0x20041f00;
 const SECOND_STAGE_SIZE = 256;
 const RING_OSCILLATOR = 6.5e6;
 const BOOT_ATTEMPT = 4e6; // ns between two attempts of the boot ROM, which the ring oscillator clocks
+const BOOT_ATTEMPTS = 128;
+const FORCE_OFF = 0x04;
+const SECOND_CORE = 1 << 16;
 const PAD_AFTER_RESET = 0x56;
 const NO_FUNCTION = 0x1f;
 const UART_FUNCTION = 2;
@@ -64,8 +67,10 @@ class Chip {
   replacePeripherals() {
     const { board, mcu } = this;
     const { peripherals } = mcu;
-    this.resets = new Resets(mcu, "RESETS");
+    this.resets = new Resets(mcu, "RESETS", (blocks) => this.resetBlocks(blocks));
     this.psm = peripherals[0x40010];
+    this.countSecondCoreResets();
+    this.timer = peripherals[0x40054];
     this.watchdog = new Watchdog(mcu, "WATCHDOG", this.psm, board);
     this.uart = new Pl011(mcu, "UART0", UART0_IRQ, {
       transmit: (level) => board.transmit(level),
@@ -168,14 +173,63 @@ class Chip {
     return pin.pullupEnabled;
   }
 
-  // Acts like the boot ROM, which reads the second stage again if the checksum is wrong. While the flash is busy, the
-  // checksum cannot be correct, so this function tries again later. If the flash is not busy, a wrong checksum is an
-  // error.
-  boot() {
+  // Sets these blocks to their state after a reset, except I2C.
+  resetBlocks(blocks) {
+    const { board, mcu } = this;
+    if (blocks & BLOCK.pllSys) {
+      mcu.pllSys.reset();
+    }
+    if (blocks & BLOCK.uart0) {
+      this.uart.reset();
+    }
+    if (blocks & BLOCK.timer) {
+      const { timer } = this;
+      timer.alarms.forEach((alarm) => timer.disarmAlarm(alarm));
+      Object.assign(timer, { intRaw: 0, intEnable: 0, intForce: 0 });
+      timer.checkInterrupts();
+    }
+    if (blocks & (BLOCK.pins | BLOCK.pads)) {
+      mcu.gpio.forEach((pin, number) => {
+        Object.assign(pin, blocks & BLOCK.pins ? { ctrl: NO_FUNCTION, irqEnableMask: 0, irqForceMask: 0, irqStatus: 0 }
+          : {}, blocks & BLOCK.pads ? { padValue: PAD_AFTER_RESET } : {});
+        pin.checkForUpdates();
+        board.pinChanged(number);
+      });
+      mcu.updateIOInterrupt();
+    }
+  }
+
+  // Counts how often the second core has left a reset by software.
+  countSecondCoreResets() {
+    const { psm } = this;
+    const write = psm.writeUint32.bind(psm);
+    this.secondCoreResets = 0;
+    psm.writeUint32 = (offset, value) => {
+      if (offset === FORCE_OFF && psm.frceOff & SECOND_CORE && !(value & SECOND_CORE)) {
+        this.secondCoreResets += 1;
+      }
+      write(offset, value);
+    };
+  }
+
+  // Resets only the processor. The boot ROM then starts again.
+  resetProcessor() {
+    this.mcu.ppb.reset();
+    this.processor.reset();
+    this.boot();
+  }
+
+  // Acts like the boot ROM, which reads the second stage again if the checksum is wrong, and gives up after some
+  // attempts. While the flash is busy, the checksum cannot be correct, so this function tries again later. If the flash
+  // is not busy, a wrong checksum is an error.
+  boot(attempt = 1) {
     const { board, mcu } = this;
     mcu.core.waiting = board.flash.busy;
     if (board.flash.busy) {
-      board.clock.createAlarm(() => this.boot()).schedule(BOOT_ATTEMPT);
+      if (attempt === BOOT_ATTEMPTS) {
+        throw new Error("boot ROM: the flash is busy at the last attempt; expected a flash that erases in less time");
+      }
+      board.clock.createAlarm(() => this.boot(attempt + 1)).schedule(BOOT_ATTEMPT);
       return;
     }
     const stage = board.flash.content.slice(0, SECOND_STAGE_SIZE);

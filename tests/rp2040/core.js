@@ -43,6 +43,18 @@ class Processor {
     Object.assign(chip, { onBreak: () => this.fault() });
   }
 
+  // Sets the registers of the processor and of the NVIC to their values after a reset. Asserted interrupt lines stay
+  // asserted, so their interrupts become pending again.
+  reset() {
+    const { core } = this;
+    Object.assign(core, { PM: false, IPSR: 0, SPSEL: 0, nPRIV: false, currentMode: 0, waiting: false, VTOR: 0,
+      interruptNMIMask: 0, pendingInterrupts: this.lines, enabledInterrupts: 0,
+      interruptPriorities: [0xffffffff, 0, 0, 0], pendingNMI: false, pendingPendSV: false,
+      pendingSVCall: false, pendingSystick: false, SHPR2: 0, SHPR3: 0,
+      interruptsUpdated: true });
+    Object.assign(this, { faulted: false, lockedUp: false, depth: 0 });
+  }
+
   fault() {
     this.faulted = true;
   }

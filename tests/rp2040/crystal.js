@@ -33,7 +33,8 @@ class Crystal extends BasePeripheral {
     } else if (offset === 0 && value === ((ENABLE << 12) | RANGE)) {
       this.stableAt = this.rp2040.clock.nanos + STARTS + (this.delay * DELAY_UNIT * 1e9) / this.rp2040.xoscFreq;
     } else {
-      this.error(`the value 0x${value.toString(16)} at offset 0x${offset.toString(16)} is not in this model; expected 0xfabaa0 at offset 0x0`);
+      this.error(`the value 0x${value.toString(16)} at offset 0x${offset.toString(16)} is not in this model; `
+        + "expected 0xfabaa0 at offset 0x0");
     }
   }
 }

@@ -50,6 +50,8 @@ const COMMANDS = {
   },
   power: (on) => board.power(on === "on"),
   reset: () => board.reset(),
+  // reset-processor: resets only the processor, as a debug probe does
+  "reset-processor": () => board.resetProcessor(),
   // power-after-copy: switches the supply on; the image starts as after a copy to the drive RPI-RP2
   "power-after-copy": () => board.startAfterCopy(),
   echo(on) {
@@ -164,6 +166,7 @@ const COMMANDS = {
   counts: () => Object.entries({ ...board.counts, pages: board.eeprom.pagesProgrammed,
     erases: [...board.flash.erased.values()].reduce((sum, each) => sum + each, 0), reason: board.reason,
     depth: board.chip?.processor.deepest ?? 0, secondCoreOff: (board.chip?.psm.frceOff ?? 0) >> 16,
+    secondCoreResets: board.chip?.secondCoreResets ?? 0,
     uart: board.chip?.uart.baud ?? 0, lineControl: board.chip?.uart.lineControl ?? 0 })
     .map(([name, value]) => `${name}=${value}`).join(" "),
   // pc: returns the address of the next instruction

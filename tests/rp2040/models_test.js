@@ -312,17 +312,22 @@ test("the SSI takes time for each frame, and rejects frames before its set-up an
   assert.equal(ssi.readUint32(0x24), 2);
   assert.equal(ssi.readUint32(0x60), 0x5a5a5a5a);
   assert.equal(flash.selected, false);
+  mcu.clkSys = 201e6;
+  assert.throws(() => ssi.writeUint32(0x60, 0x03000000), /50.25 MHz; expected at most 50 MHz/);
 });
 
 test("a block in reset cannot be used, and a UART without its clock does not leave its reset", () => {
   const { mcu } = setUp();
-  const resets = new Resets(mcu, "RESETS");
+  const inReset = [];
+  const resets = new Resets(mcu, "RESETS", (blocks) => inReset.push(blocks));
   const uart = 1 << 22;
   const guarded = new Guarded({ readUint32: () => 7 }, "uart", () => (resets.held & uart ? "it is held in reset" : ""));
   assert.throws(() => guarded.readUint32(0), /held in reset/);
   resets.writeUint32(0, resets.held & ~uart);
   assert.equal(guarded.readUint32(0), 7);
   assert.equal(resets.readUint32(8) & uart, 0, "its clock does not run");
+  resets.writeUint32(0, resets.held | uart);
+  assert.deepEqual(inReset, [0, uart]);
 });
 
 test("the watchdog counts two for each tick, requires a tick, and rejects a reset of only a part of the chip", () => {
@@ -390,6 +395,10 @@ test("an I2C master reports a nearly empty queue and rejects untimely accesses; 
   master.writeUint32(0x10, 0x200);
   time.advanceTo(time.now + 400_000);
   assert.throws(() => master.writeUint32(0x10, 0), /before the abort is cleared/);
+  master.readUint32(0x40); // clears the flags, but the queue still discards commands
+  assert.throws(() => master.writeUint32(0x10, 0), /before the abort is cleared/);
+  master.readUint32(0x54);
+  master.writeUint32(0x10, 0);
 });
 
 test("a pending interrupt wakes the processor even if PRIMASK prevents its handler from running", () => {
@@ -440,6 +449,11 @@ test("the PLL requires a reference, and cannot clock the system without a lock o
   assert.throws(() => mcu.clocks.writeUint32(0x3c, 1), /before it runs/, "the dividers have no power");
   pll.writeUint32(4, 0x04);
   mcu.clocks.writeUint32(0x3c, 1);
+  assert.throws(() => pll.reset(), /reset while it is the system clock/);
+  mcu.clocks.writeUint32(0x3c, 0);
+  pll.reset();
+  assert.equal(pll.readUint32(4), 0x2d);
+  assert.equal(isLocked(), false);
 });
 
 test("a trace contains each instruction once, and an interrupt before the first instruction of its handler", () => {

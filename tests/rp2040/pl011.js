@@ -34,6 +34,14 @@ class Pl011 extends BasePeripheral {
     super(rp2040, name);
     this.irq = irq;
     this.wires = wires;
+    this.sender = new Sender(rp2040.clock, (level) => wires.transmit(level), () => this.sent());
+    this.receiver = new Receiver(rp2040.clock, (character) => this.receive(character));
+    this.timeout = rp2040.clock.createAlarm(() => this.raise(RECEIVE_TIMEOUT));
+    this.reset();
+  }
+
+  // Sets the registers to their values after a reset of the block.
+  reset() {
     this.integerDivisor = 0;
     this.fractionalDivisor = 0;
     this.bitTime = 0;
@@ -46,9 +54,9 @@ class Pl011 extends BasePeripheral {
     this.received = [];
     this.overrun = false;
     this.toSend = [];
-    this.sender = new Sender(rp2040.clock, (level) => wires.transmit(level), () => this.sent());
-    this.receiver = new Receiver(rp2040.clock, (character) => this.receive(character));
-    this.timeout = rp2040.clock.createAlarm(() => this.raise(RECEIVE_TIMEOUT));
+    this.timeout.cancel();
+    this.listen();
+    this.tell();
   }
 
   get depth() {

@@ -46,10 +46,20 @@ function correctPll(pll, crystal, clocks) {
       }
     },
   });
+  const usesPll = (systemControl) => (systemControl & FROM_AUXILIARY) !== 0 && !(systemControl & AUXILIARY);
+  // Sets the registers to their values after a reset of the block.
+  Object.assign(pll, {
+    reset() {
+      if (usesPll(clocks.readUint32(SYSTEM_CONTROL))) {
+        pll.error("it is reset while it is the system clock");
+      }
+      Object.assign(pll, { cs: 0x1, pwr: 0x2d, fbdivInt: 0, prim: 0x77000 });
+      lockedAt = Infinity;
+    },
+  });
   Object.assign(clocks, {
     writeUint32(offset, value) {
-      const usesPll = offset === SYSTEM_CONTROL && value & FROM_AUXILIARY && !(value & AUXILIARY);
-      if (usesPll && (!isLocked() || inner.read(POWER) & DIVIDERS_OFF)) {
+      if (offset === SYSTEM_CONTROL && usesPll(value) && (!isLocked() || inner.read(POWER) & DIVIDERS_OFF)) {
         pll.error("it becomes the system clock before it runs");
       }
       inner.clocks(offset, value);

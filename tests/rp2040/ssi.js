@@ -6,6 +6,8 @@ const { BasePeripheral } = require("rp2040js");
 const DEPTH = 16;
 const BOTH_WAYS = 0;
 const EEPROM_READ = 3;
+const READ_DATA = 0x03;
+const READ_DATA_LIMIT = 50e6; // Hz; source: W25Q16JV data sheet, 9.6 (AC electrical characteristics)
 
 // The chip select pin of the flash. Either the SSI controls it, or software drives it low or high.
 class QspiPins extends BasePeripheral {
@@ -151,6 +153,11 @@ class Ssi extends BasePeripheral {
     }
     this.toSend.push(value);
     if (!this.shifting) {
+      const command = (value >>> (this.frameBits - 8)) & 0xff;
+      const clock = this.rp2040.clkSys / this.divider;
+      if (command === READ_DATA && this.frameBits === 32 && clock > READ_DATA_LIMIT) {
+        this.error(`Read Data has a clock of ${clock / 1e6} MHz; expected at most ${READ_DATA_LIMIT / 1e6} MHz`);
+      }
       this.pins.requestSelect(true);
       this.beginFrame();
     }

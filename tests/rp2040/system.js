@@ -13,9 +13,11 @@ const UARTS = 3 << 22;
 const AFTER_BOOT = ALL_BLOCKS & ~(IO_QSPI | PADS_QSPI | TIMER);
 
 class Resets extends BasePeripheral {
-  constructor(rp2040, name) {
+  // `reset(blocks)` sets these blocks to their state after a reset.
+  constructor(rp2040, name, reset) {
     super(rp2040, name);
     this.held = AFTER_BOOT;
+    this.reset = reset;
   }
 
   // Returns the blocks that have left their reset. The UARTs stay in reset while the peripheral clock does not
@@ -38,7 +40,9 @@ class Resets extends BasePeripheral {
 
   writeUint32(offset, value) {
     if (offset === 0) {
+      const before = this.held;
       this.held = value & ALL_BLOCKS;
+      this.reset(this.held & ~before);
     } else {
       super.writeUint32(offset, value);
     }

@@ -113,10 +113,10 @@ int main() {
   using namespace ex9000::board;
   const ResetReason reason = Watchdog::reset_reason();
   Watchdog::start();
-  Resets::release(Block::Pins | Block::Pads | Block::Timer);
+  Resets::restart(Block::Pins | Block::Pads | Block::Timer);
   line.start();
   Clocks::use<kClock>();
-  Resets::release(static_cast<std::uint32_t>(Block::Uart0));
+  Resets::restart(static_cast<std::uint32_t>(Block::Uart0));
   Gpio::make_peripheral(kUartPins.mask(), Function::Uart);
   results().received = 0;
   results().unexpected = 0;
