@@ -1,7 +1,7 @@
-// Checks and definitions for all images, on any microcontroller whose UART reports a byte in the middle of
-// its first stop bit. Include this file in only one source file of a program, after the `board.hpp` of a
-// board. `board.hpp` must define kOutputs and kInputs, which are arrays of pin groups. Each pin group must
-// have a `count` of pins.
+// Checks and definitions for all images. The UART of the board must report a byte in the middle of the first
+// stop bit. Include this file in only one source file of a program, after the `board.hpp` of a board.
+// `board.hpp` must define kOutputs and kInputs, which are arrays of pin groups. Each pin group must have a
+// member `count`, its number of pins.
 #pragma once
 
 #include "boards/image_info.hpp"
@@ -13,8 +13,8 @@ namespace ex9000::board {
 #ifdef EX9000_IMAGES
 static_assert(
     kModels.size() == EX9000_IMAGES,
-    "a row of the model table has no image; begin the line of the row with four spaces and {\"EX9, because "
-    "boards/CMakeLists.txt finds rows by this pattern");
+    "a row of the model table has no image; begin the line of the row with four spaces and {\"EX9 "
+    "(boards/CMakeLists.txt finds rows by this pattern)");
 #endif
 
 #ifdef EX9000_PRESET

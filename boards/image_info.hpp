@@ -1,7 +1,7 @@
 // The information in an image about this image: version, board, model and commit. The linker script puts this
 // information directly after the vector table. All images of a family of microcontrollers have a vector table
 // of the same size, so they contain the information at the same place in the flash. toolchain/image-info
-// reads the information. boards/README.md describes it.
+// reads the information. boards/README.md describes the information.
 #pragma once
 
 #include <array>

@@ -6,8 +6,8 @@
 // The compiler may recognise a loop, for example as a copy, and replace the loop with a call of memcpy. In an
 // image, memcpy would then call itself endlessly. The options of the images forbid such calls
 // (boards/CMakeLists.txt). memory_functions_test.cpp is compiled without these options. There, the attribute
-// `optimize` makes GCC keep the loops, so that the test does not call the functions of the C library instead.
-// Clang ignores this attribute.
+// `optimize` makes GCC keep the loops. If GCC replaced the loops with calls, the test would test the
+// functions of the C library. Clang ignores this attribute.
 // `externally_visible` keeps the functions in an image that is compiled with -fwhole-program.
 #define NO_SELF_CALL __attribute__((optimize("no-tree-loop-distribute-patterns"), externally_visible))
 

@@ -1,4 +1,4 @@
-// Hex digits of the DCON protocol, which allows upper case only.
+// Hex digits of the DCON protocol: 0 to 9 and A to F. The letters must be upper case.
 #pragma once
 
 #include <cstdint>

@@ -118,10 +118,10 @@ void Module::use_filters() {
 }
 
 /// Applies the inversion and the filters of the settings. Before that, counts the edges that count with the
-/// previous inversion and filters. A changed level that does not count yet counts when the new filter time
-/// has passed since its last edge.
+/// previous inversion and filters. If a changed level does not count yet, it counts when the new filter time
+/// has passed since the last edge of its channel.
 void Module::configure_inputs(Time now) {
-  edges_.time_edges(true);  // a new filter uses the times of all edges that are not collected now
+  edges_.time_edges(true);  // a new filter uses the time of each edge that the next line does not collect
   collect_edges(now);
   state_.inputs.invert(state_.settings.inverted_inputs);
   use_filters();

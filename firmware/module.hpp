@@ -36,9 +36,9 @@ class Module {
   Module(const Module&) = delete;
   Module& operator=(const Module&) = delete;
 
-  /// Starts the module at a reset. Call this once, before the interrupts that call `on_...` are enabled,
-  /// except the tick. `input_levels`: bit n is channel n, 1 = +4 to +30 V. These levels do not count as
-  /// edges. `reason`: why the module was reset.
+  /// Starts the module at a reset. Call this once, before the interrupts that call `on_...` are enabled.
+  /// Only the tick interrupt may be enabled earlier. `input_levels`: bit n is channel n, 1 = +4 to +30 V.
+  /// These levels do not count as edges. `reason`: why the module was reset.
   void start(std::uint16_t input_levels, Time now, ResetReason reason = ResetReason::Unknown);
 
   // --- interrupts ---
@@ -70,7 +70,7 @@ class Module {
   /// Samples the INIT* switch, updates the status LED, collects edges, and ends the gap after a reply if the
   /// gap is over. Call this at every tick, when the time that `idle_for` returned has passed, and after an
   /// edge if `edges_need_times()` is true.
-  /// `init_switch`: whether INIT* is asserted (tied to GND), not debounced.
+  /// `init_switch`: the present level of INIT*, true = asserted (tied to GND). The module debounces it.
   void poll_panel(bool init_switch, Time now);
   /// Does the module's work in one pass of the main loop: completes the start after a reset, updates the
   /// statistics, and processes host OKs, the expiry of the host watchdog, timed outputs, stores and the
@@ -102,8 +102,8 @@ class Module {
   /// See SettingsStore::done.
   void memory_done(bool ok) { keeper_.done(ok); }
 
-  /// Returns the reply to send now, only once for each reply; empty if no reply is ready, or if the time to
-  /// send it has not come. The bytes are valid until `reply_sent`.
+  /// Returns the reply if it may be sent now. Returns each reply only once. The result is empty if no reply
+  /// is ready, or if it is too early to send the reply. The bytes are valid until `reply_sent`.
   Bytes take_reply(Time now) { return cycle_.take_reply(now); }
   /// Ends the reply. Call this when its last stop bit has been sent and the driver is off.
   void reply_sent(Time now) { cycle_.reply_sent(now, turn_around()); }
@@ -114,7 +114,8 @@ class Module {
   [[nodiscard]] StatusLed::Pattern led_pattern() const { return led_.pattern(); }
   /// Returns when the host watchdog expires unless it is restarted; disarmed if it is not running.
   [[nodiscard]] Deadline host_watchdog_expiry() const { return host_watchdog_.expiry(state_.settings); }
-  /// Returns whether the module is listening and no request is waiting, being stored or being answered.
+  /// Returns whether the module is listening, and no request is waiting or being processed. The processing
+  /// ends when the reply has been sent.
   [[nodiscard]] bool at_rest() const {
     return listening() && cycle_.phase() == RequestCycle::Phase::Idle && !receiver_.queue().has_frame();
   }

@@ -29,14 +29,15 @@ class Duration {
 
 constexpr Duration milliseconds(std::uint32_t value) { return Duration(value * 1000U); }
 
-/// A point in time. Times wrap, so they have no order; use `since` instead. Its result is correct if
-/// `earlier` is not the later point, and if the two points are less than 71.6 minutes apart.
+/// A point in time. Times wrap, so they have no order, and this class has no operator `<`. The result of
+/// `since` is correct if `earlier` is not the later point, and if the two points are less than 71.6 minutes
+/// apart.
 class Time {
  public:
   constexpr Time() = default;
   constexpr explicit Time(std::uint32_t microseconds) : microseconds_(microseconds) {}
 
-  /// Returns the raw count, for code that can only pass one 32-bit word.
+  /// Returns the raw count, for code that can pass only one 32-bit word.
   [[nodiscard]] constexpr std::uint32_t microseconds() const { return microseconds_; }
   [[nodiscard]] constexpr Duration since(Time earlier) const {
     return Duration(microseconds_ - earlier.microseconds_);
@@ -58,7 +59,7 @@ class Deadline {
     armed_ = true;
   }
   constexpr void disarm() { armed_ = false; }
-  /// Moves an armed deadline `by` later.
+  /// Adds `by` to the time of an armed deadline.
   constexpr void postpone(Duration by) { when_ = when_ + by; }
 
   [[nodiscard]] constexpr bool armed() const { return armed_; }

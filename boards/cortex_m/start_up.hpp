@@ -32,10 +32,10 @@ struct VectorTable {
 extern "C" std::uint32_t stack_top[];
 
 /// Initialises the variables in RAM, and calls `main`. On the RP2040, this function initialises only the
-/// variables that begin as zero, because the second stage has copied the others to RAM.
+/// variables whose initial value is zero, because the second stage has copied the others to RAM.
 extern "C" [[noreturn]] __attribute__((externally_visible)) void reset_handler();
 
-/// Handles faults and unexpected interrupts: resets the microcontroller immediately, which switches all
+/// Handles faults and unexpected interrupts: resets the microcontroller immediately. The reset switches all
 /// outputs off.
 extern "C" [[noreturn]] void fault_handler();
 
@@ -57,8 +57,8 @@ constexpr std::uint32_t numbers_of(const List& list) {
   return numbers;
 }
 
-/// Returns the vector table. `list`: the interrupts that the image may use. Each exception and each interrupt
-/// without another handler runs `fault_handler`.
+/// Returns the vector table. `on_system_tick`: the handler of the system tick. `list`: the interrupts that
+/// the image may use. If an exception or an interrupt has no other handler, its handler is `fault_handler`.
 template <unsigned interrupts, class List>
 constexpr VectorTable<interrupts> vectors(Handler on_system_tick, const List& list) {
   constexpr Handler kFault = fault_handler;

@@ -15,7 +15,7 @@ _LOADED = 1  # PT_LOAD
 
 @dataclass(frozen=True)
 class Memory:
-    """A preset, and two addresses that depend on the memory regions in image.ld of its board."""
+    """A preset of a board, and two addresses that depend on the memory regions in the board's image.ld."""
 
     preset: str
     vectors: int  # address of the vector table
@@ -24,18 +24,18 @@ class Memory:
 
 @dataclass(frozen=True)
 class Segment:
-    address: int  # of the content while the program runs
+    address: int  # address of the content while the image runs
     stored_at: int  # address to which the content is flashed
     content: bytes
 
 
 def read(path: Path, memory: Memory) -> list[Segment]:
-    """Returns the segments of an image that are loaded and not empty.
+    """Returns the loadable segments of the image file `path`, except empty segments.
 
     Raises Refusal if the file cannot be read, is not an ELF file for Arm, ends inside its headers or inside a segment,
     or is not an image for the board of `memory`. The emulators do not check that an image is for their board. Without
-    this check, QEMU could run a wrong file for 60 s before the program `run` reports an error. If the wrong file
-    enabled the UART within this time, `run` would not report an error.
+    the check in this function, QEMU could run a wrong file for 60 s before the program `run` reports an error. If the
+    wrong file enabled the UART within this time, `run` would not report an error.
     """
     try:
         file = path.read_bytes()

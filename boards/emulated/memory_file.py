@@ -24,7 +24,7 @@ def in_file(option: str, path: Path, size: int) -> int:
     file. Creates a missing file, and fills a new or empty file with `size` blank bytes.
 
     Raises Refusal if the file cannot be opened for reading and writing, is locked, or is not empty and does not have
-    `size` bytes. The message contains `option`, which is the option of the command line that names the file.
+    `size` bytes. The message begins with `option`, the command-line option that names the file.
     """
     try:
         descriptor = os.open(path, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o666)

@@ -29,8 +29,8 @@ class Machine(Protocol):
         """Returns the time in seconds within which `carry` must be called again."""
 
     def carry(self, requests: bytes, ready: list[int]) -> bytes:
-        """Takes the bytes from the master and returns the bytes from the module. `ready`: the readable descriptors. It
-        may also contain descriptors that are not in `watched`.
+        """Takes `requests`, the bytes from the master, and returns the bytes from the module. `ready` must contain the
+        descriptors of `watched` that are readable. It may also contain descriptors that are not in `watched`.
 
         Does not wait for bytes of the master or of the module. Raises Ended if the emulator has ended or has
         reported an error.
@@ -41,7 +41,7 @@ class Machine(Protocol):
 
 
 def parser_for(emulator: str, preset: str) -> argparse.ArgumentParser:
-    """Returns a parser for the arguments that the programs `run` of all boards have in common."""
+    """Returns a parser for the arguments that all programs `run` have in common."""
     parser = argparse.ArgumentParser(
         prog="run",
         description=f"Runs a firmware image in {emulator}. The first line of the output is the path of the "
@@ -51,7 +51,11 @@ def parser_for(emulator: str, preset: str) -> argparse.ArgumentParser:
     parser.add_argument(
         "--link", metavar="PATH", type=Path, help="create a symbolic link to the pseudo-terminal"
     )
-    parser.add_argument("--init", action="store_true", help="tie INIT* to GND: ASCII, address 00, 9600 baud")
+    parser.add_argument(
+        "--init",
+        action="store_true",
+        help="tie INIT* to GND, so that the module uses ASCII, address 00 and 9600 baud",
+    )
     return parser
 
 

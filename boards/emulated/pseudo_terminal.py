@@ -23,8 +23,8 @@ _IN_CLOSE_WRITE, _IN_CLOSE_NOWRITE, _IN_OPEN = 0x08, 0x10, 0x20
 class PseudoTerminal:
     """A pseudo-terminal in raw mode.
 
-    A master is a program that opens the terminal like a serial port. The attribute `master` does not mean such a
-    program: it is the descriptor of the other end, which this class reads and writes.
+    A master is a program that opens the terminal like a serial port. The attribute `master` is not such a
+    program. It is a descriptor, through which this class reads and writes the bytes.
 
     As on a real line, bytes from the module are lost if no master has the terminal open. Bytes from the module that no
     master has read are lost when the last master closes the terminal.
@@ -115,7 +115,7 @@ def _watch(device: str) -> int:
 
 
 def _is_stale(link: Path, own_device: str) -> bool:
-    """Returns whether the link points to a terminal that no longer exists, or to `own_device`. The new terminal can
-    have the name of an earlier one."""
+    """Returns whether the link points to a terminal that no longer exists, or to `own_device`. If the link points
+    to `own_device`, an earlier terminal had the same name."""
     target = os.readlink(link)
     return target.startswith("/dev/pts/") and (target == own_device or not os.path.exists(target))

@@ -17,7 +17,7 @@ set_property(CACHE EX9000_MEMORY PROPERTY STRINGS flash eeprom)
 if(EX9000_MEMORY STREQUAL eeprom)
   set(board_definitions EX9000_SETTINGS_IN_EEPROM)
 elseif(NOT EX9000_MEMORY STREQUAL flash)
-  message(FATAL_ERROR "EX9000_MEMORY: ${EX9000_MEMORY} is not a memory; use flash or eeprom")
+  message(FATAL_ERROR "EX9000_MEMORY: ${EX9000_MEMORY} is not a value of this option; use flash or eeprom")
 endif()
 
 # Runs images in rp2040js.

@@ -1,6 +1,6 @@
-// The clock, the memory of the settings, the pins and the polarity of the Raspberry Pi Pico and the Pico W.
-// For the firmware, the two boards differ only in the pin of the status LED, which board.hpp of each board
-// defines. README.md in this folder describes the wiring.
+// The Raspberry Pi Pico and the Pico W: the clock, the memory of the settings, the pins, and the polarity of
+// the inputs and outputs. For the firmware, the two boards differ only in the pin of the status LED, which
+// board.hpp of each board defines. README.md in this folder describes the wiring.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@ namespace ex9000::board {
 using hal::rp2040::Pin;
 using hal::rp2040::PinGroup;
 
-/// The crystal oscillates at 12 MHz and the oscillator of the PLL at 1500 MHz. The processor and the
+/// The crystal oscillates at 12 MHz. The oscillator of the PLL runs at 1500 MHz. The processor and the
 /// peripherals run at 125 MHz.
 inline constexpr hal::rp2040::ClockTree kClock{12'000'000, 125, 6, 2};
 
@@ -24,8 +24,8 @@ inline constexpr Memory kMemory = Memory::Eeprom;
 #else
 inline constexpr Memory kMemory = Memory::Flash;
 #endif
-/// The offset in the flash, in bytes, of the first byte for settings; used only by images that store the
-/// settings in the flash. image.ld reserves the last 64 KiB for them.
+/// The offset in the flash, in bytes, of the first byte for settings. Only images that store the settings in
+/// the flash use this offset. image.ld reserves the last 64 KiB of the flash for settings.
 inline constexpr std::uint32_t kSettingsInFlash = (2048U - 64U) * 1024U;
 
 /// The line is UART0 on GPIO0 (transmit) and GPIO1 (receive).

@@ -14,18 +14,19 @@
 namespace ex9000 {
 
 /// Passes edges from the edge interrupt to the main loop, as one count for each channel. Rising and falling
-/// edges alternate, so the main loop computes how many edges of each kind there were from the count and the
-/// previous level.
+/// edges alternate. The main loop therefore needs only the count and the previous level to compute the number
+/// of rising edges and the number of falling edges.
 class InputEdges {
  public:
   /// Sets the levels at reset; bit n is channel n. These levels do not count as edges. Call this before
   /// interrupts are enabled.
   void begin(std::uint16_t levels) { levels_ = levels; }
 
-  /// Counts one edge on `channel` if `level`, the present level of the channel, differs from the level at the
-  /// last call for this channel, or at reset. If the two levels are the same, counts two edges. The edge
-  /// interrupt calls this when the hardware has flagged an edge. Ignores the call if `channel` is kMaxInputs
-  /// or greater. `now` must be the current time if `needs_times()`; otherwise any value is allowed.
+  /// Compares `level`, the present level of `channel`, with the level at the previous call for this channel.
+  /// The first call for a channel compares it with the level at reset. If the two levels differ, counts one
+  /// edge. If they are the same, counts two edges. The edge interrupt calls this when the hardware has
+  /// flagged an edge. Ignores the call if `channel` is kMaxInputs or greater. `now` must be the current time
+  /// if `needs_times()` is true; otherwise any value is allowed.
   void on_edge(unsigned channel, bool level, Time now);
 
   /// Sets whether filters need the times of edges from now on. Without filters, the edge interrupt need not
@@ -50,8 +51,9 @@ class InputEdges {
   WrittenByMainLoop<bool> needs_times_;
 };
 
-/// Levels, latches and counters as the protocols read them. The inversion applies first, then the filter.
-/// Levels, latches and counters follow the filtered level. For the main loop only.
+/// Levels, latches and counters of the inputs, as the protocols read them. The level at the terminal is first
+/// inverted and then filtered. Latches and counters use the edges of the filtered level. For the main loop
+/// only.
 ///
 /// Without a filter, every edge of a channel counts. With a filter, a changed level counts as one edge when
 /// it has been stable for the filter time since the last edge. An edge that counts changes the level and sets
@@ -72,14 +74,17 @@ class Inputs {
   /// Sets the inverted channels, bit n for channel n. The levels change immediately, and this change does not
   /// count as an edge.
   void invert(std::uint16_t channels);
-  /// Sets the filter times. They apply from the last edge of each channel on.
+  /// Sets the filter times. The filter time of a channel begins at the last edge of this channel, even if
+  /// that edge was before this call.
   void use_filters(const InputFilters& filters) { filters_ = filters; }
 
   /// Processes the first `channels` channels: counts and latches each edge of a channel without a filter, and
   /// each changed level that has been stable for its filter time at `now`. Call this at least once every
   /// 65535 edges of a channel.
   void collect(InputEdges& edges, unsigned channels, Time now);
-  /// Returns the time until the next changed level has been stable for its filter time, at most `at_most`.
+  /// Returns the time until a changed level that does not count yet has been stable for its filter time. If
+  /// several channels have such a level, returns the shortest of their times. Returns `at_most` if the time
+  /// is longer, or if no channel has such a level.
   [[nodiscard]] Duration until_settled(const InputEdges& edges, Time now, Duration at_most) const;
 
   [[nodiscard]] std::uint16_t levels() const { return levels_; }

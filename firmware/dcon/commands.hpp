@@ -10,10 +10,11 @@
 
 namespace ex9000::dcon {
 
-/// Judges the arguments of a command and returns the reason of a refusal, or None. If the command is not
-/// refused, writes its reply, if it has one, without checksum and CR, and records in the outcome what the
-/// module must do. The arguments are the characters after the address and the key (Dispatch::key). The caller
-/// has checked that their number is in the range of the row.
+/// Judges a command. Returns the reason of a refusal, or None if the command is not refused. If the command
+/// is not refused, the handler records in the outcome what the module must do, and writes the reply without
+/// checksum and CR. The handlers of `#**` and `~**` write no reply. The arguments are the characters after
+/// the address, or after the key if the command has one (Dispatch::key). The caller has checked that their
+/// number is at least `fewest_args` and at most `most_args`.
 using Handler = Refusal (*)(Exchange& exchange);
 
 // configuration_commands.cpp
@@ -58,8 +59,8 @@ constexpr char kBroadcastKey = '*';
 /// The part of a row of kCommands that a firmware image contains.
 struct Dispatch {
   char delimiter = 0;
-  /// The character after the address that selects the command. kNoKey and kBroadcastKey: the command has no
-  /// such character. kBroadcastKey: its address is `**`.
+  /// The character that follows the address and selects the command. kNoKey: the command has no such
+  /// character. kBroadcastKey: the command has no such character, and its address is `**`.
   char key = kNoKey;
   std::uint8_t fewest_args = 0;
   std::uint8_t most_args = 0;

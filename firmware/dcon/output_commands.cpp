@@ -22,8 +22,8 @@ Refusal drive(Exchange& exchange, Drive drive) {
 }
 
 /// Returns the outputs that `#AABBDD` selects with BB = 00, 0A or 0B, and their levels. `selector` is the
-/// second character of BB. The mask is 0 if BB has another value, if the model has no such group, or if
-/// `data` sets an output that the model does not have.
+/// second character of BB, and `data` is the value of DD. The mask is 0 if BB has another value, if the model
+/// has no such group, or if a bit of `data` is 1 for an output that the model does not have.
 Drive group(const Model& model, std::uint8_t selector, int data) {
   const bool high = selector == 'B';
   const unsigned channels = model.output_mask() & (high ? ~unsigned{kLowGroup} : unsigned{kLowGroup});
@@ -36,8 +36,8 @@ Drive group(const Model& model, std::uint8_t selector, int data) {
 
 /// Returns the output that `#AABBDD` selects with BB = 1c, Ac or Bc (c: 0 to 7), and its level. `selector` is
 /// the first character of BB. `channel` is the value of the second character of BB, or -1 if this character
-/// is not an upper-case hex digit. The mask is 0 if BB has another value, if the model has no such output, or
-/// if `data` is not 0 or 1.
+/// is not an upper-case hex digit. `data` is the value of DD. The mask is 0 if BB has another value, if the
+/// model has no such output, or if `data` is neither 0 nor 1.
 Drive single(const Model& model, std::uint8_t selector, int channel, int data) {
   const bool high = selector == 'B';
   if ((selector != '1' && selector != 'A' && !high) || channel < 0 || channel > 7 || data > 1) {
@@ -50,8 +50,8 @@ Drive single(const Model& model, std::uint8_t selector, int channel, int data) {
   return {static_cast<std::uint16_t>(bit), static_cast<std::uint16_t>(data == 1 ? bit : 0U)};
 }
 
-/// The numbers of hex digits that `@AA(Data)` accepts on a model: in the full form, and in the shorter form
-/// of examples of the manuals (wire.md E4). They are equal if the model has no shorter form.
+/// The numbers of hex digits that `@AA(Data)` accepts on a model: in the full form, and in the shorter form,
+/// which comes from examples in the manuals (wire.md E4). They are equal if the model has no shorter form.
 struct Digits {
   std::size_t full;
   std::size_t shortened;

@@ -20,9 +20,9 @@ unsigned status_of(const State& state) {
 
 }  // namespace
 
-/// Handles `~**` if a caller passes such a frame to `answer`. Normally the receiver counts `~**` in the
-/// interrupt and does not queue the frame, so that no host OK is lost. In both cases the host watchdog
-/// restarts.
+/// Handles `~**` if a caller passes such a frame to `answer`. A module never passes `~**` to `answer`: its
+/// receiver processes `~**` in the interrupt and does not queue the frame, so that no host OK is lost. In
+/// both cases the host watchdog restarts.
 Refusal host_ok(Exchange& exchange) {
   exchange.outcome.request(Effect::RestartHostWatchdog);
   return Refusal::None;

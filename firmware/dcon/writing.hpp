@@ -14,9 +14,9 @@ inline void put_hex_word(Reply& reply, std::uint16_t value) {
 }
 
 /// Writes First and Second, the two data bytes of a reply (manuals 1.10). On a model with more than 8 outputs
-/// or more than 8 inputs, First contains the high byte of these channels and Second the low byte. On other
-/// models with outputs, First contains the outputs and Second the inputs. On other models without outputs,
-/// First contains the inputs, and Second is 00.
+/// or more than 8 inputs, First contains the high byte of these channels, and Second contains their low byte.
+/// On a model with 1 to 8 outputs and at most 8 inputs, First contains the outputs, and Second contains the
+/// inputs. On a model without outputs and with at most 8 inputs, First contains the inputs, and Second is 00.
 inline void put_data(const Model& model, std::uint16_t outputs, std::uint16_t inputs, Reply& reply) {
   constexpr unsigned kChannelsOfAByte = 8;
   if (model.outputs > kChannelsOfAByte || model.inputs > kChannelsOfAByte) {

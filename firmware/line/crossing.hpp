@@ -17,7 +17,7 @@ template <class T>
 class Crossing {
   // NOLINTNEXTLINE(bugprone-sizeof-expression): if T is a pointer, the size of the pointer is meant
   static_assert(std::is_trivially_copyable<T>::value && sizeof(T) <= sizeof(std::uintptr_t),
-                "must be read and written by one instruction");
+                "T must be trivially copyable and at most as large as a machine word");
 
  public:
   [[nodiscard, gnu::always_inline]] T load() const {

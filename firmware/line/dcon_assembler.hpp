@@ -1,4 +1,4 @@
-// Assembles DCON (ASCII) frames from received bytes in interrupts.
+// Assembles received bytes into DCON (ASCII) frames, in interrupts.
 #pragma once
 
 #include <cstdint>
@@ -23,8 +23,9 @@ class DconAssembler {
   /// this while bytes are received.
   void answer_to(std::uint8_t address) { own_digits_.store_in_main_loop(hex_digits(address)); }
 
-  /// Processes a received byte. Returns the verdict on the frame that this byte ends, else Open. An accepted
-  /// frame contains the characters from the delimiter on, without CHK and CR. For the receive interrupt.
+  /// Processes a received byte. Returns the verdict on the frame that this byte ends, or Open if it ends no
+  /// frame. An accepted frame contains the characters from the delimiter on, without CHK and CR. For the
+  /// receive interrupt.
   Verdict byte(FrameQueue& queue, std::uint8_t byte, ByteStatus status, Time now);
 
   /// Returns whether the last frame with a correct check was a broadcast. Valid only if that frame was not

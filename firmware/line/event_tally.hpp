@@ -1,4 +1,4 @@
-// Counts events in an interrupt for the main loop.
+// Passes a count of events from an interrupt to the main loop.
 #pragma once
 
 #include <cstdint>
@@ -7,8 +7,8 @@
 
 namespace ex9000 {
 
-/// Counts events in an interrupt and passes the count to the main loop. Each event is counted exactly once if
-/// the main loop calls `collect` at least once every 65535 events.
+/// Counts events in an interrupt and passes the count to the main loop. The main loop must call `collect` at
+/// least once every 65535 events. The results of `collect` then include each event exactly once.
 class EventTally {
  public:
   /// Counts `events` events. For the interrupt.

@@ -27,9 +27,9 @@ struct Frame {
 };
 
 /// Two frame buffers that are used in turn: one frame waits for the main loop while the next one is
-/// assembled. The main loop drops a frame before it executes or stores the command of this frame, so the
-/// queue keeps one more complete frame during this time. Further frames are lost, and `complete_in_interrupt`
-/// returns false for them.
+/// assembled. The main loop drops a frame before it executes or stores the command of this frame. While the
+/// main loop executes or stores the command, the queue can therefore keep one more complete frame. Further
+/// frames are lost, and `complete_in_interrupt` returns false for them.
 class FrameQueue {
  public:
   /// Returns the frame that is being assembled. For the interrupt.

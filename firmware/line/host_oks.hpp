@@ -10,8 +10,8 @@ namespace ex9000 {
 
 /// Stores the times of the first and the last host OK that the main loop has not taken yet. Host OKs between
 /// these two do not matter, because the host watchdog cannot expire between the first and the last: a host OK
-/// wakes the main loop, and one pass of the main loop is shorter than the shortest timeout, 0.1 s. A request
-/// that counts like a host OK (register 0x0251) is stored like one.
+/// wakes the main loop, and one pass of the main loop is shorter than the shortest timeout, 0.1 s. The time
+/// of a request that counts like a host OK (register 0x0251) is stored in the same way.
 class HostOks {
  public:
   /// In ASCII, a host OK counts from its CR. In Modbus, it counts from the end of its silence. Exception: if
@@ -46,7 +46,7 @@ class HostOks {
 
   /// Returns the number of host OKs, and of requests that count like one, since reset; wraps.
   [[nodiscard]] std::uint32_t received() const { return received_.load(); }
-  /// Returns the time of the last host OK; 0 if there was none.
+  /// Returns the time that was stored last; 0 if no time has been stored.
   [[nodiscard]] Time last() const { return Time(last_.load()); }
 
  private:

@@ -11,9 +11,9 @@
 
 namespace ex9000 {
 
-/// Counts frames by verdict, so that the interrupt increments at most one count for each frame. To read a
-/// counter, the main loop adds up the counts of some verdicts. The counts are 32-bit words, which take less
-/// time in the interrupt than the 16-bit count of an EventTally.
+/// Counts damaged bytes, and counts frames by verdict. The end of a frame therefore increments at most one
+/// count. To read a counter of frames, the main loop adds up the counts of some verdicts. The counts are
+/// 32-bit words, which take less time in the interrupt than the 16-bit count of an EventTally.
 class LineTallies {
  public:
   /// Counts a frame. For interrupts.

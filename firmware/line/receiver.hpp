@@ -32,10 +32,10 @@ class Receiver {
   // --- interrupts, which must not interrupt each other ---
 
   /// Processes a received byte. `now` is the time at which the UART reports the byte; LineTiming takes into
-  /// account the part of the stop bits that is left. Returns the time from `now` after which `on_silence`
-  /// must be called: restart the silence timer with this time. Do not change the timer if the result is 0. In
-  /// Modbus, the result is `rtu_silence` for each byte. In DCON, the result is the turn-around time for the
-  /// CR of an accepted frame, otherwise 0.
+  /// account the part of the stop bits that is left. `on_silence` must be called when the returned time has
+  /// passed since `now`: restart the silence timer with this time. Do not change the timer if the result is
+  /// 0. In Modbus, the result is `rtu_silence` for each byte. In DCON, the result is the turn-around time if
+  /// the byte is the CR of an accepted frame, otherwise 0.
   Duration on_byte(std::uint8_t byte, ByteStatus status, Time now);
 
   /// Call this when the time that `on_byte` or `on_silence` returned has passed. Returns the time after which
@@ -59,7 +59,7 @@ class Receiver {
   [[nodiscard]] const FrameQueue& queue() const { return queue_; }
   constexpr LineTallies& tallies() { return tallies_; }
   [[nodiscard]] constexpr const LineTallies& tallies() const { return tallies_; }
-  /// Returns the times of the host OKs, and of the requests that restart the host watchdog like one.
+  /// Returns the times of the host OKs, and of the requests that count like a host OK.
   HostOks& host_oks() { return host_oks_; }
   [[nodiscard]] const HostOks& host_oks() const { return host_oks_; }
 
@@ -84,7 +84,7 @@ class Receiver {
   FrameQueue queue_;
 };
 
-// Inline because it runs for each byte on the line, including bytes for other modules.
+// `on_byte` is inline, because it runs for each byte on the line, including bytes for other modules.
 inline Duration Receiver::on_byte(std::uint8_t byte, ByteStatus status, Time now) {
   if (status != ByteStatus::Good && status != ByteStatus::Overrun) {
     tallies_.count_damaged_byte_in_interrupt();

@@ -71,7 +71,7 @@ class RtuAssembler {
   bool rest_spoiled_ = false;   ///< the same for any other byte
   bool overrun_ = false;        ///< one of these line errors was an overrun
   Crc16 whole_;                 ///< CRC of all bytes
-  Crc16 crc_after_first_;       ///< CRC of all bytes except the first, if that is 00
+  Crc16 crc_after_first_;       ///< CRC of all bytes except the first; valid only if the first is 00
   Time last_;                   ///< when the UART reported the last byte
   bool broadcast_ = false;      ///< the value of `last_was_broadcast`
 };

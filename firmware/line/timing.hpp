@@ -1,4 +1,4 @@
-// The times that separate received frames from each other and a reply from its request.
+// The times between received frames, and the time between a request and its reply.
 #pragma once
 
 #include <cstdint>
@@ -9,11 +9,11 @@
 namespace ex9000 {
 
 struct LineTiming {
-  /// Shortest time between the report of CR and the reply: the rest of the stop bits of CR and one character,
-  /// rounded up.
+  /// Shortest time between the report of CR and the reply: the rest of the stop bits of CR plus one
+  /// character, rounded up.
   Duration dcon_turn_around;
   /// Time from the report of a byte to the end of the silence that ends a Modbus RTU frame and precedes a
-  /// reply: the rest of the stop bits and T3.5. It is rounded up, so that a reply is never early.
+  /// reply: the rest of the stop bits plus T3.5. It is rounded up, so that a reply is never early.
   Duration rtu_silence;
   /// Time after `rtu_silence` within which the UART reports a byte that began before the end of T3.5: the
   /// time from the beginning of a byte to its report. It is rounded down, so that a byte that begins exactly
@@ -28,8 +28,8 @@ struct LineTiming {
   /// A value for `rtu_slack` that allows every gap.
   static constexpr Duration kAnyGap{0xFFFF'FFFFU};
 
-  /// Returns the times for a UART that reports a byte at the end of its first stop bit. T3.5 is 3.5
-  /// characters of 11 bits in every format up to 19200 baud, and 1.75 ms above 19200 baud (Modbus over Serial
+  /// Returns the times for a UART that reports a byte at the end of its first stop bit. Up to 19200 baud,
+  /// T3.5 is 3.5 characters of 11 bits in every format. Above 19200 baud, T3.5 is 1.75 ms (Modbus over Serial
   /// Line V1.02, 2.5.1.1). Gaps within a frame are allowed, because USB adapters and gateways cause them.
   /// `baud`: 50 to 4000000 bits per second.
   static constexpr LineTiming at(std::uint32_t baud, LineFormat format) {
@@ -45,8 +45,8 @@ struct LineTiming {
     return timing;
   }
 
-  /// Returns the times that correspond to those of `at` for a UART that reports a byte in the middle of its
-  /// first stop bit. `baud` must be one of kBaudRates.
+  /// Returns the times for a UART that reports a byte in the middle of its first stop bit. T3.5 and the
+  /// allowed gaps are as in `at`. `baud` must be one of kBaudRates.
   static constexpr LineTiming reported_in_stop_bit(std::uint32_t baud, LineFormat format) {
     LineTiming timing = at(baud, format);
     const Duration half_bit(microseconds(1, baud) + 1U);
@@ -91,7 +91,7 @@ struct LineTiming {
 };
 
 /// A function that returns the times at a baud rate and format, for example `LineTiming::at`. A simulated
-/// line on which bytes take almost no time uses another function.
+/// line on which bytes take almost no time uses a function that is not in LineTiming.
 using TimingAt = LineTiming (*)(std::uint32_t baud, LineFormat format);
 
 }  // namespace ex9000

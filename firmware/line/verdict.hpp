@@ -12,11 +12,11 @@ enum class ByteStatus : std::uint8_t { Good, FramingError, ParityError, Break, O
 /// no other frame. LineTallies requires this order of the values, because it counts ranges of them.
 enum class Verdict : std::uint8_t {
   Open,       ///< no frame has ended, or an incomplete frame is dropped
-  Accepted,   ///< correct, and for this module or a broadcast; the frame is in the queue
-  HostOk,     ///< a host OK; counted in the interrupt, so that it is never lost
-  Ignored,    ///< ASCII: correct and a broadcast, but not a command
-  Foreign,    ///< correct, but neither for this module nor a broadcast
-  NoRoom,     ///< correct, and for this module or a broadcast, but lost because another frame is waiting
+  Accepted,   ///< correct, and for this module or for all modules; the frame is in the queue
+  HostOk,     ///< a host OK; the interrupt stores its time, so that no host OK is lost
+  Ignored,    ///< ASCII: a correct broadcast other than `#**` and `~**`
+  Foreign,    ///< correct, but neither for this module nor for all modules
+  NoRoom,     ///< correct, and for this module or for all modules, but lost because another frame is waiting
   BadCheck,   ///< wrong or missing checksum, wrong CRC
   TooShort,   ///< ASCII with checksum: fewer than 3 characters; Modbus: fewer than 4 bytes
   TooLong,    ///< longer than the longest allowed frame

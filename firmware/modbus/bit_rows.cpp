@@ -84,8 +84,8 @@ std::uint16_t read_counting_edge(const State& state) {
 Refusal write_counting_edge(const State& state, BitWrite bits, Outcome& outcome) {
   const unsigned others = state.settings.format & ~unsigned{kFormatRisingEdge};
   outcome.change().format = static_cast<std::uint8_t>(others | (bits.value != 0 ? kFormatRisingEdge : 0U));
-  // Bit 7 of FF in `%` takes effect at the next reset. This coil takes effect immediately, even if the stored
-  // bit stays the same.
+  // A `%` command changes the edge at the next reset. A write of this coil changes the edge immediately, even
+  // if the stored bit stays the same.
   outcome.request(Effect::TakeCountingEdge);
   return Refusal::None;
 }

@@ -10,10 +10,10 @@
 
 namespace ex9000::modbus {
 
-/// Judges a request and returns the reason of a refusal, or None. If the request is neither refused nor
-/// ignored, appends the data to the reply, which already contains address and function code, and records in
-/// the outcome what the module must do. The frame of the request contains address, function code and data,
-/// without CRC; it has at least 2 bytes.
+/// Judges a request and returns the reason of a refusal, or None. The reply already contains address and
+/// function code. If the request is neither refused nor ignored, the handler appends the data to the reply.
+/// It then also records in the outcome what the module must do. The frame of the request contains address,
+/// function code and data, without CRC; it has at least 2 bytes.
 using Handler = Refusal (*)(Exchange& exchange);
 
 // read_functions.cpp
@@ -33,7 +33,7 @@ Refusal vendor_function(Exchange& exchange);
 
 enum class AtBroadcast : std::uint8_t {
   Ignored,
-  CarriedOut,  ///< executed or refused without a reply; a write of configuration is ignored
+  CarriedOut,  ///< executed or refused without a reply; a write to a row with `kConfiguration` is ignored
 };
 
 struct FunctionRow {

@@ -6,7 +6,7 @@ namespace ex9000::modbus {
 
 namespace {
 
-// The tables without their texts, which an image does not contain.
+// The tables without their texts. An image does not contain these texts.
 constexpr auto kBitRows = rows_of_built_models<kBitRegisters, &BitRegister::row>();
 constexpr auto kWordRows = rows_of_built_models<kWordRegisters, &WordRegister::row>();
 

@@ -56,20 +56,21 @@ constexpr Rules kConfiguration = 1U << 2U;  ///< writes by broadcast are ignored
 constexpr Rules kExtension = 1U << 3U;      ///< `~AAX` accesses the row too (firmware/extensions.md)
 constexpr Rules kLong = 1U << 4U;           ///< pairs of registers with 32-bit values, high word first
 
-/// The part of a row of coils or discrete inputs that an image contains.
+/// A row of kBitRegisters without its texts. An image contains only this part of the row.
 struct BitRow {
   std::uint16_t first = 0;
   Width width = Width::One;
   Needs needs = Needs::Nothing;
   Functions functions = 0;
   Rules rules = kPlain;
-  std::uint16_t (*read)(const State& state) = nullptr;  ///< returns all bits of the row; bit 0 is the first
+  /// Returns all bits of the row. Bit 0 is the value of the row's first coil or discrete input.
+  std::uint16_t (*read)(const State& state) = nullptr;
   Refusal (*write)(const State& state, BitWrite bits, Outcome& outcome) = nullptr;
 
   [[nodiscard]] constexpr bool has(Rules rule) const { return (rules & rule) != 0; }
 };
 
-/// The part of a row of registers that an image contains.
+/// A row of kWordRegisters without its texts. An image contains only this part of the row.
 struct WordRow {
   std::uint16_t first = 0;
   Width width = Width::One;
@@ -192,7 +193,7 @@ inline constexpr auto kBitRegisters = table<BitRegister>({
       write_protocol}},
     {"watchdog-enable",
      "host watchdog enable",
-     "0 off, 1 on and restart; on requires a timeout other than 0",
+     "0 off, 1 on and restart; 1 only if the timeout is not 0",
      {0x0104, Width::One, Needs::Nothing, kReadCoils | kWriteSingleCoil, kPlain, read_watchdog_enable,
       write_watchdog_enable}},
     {"clear-latches",
@@ -206,7 +207,7 @@ inline constexpr auto kBitRegisters = table<BitRegister>({
       write_clear_timeout_status}},
     {"clear-counters",
      "clear the channel's counter",
-     "1 clears; 0, by function 0F only, leaves it as it is",
+     "1 clears it; 0 changes nothing and requires function 0F",
      {0x0200, Width::PerInput, Needs::Inputs, kWriteSingleCoil | kWriteMultipleCoils, kOnlyOn, nullptr,
       write_clear_counters}},
     {"counting-edge",
@@ -226,7 +227,7 @@ inline constexpr auto kWordRegisters = table<WordRegister>({
       read_counter, nullptr}},
     WordRegister{
         "module-code",
-        "module code in two registers: 0x0090, then its last two digits and 00",
+        "module code in two registers; for example, the code 0x9042 is read as 0x0090 and 0x4200",
         "",
         {0x01E2, Width::Two, Needs::Nothing, kReadHoldingRegisters, kPlain, 0, 0, read_module_code, nullptr}},
     {"address",
@@ -257,8 +258,8 @@ inline constexpr auto kWordRegisters = table<WordRegister>({
                  {0x0250, Width::One, Needs::Inputs, kReadRegisters | kWriteRegisters,
                   kExtension | kConfiguration, 0, 0xFFFF, read_inverted_inputs, write_inverted_inputs}},
     WordRegister{"watchdog-feed",
-                 "what restarts the host watchdog, besides its enable and a write of its timeout: 0 a host "
-                 "OK, 1 also every request for this module",
+                 "requests that restart the host watchdog; 0: a host OK, and requests that enable the host "
+                 "watchdog or write its timeout; 1: also all other requests for this module",
                  "0 or 1; not by broadcast",
                  {0x0251, Width::One, Needs::Nothing, kReadRegisters | kWriteRegisters,
                   kExtension | kConfiguration, 0, 1, read_fed_by_requests, write_fed_by_requests}},
@@ -320,17 +321,17 @@ inline constexpr auto kWordRegisters = table<WordRegister>({
         {0x0308, Width::Eight, Needs::Nothing, kReadRegisters, kExtension, 0, 0, read_tally, nullptr}},
     // This row is documentation only. The receiver detects a host OK, so no function uses this row.
     WordRegister{"host-ok",
-                 "host OK: a request for 0 or 1 registers from here restarts the host watchdog and gets no "
-                 "reply; address 0 reaches all modules",
+                 "host OK: a request to read this register, with quantity 0 or 1, restarts the host watchdog "
+                 "and gets no reply; address 0 reaches all modules",
                  "",
                  {kHostOkRegister, Width::One, Needs::Nothing, 0, kPlain, 0, 0, nullptr, nullptr}},
 });
 
-/// Returns the row that contains the `quantity` (1 to 2000) coils or discrete inputs from `address` on and
-/// that `function` can access on this model, or null.
+/// Returns the row that `function` can access on this model, and that contains all `quantity` (1 to 2000)
+/// coils or discrete inputs from `address` on. Returns null if there is no such row.
 const BitRow* find_bits(const Model& model, Functions function, unsigned address, unsigned quantity);
-/// Returns the row that contains the register `address` and that `function` can access on this model, or
-/// null. `address` may be above 0xFFFF; the result is then null.
+/// Returns the row that `function` can access on this model, and that contains the register `address`.
+/// Returns null if there is no such row. `address` may be above 0xFFFF; the result is then null.
 const WordRow* find_word(const Model& model, Functions function, unsigned address);
 /// Returns the row of the extension register `address` (0 to 0xFFFF), or null if this model has no extension
 /// register with this address.

@@ -8,7 +8,7 @@
 
 namespace ex9000::modbus {
 
-/// In the order of registers 0x0308 to 0x030F. Function 08 reads the first six.
+/// The line tallies in the order of registers 0x0308 to 0x030F. Function 08 reads the first six.
 enum class Tally : std::uint8_t {
   BusMessages,
   BusErrors,
@@ -20,8 +20,8 @@ enum class Tally : std::uint8_t {
   LostFrames,
 };
 
-/// Returns the count since reset or the last clearing; wraps. The count includes the request of `exchange` if
-/// `tally` counts that request.
+/// Returns the count since reset or the last clearing, modulo 65536. The count includes the request of
+/// `exchange` if `tally` counts that request.
 inline std::uint16_t count_of(const Exchange& exchange, Tally tally) {
   const LineTallies& line = exchange.tallies;
   const Diagnostics& own = exchange.state.diagnostics;

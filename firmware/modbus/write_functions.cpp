@@ -1,6 +1,6 @@
 // Functions 05, 06, 0F, 10: Modbus Application Protocol V1.1b3, 6.5, 6.6, 6.11, 6.12. The order of the checks
-// is: length and quantity, address, value, timeout status. Exception: function 05 checks for FF00 and 0000
-// before the address. A request that fails a check changes nothing.
+// is: length and quantity, address, value, timeout status. Before the address, function 05 also checks that
+// the value is FF00 or 0000. A request that fails a check changes nothing.
 #include "firmware/modbus/functions.hpp"
 #include "firmware/modbus/registers.hpp"
 
@@ -15,8 +15,8 @@ constexpr unsigned kMostRegisters = 123;
 constexpr std::uint16_t kCoilOn = 0xFF00;
 constexpr std::uint16_t kCoilOff = 0x0000;
 
-/// Appends the data of the reply of functions 05, 06, 0F and 10: the address, and the value or the quantity,
-/// of the request.
+/// Appends bytes 2 to 5 of the request to the reply of functions 05, 06, 0F and 10. Bytes 2 and 3 are the
+/// address; bytes 4 and 5 are the value or the quantity.
 void put_echo(Exchange& exchange) { exchange.reply.put(exchange.frame.first(kSingleSize).from(2)); }
 
 Refusal write_bits(Exchange& exchange, const BitRow& row, BitWrite bits) {

@@ -17,7 +17,7 @@ constexpr unsigned kFormatShift = 6;
 /// The largest code: the last rate with the last format.
 constexpr std::uint8_t kLargestBaudCode = 0xC0 | kLastBaudCode;
 
-/// Baud rates in bits per second of the codes 03 to 0A.
+/// The baud rates of the codes 03 to 0A, in bits per second.
 constexpr std::array<std::uint32_t, kLastBaudCode - kFirstBaudCode + 1> kBaudRates{
     1200, 2400, 4800, 9600, 19200, 38400, 57600, 115200};
 

@@ -43,8 +43,9 @@ constexpr bool some_model_meets(Needs /*needs*/) { return true; }
 
 #endif
 
-/// Returns whether `model` meets the `needs` of a row of a table, for example of a command. Always true if
-/// EX9000_MODEL is defined, because the program then contains only the rows whose needs its model meets.
+/// Returns whether `model` meets the `needs` of a row of a table, for example of a command. If EX9000_MODEL
+/// is defined, the result is always true, because the program contains only the rows whose needs the model
+/// meets.
 constexpr bool has(const Model& model, Needs needs) {
 #ifdef EX9000_MODEL
   static_cast<void>(model);

@@ -1,5 +1,5 @@
-// The models, one table row each. To add a model, add a row: the protocol code does not depend on
-// designations.
+// The models, one table row each. The protocol code does not depend on designations. .github/CONTRIBUTING.md
+// describes how to add a model.
 #pragma once
 
 #include <cstdint>
@@ -75,8 +75,8 @@ inline constexpr auto kModels = table<Model>({
     {"EX9068AD-M", 0, 8, 0x9068, StatusStyle::TimeoutOnly, "9068D-M", 7, "8 PhotoMOS outputs",
      OutputKind::PhotoMos},
     // Other models. Their outputs are from the tables 2.3 and 2.11 of the manuals, and their inputs are
-    // those of the ICP DAS I-70xx modules with the same last two digits. The Modbus maps of their -M models
-    // follow from the rules of section 7 of wire.md.
+    // those of the ICP DAS I-70xx modules with the same last two digits. The Modbus map of the EX9060D-M is
+    // from its manual. The maps of the EX9044D-M and EX9053D-M are inferred (wire.md section 1).
     {"EX9044D", 4, 8, 0, StatusStyle::TimeoutOnly, "9044", 6, "4 inputs, 8 open-collector outputs",
      OutputKind::OpenCollector},
     {"EX9044D-M", 4, 8, 0x9044, StatusStyle::TimeoutOnly, "9044M", 6, "4 inputs, 8 open-collector outputs",

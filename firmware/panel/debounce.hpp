@@ -30,8 +30,8 @@ class Debounce {
   [[nodiscard]] bool known() const { return known_; }
   /// Returns the last accepted level; false if none has been accepted since reset.
   [[nodiscard]] bool level() const { return level_; }
-  /// Returns when to sample the switch again, at most 1 ms after the last sample. Disarmed before the first
-  /// sample, and while no level is waiting to be accepted.
+  /// Returns when to sample the switch again, at most 1 ms after the last sample. The result is disarmed
+  /// before the first sample, and while no level is waiting to be accepted.
   [[nodiscard]] Deadline next_sample() const { return next_sample_; }
 
  private:

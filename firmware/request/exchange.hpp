@@ -9,9 +9,9 @@
 
 namespace ex9000 {
 
-/// The argument of a handler, which is the C++ function of a DCON command or of a Modbus function. A handler
-/// reads the request, the module's state and the tallies, writes the reply, and records in the outcome what
-/// the module must do. It changes nothing else.
+/// The argument of a handler. A handler is the C++ function for a DCON command or a Modbus function. It reads
+/// the request, the module's state and the tallies, writes the reply, and records in the outcome what the
+/// module must do. It changes nothing else.
 struct Exchange {
   constexpr Exchange(const State& state_of_module, const LineTallies& tallies_of_line)
       : state(state_of_module), tallies(tallies_of_line) {}
@@ -21,7 +21,7 @@ struct Exchange {
 
   Bytes frame;       ///< the request without checksum, CRC and CR; empty when it has been judged
   Bytes args;        ///< the arguments of a DCON command (dcon/commands.hpp); set before a DCON handler runs
-  bool broadcast{};  ///< whether a Modbus request has address 0; set for each Modbus request
+  bool broadcast{};  ///< whether the request has address 0; for Modbus only
 
   Outcome outcome;
   Reply reply;

@@ -20,12 +20,12 @@ enum class Refusal : std::uint8_t {
   NoSample,        ///< `$AA4` before the first `#**`
   // Modbus exceptions; modbus.cpp maps these reasons to exception codes
   UnknownFunction,     ///< 01
-  UnknownSubfunction,  ///< 01 for 08 and 2B, 02 for 46
+  UnknownSubfunction,  ///< 01 in functions 08 and 2B, 02 in function 46
   WrongLength,         ///< 03; also if the byte count does not match the quantity or the length
   WrongQuantity,       ///< 03
   WrongCoilValue,      ///< 03: function 05 with a value other than FF00 and 0000
   WrongAddress,        ///< 02
-  WrongValue,          ///< 03; in ASCII, `?AA` to `~AAX`
+  WrongValue,          ///< 03; in ASCII, the reply to `~AAX` is `?AA`
   UnknownObject,       ///< 02, in function 2B/0E
   // both protocols
   OutputsBlocked,  ///< ASCII `!`, Modbus 04: the timeout status is set
@@ -45,7 +45,7 @@ struct TimedDrive {
   std::array<std::uint16_t, kMaxOutputs> units{};
 };
 
-/// Actions of a request other than changing settings and driving outputs. The module carries them out last.
+/// An action that neither changes settings nor drives outputs. The module carries out these actions last.
 enum class Effect : std::uint8_t {
   RestartHostWatchdog,
   TakeAddress,       ///< use the stored address from now on

@@ -12,8 +12,8 @@
 
 namespace ex9000 {
 
-/// Holds a frame of up to kLongestFrame bytes and drops all bytes after that. No handler needs more: the
-/// longest Modbus reply is an echo of the longest request, and every DCON reply is shorter than 32 bytes.
+/// Holds a frame of up to kLongestFrame bytes, and drops all further bytes. No reply is longer: the longest
+/// Modbus reply is an echo of the longest request, and every DCON reply is shorter than 32 bytes.
 class Reply {
  public:
   void clear() { size_ = 0; }

@@ -9,16 +9,16 @@
 
 namespace ex9000 {
 
-/// Tracks one request at a time: the request is judged once, changed settings are stored, its actions are
-/// carried out, and then its reply is sent. The cycle judges the request, tracks the phase and keeps the
-/// reply; Module does the rest. For the main loop only. No function blocks.
+/// Tracks one request at a time: the request is judged once, changed settings are stored, the actions of the
+/// request are carried out, and then its reply is sent. The cycle judges the request, tracks the phase and
+/// keeps the reply; Module does the rest. For the main loop only. The functions do not block.
 class RequestCycle {
  public:
   enum class Phase : std::uint8_t {
     Idle,           ///< the next request may be judged
     AwaitingStore,  ///< judged; the store of the changed settings has not begun
     Storing,        ///< judged; the memory is storing the changed settings
-    ReplyReady,     ///< done; the reply waits for the gap after the last reply and for the response delay
+    ReplyReady,     ///< done; the reply waits until the gap after a reply and the response delay are over
     Replying,       ///< the reply is being sent
   };
 
@@ -37,8 +37,8 @@ class RequestCycle {
   [[nodiscard]] const Outcome& outcome() const { return exchange_.outcome; }
   /// Changes the phase to Storing. Call this while AwaitingStore, when the store has begun.
   void store_begun() { phase_ = Phase::Storing; }
-  /// Removes the change of the timeout status from a request that awaits its store or is being stored. Call
-  /// this when the host watchdog has expired, because such a request must not clear the new timeout status
+  /// Removes the change of the timeout status from the request, if the phase is AwaitingStore or Storing.
+  /// Call this when the host watchdog has expired, because the request must not clear the new timeout status
   /// (wire.md D17).
   void keep_timeout_status();
   /// Removes all actions of the request and replaces the reply with an error reply. The empty reply to a
@@ -49,14 +49,14 @@ class RequestCycle {
   /// may be judged. Call this when the outcome has been carried out, or after `refuse_store`.
   bool finish();
 
-  /// Returns the reply to send now, only once for each reply; empty if no reply is ready, or if the time to
-  /// send it has not come. The bytes are valid until `reply_sent`.
+  /// Returns the reply if it may be sent now. Returns each reply only once. The result is empty if no reply
+  /// is ready, or if it is too early to send the reply. The bytes are valid until `reply_sent`.
   Bytes take_reply(Time now);
   /// Ends the reply. Call this when its last stop bit has been sent and the driver is off. The next reply
-  /// begins at the earliest `silence` after `now` (wire.md D18).
+  /// begins no earlier than the time `now` + `silence` (wire.md D18).
   void reply_sent(Time now, Duration silence);
-  /// Ends the gap after a reply if the gap is over. Two calls must be at most 30 minutes apart: times wrap,
-  /// so an old deadline would later appear to be in the future.
+  /// Disarms the deadline of the gap after a reply if the gap is over. Call this at least once every 30
+  /// minutes: times wrap, so an old deadline would later appear to be in the future.
   void end_reply_gap(Time now);
   /// Returns the time until `take_reply` returns the reply. Call this only while ReplyReady.
   [[nodiscard]] Duration until_reply(Time now) const;

@@ -2,7 +2,8 @@
 
 Unless INIT* is grounded, `Machine` sets INIT* high before the first instruction. QEMU emulates no pull-ups: an input
 that is not driven is low, and each reset of the board makes all inputs low. Therefore, if the image or its watchdog
-requests a reset, QEMU only stops. `Machine` then resets the board and, unless INIT* is grounded, sets INIT* high again.
+requests a reset, QEMU pauses and does not reset the board. `Machine` then resets the board and, unless INIT* is
+grounded, sets INIT* high again.
 """
 
 from __future__ import annotations
@@ -28,8 +29,8 @@ _INIT_RELEASED = "set_irq_in /machine/unattached/device[8] unnamed-gpio-in 7 1" 
 _UART0_CONTROL = 0x4000C030
 _DRIVER_ENABLE = 0x40004100  # an address that reads only PA6, which is high while the module sends
 _PR_SET_PDEATHSIG = 1
-# The time, in seconds of the host's clock, within which a started image must enable its UART, and within which QEMU
-# must end after the command `quit`. The time is so long that it does not expire on a busy host.
+# A time in seconds of the host's clock. A started image must enable its UART within this time, and QEMU must end within
+# this time after the command `quit`. The time is long enough for a busy host.
 _HANG = 60
 
 
@@ -96,15 +97,15 @@ class Machine:
         """Takes bytes of the master and returns bytes of the module. `ready` must contain the descriptors of `watched`
         that are readable.
 
-        Does not wait for bytes of the master or of the module, because QEMU stops if nobody takes the bytes of the
-        UART. Raises Ended if QEMU has ended or has reported an error.
+        Does not wait for bytes of the master or of the module, because QEMU hangs while the socket for the bytes of
+        the UART is full. Raises Ended if QEMU has ended or has reported an error.
         """
         if self._events.fileno() in ready:
             self._take_events()
         reply = self._received_from(self._line) if self._line.fileno() in ready else b""
         # QEMU's UART sends without delay, so the master gets a reply before the module disables its driver. Without
-        # this queue, the module would lose the next request of a fast master. On a real line, the module disables its
-        # driver shortly after the last stop bit.
+        # the queue `_queued_bytes`, the module would lose the next request of a fast master. On a real line, the module
+        # disables its driver shortly after the last stop bit.
         self._queued_bytes += requests
         self._send_queued()
         return reply
@@ -113,8 +114,9 @@ class Machine:
         """Sends queued bytes if the module's driver is off. Bytes that do not fit into the buffer of the socket are
         lost. On a real line, bytes that the module does not receive are also lost.
 
-        Call this even if nothing is queued: if the module hangs, QEMU's virtual time may stop until QEMU gets a
-        command. Without such a command, the watchdog would not reset the module.
+        Call this even if nothing is queued, because it always sends a command to QEMU. If the module hangs, QEMU's
+        virtual time may stop until QEMU gets a command. Without such a command, the watchdog would not reset the
+        module.
         """
         speaking = self._word_at(_DRIVER_ENABLE)
         if self._queued_bytes and not speaking:

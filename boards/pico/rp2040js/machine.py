@@ -69,7 +69,7 @@ class Machine:
             )
         libc = ctypes.CDLL(None)
         try:
-            # The emulator gets its own session, so that Ctrl-C does not reach it; `end` ends it.
+            # The emulator gets its own session, so that Ctrl-C does not reach the emulator. `end` ends the emulator.
             return subprocess.Popen(
                 ["node", str(_EMULATOR)],
                 stdin=subprocess.PIPE,
@@ -91,7 +91,8 @@ class Machine:
 
     def carry(self, requests: bytes, _ready: list[int]) -> bytes:
         """Lets virtual time pass up to the time of the host, and then begins to send `requests`, the bytes of the
-        master. The module receives them during later calls. Returns the bytes that the module has sent.
+        master. The module receives them during later calls. Returns the bytes that the module has sent since the last
+        call.
 
         Raises Ended if the emulator has ended or reports an error.
         """

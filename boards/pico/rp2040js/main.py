@@ -33,17 +33,17 @@ def main(words: list[str]) -> int:
         "--flash",
         metavar="FILE",
         type=Path,
-        help="keep the end of the flash, where images store the settings unless they are built with "
-        "EX9000_MEMORY=eeprom, in this file of 65536 bytes; if the file is missing, create it with the memory of a "
-        "factory-fresh module",
+        help="keep the last 65536 bytes of the flash in this file; if the file is missing, create it with the memory "
+        "of a factory-fresh module. Images store the settings in this part of the flash, unless the images are built "
+        "with EX9000_MEMORY=eeprom",
     )
     parser.add_argument(
         "--eeprom",
         metavar="FILE",
         type=Path,
-        help="keep the contents of the EEPROM, where images that are built with EX9000_MEMORY=eeprom store "
-        "the settings, in this file of 8192 bytes; if the file is missing, create it with the memory of a "
-        "factory-fresh module",
+        help="keep the contents of the EEPROM in this file of 8192 bytes; if the file is missing, create it with the "
+        "memory of a factory-fresh module. Images that are built with EX9000_MEMORY=eeprom store the settings in the "
+        "EEPROM",
     )
     arguments = parser.parse_args(words)
 

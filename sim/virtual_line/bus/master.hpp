@@ -24,8 +24,8 @@ class Master final : public Station {
   [[nodiscard]] VirtualTime takes(std::size_t bytes) const { return wire_.takes(bytes, mode_); }
   /// Adds the bytes to the end of the queue of this master. If the master is already sending, the new bytes
   /// follow without a gap, and `not_before` is ignored. Otherwise the first new byte begins now or at
-  /// `not_before`, whichever is later. The driver is enabled from the first byte to the last. Does not block. The bytes at the positions `damaged`, counted from 0, have
-  /// wrong parity if the format has a parity bit.
+  /// `not_before`, whichever is later. The driver is enabled from the first byte to the last. Does not block.
+  /// The bytes at the positions `damaged`, counted from 0, have wrong parity if the format has a parity bit.
   void send(const std::uint8_t* bytes, std::size_t size, VirtualTime not_before = VirtualTime(0),
             const std::vector<std::size_t>& damaged = {});
   /// Returns whether bytes of this master wait or are on the wires.
@@ -70,8 +70,8 @@ class Master final : public Station {
   bool driving_ = false;
   VirtualTime burst_began_{0};
   std::size_t burst_bytes_ = 0;
-  /// The end of the byte that this master is sending. If it is sending none: the begin of its first waiting
-  /// byte. kNever: no byte waits or is on the wires.
+  /// The end of the byte that this master is sending. If it is sending none: the beginning of its first
+  /// waiting byte. kNever: no byte waits or is on the wires.
   VirtualTime next_ = kNever;
 
   void wake_at(VirtualTime when);

@@ -18,7 +18,7 @@ namespace detail {
 template <class T>
 class Crossing {
   static_assert(std::is_trivially_copyable<T>::value && sizeof(T) <= sizeof(std::uintptr_t),
-                "must be read and written by one instruction");
+                "T must be trivially copyable and at most as large as a machine word");
 
  public:
   [[nodiscard]] T load() const { return value_; }

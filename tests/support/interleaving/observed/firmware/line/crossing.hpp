@@ -23,7 +23,7 @@ inline void require_side(bool interrupt) {
 template <class T>
 class Crossing {
   static_assert(std::is_trivially_copyable<T>::value && sizeof(T) <= sizeof(void*),
-                "must be read and written by one instruction");
+                "T must be trivially copyable and at most as large as a machine word");
 
  public:
   [[nodiscard]] T load() const {
