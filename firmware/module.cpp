@@ -62,12 +62,12 @@ void Module::start_up(Time now) {
   if (start_ == Start::Loading && !keeper_.loading()) {
     use_settings(now);
     start_ = Start::AwaitingInit;
+    collect_edges(now);  // a filter may already be waiting for the end of its time
   }
   // The module starts even if the INIT* switch never settles.
   if (start_ == Start::AwaitingInit && (init_switch_.known() || init_timeout_.reached(now))) {
     listen();
     start_ = Start::Done;
-    collect_edges(now);  // a filter may already be waiting for the end of its time
   }
 }
 
@@ -76,6 +76,9 @@ void Module::use_settings(Time now) {
   state_.statistics.settings_source = keeper_.source();
   state_.outputs =
       state_.settings.timeout_status ? state_.settings.safe_value : state_.settings.power_on_value;
+  state_.inputs.count_rising_edges((state_.settings.format & kFormatRisingEdge) != 0);
+  state_.inputs.invert(state_.settings.inverted_inputs);
+  use_filters();
   host_watchdog_.restart(now);
 }
 
@@ -91,11 +94,8 @@ void Module::listen() {
     in_force.protocol = settings.protocol;
     in_force.checksum = (settings.format & kFormatChecksum) != 0;
   }
-  state_.inputs.configure(in_force.protocol == Protocol::Ascii ? Inputs::CounterRange::FiveDigits
-                                                               : Inputs::CounterRange::SixteenBits,
-                          (settings.format & kFormatRisingEdge) != 0);
-  state_.inputs.invert(settings.inverted_inputs);
-  use_filters();
+  state_.inputs.use_range(in_force.protocol == Protocol::Ascii ? Inputs::CounterRange::FiveDigits
+                                                               : Inputs::CounterRange::SixteenBits);
   init_timeout_.disarm();
   receiver_.restart_by_requests(settings.fed_by_requests);
   receiver_.listen({in_force.protocol, in_force.checksum, timing_at_(baud(), format())});
@@ -105,8 +105,8 @@ void Module::listen() {
 // --- events from interrupts ---
 
 void Module::collect_edges(Time now) {
-  // Before `listen()`, the inputs do not have the counting edge, inversion and filters of the settings.
-  if (listening()) {
+  // During loading, the inputs do not have the counting edge, inversion and filters of the settings.
+  if (start_ != Start::Loading) {
     state_.inputs.collect(edges_, state_.model().inputs, now);
   }
 }

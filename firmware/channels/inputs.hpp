@@ -65,10 +65,8 @@ class Inputs {
 
   /// Sets the levels at reset. `levels`: the same value as for InputEdges::begin.
   void begin(std::uint16_t levels) { levels_ = standing_ = levels; }
-  void configure(CounterRange range, bool count_rising_edges) {
-    range_ = range;
-    count_rising_edges_ = count_rising_edges;
-  }
+  /// Sets the range of all counters. Call this before a counter can reach the end of the smaller range.
+  void use_range(CounterRange range) { range_ = range; }
   /// Selects whether the counters count rising or falling edges from the next `collect` on.
   void count_rising_edges(bool rising) { count_rising_edges_ = rising; }
   /// Sets the inverted channels, bit n for channel n. The levels change immediately, and this change does not

@@ -136,6 +136,28 @@ TEST(InputFilter, ALevelThatChangesWhileTheModuleStartsCountsAfterItsTime) {
   }
 }
 
+// The settings are known, but the module does not listen yet, because INIT* bounces.
+TEST(InputFilter, APulseBeforeTheModuleListensCounts) {
+  ModuleBench bench("EX9052D,baud=115200");
+  ASSERT_EQ(bench.ask("~01X02430001"), "!01");
+  bench.module().power(false);
+  bench.module().power(true);
+  const State& state = bench.module().module().state();
+  while (!state.settings.input_filters.any()) {
+    bench.module().set_init(!bench.module().init_asserted());
+    bench.run(milliseconds(1));
+  }
+  bench.module().set_input(3, true);
+  bench.run(milliseconds(2));
+  bench.module().set_init(false);
+  bench.module().set_input(3, false);
+  ASSERT_FALSE(bench.module().module().listening());
+  bench.run(milliseconds(100));
+  EXPECT_EQ(bench.ask("$01L1"), "!080000");
+  EXPECT_EQ(bench.ask("$01L0"), "!080000");
+  EXPECT_EQ(bench.ask("#013"), "!0100001");
+}
+
 // --- requests that restart the host watchdog ---
 
 TEST(FedByRequests, ARequestRestartsTheHostWatchdogAtItsEnd) {

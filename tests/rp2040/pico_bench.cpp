@@ -162,8 +162,7 @@ void PicoBench::set_pin(unsigned number, const char* level) {
 void PicoBench::set_init(bool asserted) { set_pin(board::kInitSwitch.number, asserted ? "low" : "open"); }
 
 void PicoBench::set_input(unsigned channel, bool level) {
-  const char* active = board::kInputsActiveHigh ? "high" : "low";
-  set_pin(pin_of(board::kInputs, channel), level ? active : "open");
+  set_pin(pin_of(board::kInputs, channel), level == board::kInputsActiveHigh ? "high" : "low");
 }
 
 void PicoBench::pulse_input(unsigned channel, std::uint32_t count, nanoseconds between) {

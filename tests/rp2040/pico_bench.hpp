@@ -61,6 +61,7 @@ class PicoBench {
   play::Bytes heard();
 
   void set_init(bool asserted);
+  /// Drives an input. Until the first call for a channel of a new board, the input is open.
   void set_input(unsigned channel, bool level);
   /// Inverts an input and restores it, `count` times, with `between` from edge to edge.
   void pulse_input(unsigned channel, std::uint32_t count, std::chrono::nanoseconds between);

@@ -142,7 +142,8 @@ TEST_F(InputFiltersTest, AChangeOfTheInversionFlipsTheLevelWithoutAnEdge) {
 }
 
 TEST_F(InputFiltersTest, AnInvertedChannelCountsTheOppositeEdges) {
-  inputs_.configure(Inputs::CounterRange::FiveDigits, true);  // rising edges
+  inputs_.use_range(Inputs::CounterRange::FiveDigits);
+  inputs_.count_rising_edges(true);
   inputs_.invert(kBit);
   edge(true);
   pass(Duration(1));

@@ -71,7 +71,8 @@ TEST_F(InputsTest, AFallingEdgeLowersTheLevelAndSetsLatchLow) {
 
 TEST_F(InputsTest, ARisingEdgeAtAHighLevelIsTreatedAsTwoEdges) {
   begin(0x0002);
-  inputs_.configure(Inputs::CounterRange::FiveDigits, false);
+  inputs_.use_range(Inputs::CounterRange::FiveDigits);
+  inputs_.count_rising_edges(false);
   rise(1);
   collect();
   EXPECT_EQ(inputs_.levels(), 0x0002);
@@ -81,7 +82,8 @@ TEST_F(InputsTest, ARisingEdgeAtAHighLevelIsTreatedAsTwoEdges) {
 }
 
 TEST_F(InputsTest, AFallingEdgeAtALowLevelIsTreatedAsTwoEdges) {
-  inputs_.configure(Inputs::CounterRange::FiveDigits, true);
+  inputs_.use_range(Inputs::CounterRange::FiveDigits);
+  inputs_.count_rising_edges(true);
   fall(1);
   collect();
   EXPECT_EQ(inputs_.levels(), 0);
@@ -91,7 +93,8 @@ TEST_F(InputsTest, AFallingEdgeAtALowLevelIsTreatedAsTwoEdges) {
 }
 
 TEST_F(InputsTest, CountersCountRisingEdgesIfConfigured) {
-  inputs_.configure(Inputs::CounterRange::FiveDigits, true);
+  inputs_.use_range(Inputs::CounterRange::FiveDigits);
+  inputs_.count_rising_edges(true);
   rise(0);
   collect();
   EXPECT_EQ(inputs_.counter(0), 1U);
@@ -101,7 +104,8 @@ TEST_F(InputsTest, CountersCountRisingEdgesIfConfigured) {
 }
 
 TEST_F(InputsTest, CountersCountFallingEdgesIfConfigured) {
-  inputs_.configure(Inputs::CounterRange::FiveDigits, false);
+  inputs_.use_range(Inputs::CounterRange::FiveDigits);
+  inputs_.count_rising_edges(false);
   rise(0);
   collect();
   EXPECT_EQ(inputs_.counter(0), 0U);
@@ -140,13 +144,15 @@ TEST_F(InputsTest, EveryEdgeBetweenTwoCollectionsIsCountedOnce) {
 }
 
 TEST_F(InputsTest, UpTo65535EdgesBetweenTwoCollectionsAreCounted) {
-  inputs_.configure(Inputs::CounterRange::FiveDigits, true);
+  inputs_.use_range(Inputs::CounterRange::FiveDigits);
+  inputs_.count_rising_edges(true);
   pulse(0, 32'767);
   rise(0);
   collect();
   EXPECT_EQ(inputs_.counter(0), 32'768U);
   EXPECT_EQ(inputs_.levels(), 0x0001);
-  inputs_.configure(Inputs::CounterRange::FiveDigits, false);
+  inputs_.use_range(Inputs::CounterRange::FiveDigits);
+  inputs_.count_rising_edges(false);
   inputs_.clear_counters(0x0001);
   fall(0);
   pulse(0, 32'767);
@@ -165,7 +171,8 @@ TEST_F(InputsTest, RisingAndFallingEdgesAreDistinguishedAtEitherLevelForOneToNin
         Inputs inputs;
         crossing.begin(high ? 0x0010 : 0x0000);
         inputs.begin(high ? 0x0010 : 0x0000);
-        inputs.configure(Inputs::CounterRange::SixteenBits, count_rising);
+        inputs.use_range(Inputs::CounterRange::SixteenBits);
+        inputs.count_rising_edges(count_rising);
         unsigned rising = 0;
         bool level = high;
         for (unsigned i = 0; i < edges; ++i) {
@@ -208,7 +215,8 @@ TEST_F(InputsTest, TheTotalOfEdgesMayExceed65535) {
 }
 
 TEST_F(InputsTest, AnAsciiCounterWrapsFrom99999To0) {
-  inputs_.configure(Inputs::CounterRange::FiveDigits, false);
+  inputs_.use_range(Inputs::CounterRange::FiveDigits);
+  inputs_.count_rising_edges(false);
   pulse_and_collect(0, 99'999);
   EXPECT_EQ(inputs_.counter(0), 99'999U);
   pulse_and_collect(0, 1);
@@ -218,14 +226,16 @@ TEST_F(InputsTest, AnAsciiCounterWrapsFrom99999To0) {
 }
 
 TEST_F(InputsTest, AnAsciiCounterMayWrapWithinOneCollection) {
-  inputs_.configure(Inputs::CounterRange::FiveDigits, false);
+  inputs_.use_range(Inputs::CounterRange::FiveDigits);
+  inputs_.count_rising_edges(false);
   pulse_and_collect(0, 99'990);
   pulse_and_collect(0, 25);
   EXPECT_EQ(inputs_.counter(0), 15U);
 }
 
 TEST_F(InputsTest, AModbusCounterWrapsFrom65535To0) {
-  inputs_.configure(Inputs::CounterRange::SixteenBits, false);
+  inputs_.use_range(Inputs::CounterRange::SixteenBits);
+  inputs_.count_rising_edges(false);
   pulse_and_collect(0, 65'535);
   EXPECT_EQ(inputs_.counter(0), 65'535U);
   pulse_and_collect(0, 1);
@@ -235,7 +245,8 @@ TEST_F(InputsTest, AModbusCounterWrapsFrom65535To0) {
 }
 
 TEST_F(InputsTest, AWrapDoesNotChangeAnotherCounter) {
-  inputs_.configure(Inputs::CounterRange::SixteenBits, false);
+  inputs_.use_range(Inputs::CounterRange::SixteenBits);
+  inputs_.count_rising_edges(false);
   pulse_and_collect(1, 3);
   pulse_and_collect(0, 65'536);
   EXPECT_EQ(inputs_.counter(1), 3U);
