@@ -1,5 +1,5 @@
 // Checks that a board has the peripherals that `Device` accesses, and that they have the required functions.
-// The composition file of a board checks its tick.
+// The composition file of each board checks the tick of this board.
 #pragma once
 
 #include <type_traits>

@@ -14,8 +14,8 @@ namespace ex9000::hal {
 ///         Returns the time. It never goes back, except when it wraps. For interrupts and the main loop; does
 ///         not block.
 ///     Time now_in_interrupt() const
-///         Returns the same time as `now`, but may be faster. Only for interrupts that the clock's own
-///         interrupt cannot interrupt.
+///         Returns the same time as `now`. The call may take less time than a call of `now`. Only for
+///         interrupts that the clock's own interrupt cannot interrupt.
 ///
 /// True if `T` has these functions.
 template <class T, class = void>

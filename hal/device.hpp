@@ -37,7 +37,8 @@ class Device {
   }
 
   // --- interrupts ---
-  // They must not interrupt each other, so they share one preemption priority.
+  // Interrupts call these functions. These interrupts must not interrupt each other, so they share one
+  // preemption priority.
 
   /// Processes a received byte. Call this for each byte, even if it has an error, but not for a byte that was
   /// received while the module's own driver was on.
@@ -82,8 +83,8 @@ class Device {
     module_.on_tick();
     on_wake_timer();
   }
-  /// Makes the next call of `turn` poll INIT* and collect edges, and wakes the main loop. Call this when the
-  /// wake timer expires.
+  /// Wakes the main loop. The next call of `turn` then also calls `poll_panel`. Call this when the wake timer
+  /// expires.
   void on_wake_timer() {
     times_due_.store_in_interrupt(times_due_.load() + 1U);
     wake();
@@ -118,9 +119,9 @@ class Device {
   [[nodiscard]] const Module& module() const { return module_; }
 
  private:
-  /// Passes the level of INIT* to Module::poll_panel, updates the status LED, and feeds the hardware watchdog
-  /// if the module permits this. Also drives the outputs again, in case a disturbance has changed their
-  /// registers.
+  /// Passes the level of INIT* to Module::poll_panel, which also collects edges. Updates the status LED, and
+  /// feeds the hardware watchdog if the module permits this. Also drives the outputs again, in case a
+  /// disturbance has changed their registers.
   void poll_panel() {
     module_.poll_panel(board_.init_switch.asserted(), board_.clock.now());
     board_.status_led.light(module_.led_lit());
@@ -156,8 +157,8 @@ class Device {
     board_.line.send(reply);
   }
 
-  /// Returns whether `on_wake_timer` has run since the last call, or whether an event was already due at the
-  /// end of the last pass. Also returns true in the first pass.
+  /// Returns whether `on_wake_timer` has run since the last call of this function, or whether an event was
+  /// already due at the end of the previous pass. Also returns true in the first pass.
   bool panel_is_due() {
     const std::uint32_t times_due = times_due_.load();
     const bool due = due_now_ || times_due != times_seen_;
@@ -198,8 +199,9 @@ class Device {
   }
 
   /// Sets the wake timer to the time until the next event: at most kMemoryPollPeriod during a memory job,
-  /// otherwise at most kLongestWake. The duration of this pass delays that event, but these delays do not add
-  /// up. If the event is already due, returns true and does not set the timer.
+  /// otherwise at most kLongestWake. `now` is the start of this pass, so the timer expires late by the
+  /// duration of the pass. The delays of several passes do not accumulate. If the event is already due,
+  /// returns true and does not set the timer.
   bool set_wake_timer(Time now) {
     const Duration idle = module_.idle_for(now, memory_job_under_way_ ? kMemoryPollPeriod : kLongestWake);
     due_now_ = idle == Duration();

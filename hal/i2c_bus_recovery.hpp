@@ -52,7 +52,7 @@ class I2cBusRecovery {
 
  private:
   static constexpr std::uint8_t kFirstClock = 0;
-  static constexpr std::uint8_t kBusStart = 18;  ///< after nine clocks
+  static constexpr std::uint8_t kBusStart = 18;  ///< after nine clock pulses of two steps each
   static constexpr std::uint8_t kBusStop = 19;
   static constexpr Duration kHalfClock{5};
 

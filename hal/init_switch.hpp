@@ -7,7 +7,8 @@
 
 namespace ex9000::hal {
 
-/// The INIT* pin, active low. If a jumper connects the pin to another signal, INIT* reads as released.
+/// INIT*, active low. On some models, a jumper connects one terminal to INIT* or to another signal. If the
+/// jumper does not select INIT*, INIT* reads as released.
 ///
 ///     bool asserted() const
 ///         Returns whether INIT* is connected to GND now. The value is not debounced. For the main loop; does

@@ -14,17 +14,17 @@ inline constexpr Duration kLongestWake = milliseconds(1000);
 /// A timer that expires once after each start, and then causes an interrupt. `Device` requires two timers:
 ///
 ///   - The silence timer. Its interrupt calls `Device::on_silence`. At the baud rates of a module, the timer
-///     is set to 78 us to 34 ms. Its interrupt and the receive interrupt must not interrupt each other. If
-///     both are pending, the interrupt of the silence timer must run first, because a byte after the silence
-///     does not belong to the frame before the silence.
+///     is set to a time between 78 us and 34 ms. Its interrupt and the receive interrupt must not interrupt
+///     each other. If both are pending, the interrupt of the silence timer must run first, because a byte
+///     after the silence does not belong to the frame before the silence.
 ///   - The wake timer. Its interrupt calls `Device::on_wake_timer`. The timer is set to the time until the
 ///     next event, at least 1 us and at most `kLongestWake`. If this timer failed, the main loop would
 ///     process the event after the next tick.
 ///
 ///     void restart(Duration after)
-///         Makes the timer expire once, `after` from now, at most 5 us late and never early. Cancels an
-///         earlier start, even if its interrupt is already pending. For interrupts and the main loop; does
-///         not block.
+///         Makes the timer expire once, when the duration `after` has passed: never early, and at most 5 us
+///         late. Cancels an earlier start, even if its interrupt is already pending. For interrupts and the
+///         main loop; does not block.
 ///
 /// True if `T` has this function.
 template <class T, class = void>

@@ -14,9 +14,9 @@ namespace ex9000::hal {
 ///     void drive(std::uint16_t channels)
 ///         Drives all channels: bit n is channel n, 1 = energised (the transistor or PhotoMOS relay conducts,
 ///         or the coil of the relay carries current). The board defines the polarity. If no interrupt
-///         occurs in between, all changes occur within a few tens of processor clocks. The channels that do
-///         not change have no glitch. The main loop calls this at each change and at least at every tick.
-///         This does not block.
+///         occurs during the call, all changes occur within a few tens of clock cycles of the processor. The
+///         channels that do not change have no glitch. The main loop calls this at each change and at least
+///         at every tick. This does not block.
 ///
 /// True if `T` has this function.
 template <class T, class = void>

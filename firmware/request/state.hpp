@@ -12,9 +12,9 @@
 
 namespace ex9000 {
 
-/// Values that are taken from the settings or from INIT mode at reset and apply until the next reset.
+/// The values that apply from one reset to the next: those of the settings, or those of INIT mode.
 struct InForce {
-  std::uint8_t address = 0;  ///< exception: outside INIT mode, `%` changes it after the store
+  std::uint8_t address = 0;  ///< exception: outside INIT mode, `%` changes it when NN is stored
   std::uint8_t baud_code = kFactoryBaudCode;
   Protocol protocol = Protocol::Ascii;
   bool checksum = false;
@@ -29,8 +29,8 @@ struct Sample {
   std::uint16_t inputs = 0;
 };
 
-/// The counts of the main loop for the line tallies (modbus/tallies.hpp). LineTallies contains the counts of
-/// the interrupts.
+/// What the main loop counts for the line tallies (modbus/tallies.hpp). LineTallies contains what the
+/// interrupts count.
 struct Diagnostics {
   std::uint16_t exceptions = 0;  ///< exception replies; in ASCII, replies that begin with `?`
   std::uint16_t no_responses = 0;

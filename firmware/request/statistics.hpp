@@ -1,4 +1,4 @@
-// What a module reports about itself since its last reset - firmware/extensions.md.
+// What a module reports about its last reset and the time since then - firmware/extensions.md.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace ex9000 {
 
-/// Registers 0x0301 to 0x0306. A reset clears the counts.
+/// The values of registers 0x0301 to 0x0306. A reset clears the counts.
 struct Statistics {
   ResetReason reset_reason = ResetReason::Unknown;
   SettingsStore::Source settings_source = SettingsStore::Source::NoneGood;

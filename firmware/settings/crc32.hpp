@@ -6,7 +6,7 @@
 
 namespace ex9000 {
 
-/// The remainders of all values of four bits. A CRC takes two steps for each byte.
+/// The remainders of all values of four bits. Crc32 uses them to process a byte in two steps.
 class Crc32Remainders {
  public:
   static constexpr unsigned kBits = 4;

@@ -10,8 +10,8 @@
 
 namespace ex9000 {
 
-/// A copy of layout 1 or 2 occupied one page of the memory. All numbers have the low byte first. The check is
-/// `settings_check` over all bytes before it.
+/// A copy of layout 1 or 2 is within one page of the memory. All numbers have the low byte first. The check
+/// is `settings_check` over all bytes before it.
 ///
 ///     layout 1                        layout 2
 ///     0       layout, 1               0       address

@@ -12,8 +12,8 @@
 
 namespace ex9000 {
 
-/// The smallest page of any supported memory, in bytes. No write crosses the end of a page, so a power
-/// failure damages at most one page.
+/// The size in bytes of the smallest page of any supported memory. No write crosses the end of a page, so a
+/// power failure damages at most one page.
 constexpr std::size_t kMemoryPage = 32;
 
 /// A part of the memory for one copy. It begins at the start of a page of kMemoryPage bytes and shares no
@@ -24,7 +24,7 @@ struct Place {
 };
 
 /// A save writes to one of the first two places, but never to the place of the current copy. The other two
-/// places are those of older firmware. Their copies stay valid until the first save of this firmware is
+/// places are those of layouts 1 and 2. The copies there stay valid until the first save in layout 3 is
 /// verified, so a power failure during that save does not lose the settings. For an exception, see
 /// SettingsStore::update_unfinished.
 constexpr std::array<Place, 4> kPlaces{{{0x0080, false}, {0x0100, false}, {0x0000, true}, {0x0020, true}}};

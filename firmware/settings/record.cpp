@@ -21,8 +21,8 @@ constexpr std::size_t known_settings_size() {
   return size;
 }
 constexpr std::size_t kKnownSettings = known_settings_size();
-/// The size in bytes of the settings up to `safe_value`. This firmware writes these settings into every
-/// record.
+/// The size in bytes of the settings from `address` to `safe_value`. This firmware writes these settings into
+/// every record.
 constexpr std::size_t kFirstSettings = 19;
 static_assert(sizeof(bool) == 1 && sizeof(Protocol) == 1 && sizeof(Name) == kMaxNameLength + 1 &&
                   sizeof(InputFilters) == std::size_t{2} * kMaxInputs,
@@ -116,7 +116,7 @@ class Decoder {
 
 /// Returns how many bytes of settings a record requires: up to the last setting that differs from its factory
 /// value, but at least kFirstSettings. If all settings after `safe_value` have their factory values, a record
-/// therefore takes one page, like a copy of older firmware.
+/// therefore takes one page, like a copy of layout 1 or 2.
 std::size_t required_size(const Model& model, const Settings& settings) {
   const Settings factory = Settings::factory(model);
   std::size_t size = 0;

@@ -18,8 +18,8 @@ struct Edition {
   std::uint16_t sequence = 0;
 
   /// Returns whether this copy is newer than `other`. A copy with a higher layout number is always newer. In
-  /// the same layout, the copy with the later sequence number is newer. Sequence numbers wrap: the later one
-  /// is less than half the range ahead.
+  /// the same layout, the copy with the later sequence number is newer. Sequence numbers wrap: a number is
+  /// later than another one if it is 1 to 32767 ahead, modulo 65536.
   [[nodiscard]] constexpr bool is_newer_than(const Edition& other) const {
     constexpr std::uint16_t kHalfRange = 0x8000;
     const auto ahead = static_cast<std::uint16_t>(sequence - other.sequence);
@@ -55,9 +55,9 @@ constexpr std::size_t kRecordRoom = 128;
 /// `write_record` keeps the additional bytes.
 ///
 /// The CRC includes the designation, so that settings of another model are never used: their power-on value
-/// is intended for other outputs. The CRC detects every error burst of up to 32 bits and every error of two
-/// or three bits. It misses any other error, for example a record with only some new pages, with a
-/// probability of about 2^-32.
+/// is intended for other outputs. If the length is right, the CRC detects every error burst of up to 32 bits
+/// and every error of two or three bits. The probability that it does not detect another error, for example
+/// a record with only some new pages, is about 2^-32.
 constexpr std::uint8_t kLayout = 3;
 using RecordBytes = std::array<std::uint8_t, kRecordRoom>;
 

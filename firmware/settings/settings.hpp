@@ -1,4 +1,4 @@
-// The settings, which a module keeps without power, and changes to them - wire.md section 8.
+// The settings, and a change of some of them. A module keeps its settings without power - wire.md section 8.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@ namespace ex9000 {
 
 enum class Protocol : std::uint8_t { Ascii = 0, ModbusRtu = 1 };
 
-/// Bits of the data format FF (manuals 1.10); all others are 0.
+/// The bits of the data format, field FF of `%AANNTTCCFF` (manuals 1.10). All other bits are 0.
 constexpr std::uint8_t kFormatRisingEdge = 0x80;
 constexpr std::uint8_t kFormatChecksum = 0x40;
 constexpr std::uint8_t kFormatMask = kFormatRisingEdge | kFormatChecksum;

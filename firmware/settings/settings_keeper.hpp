@@ -16,13 +16,13 @@ namespace ex9000 {
 /// - It invalidates copies that must not be used.
 ///
 /// It repeats that first save only once. It retries the other two actions every second until they succeed or
-/// are no longer necessary (wire.md D15). For the main loop only. No function blocks.
+/// are no longer necessary (wire.md D15). For the main loop only. None of the functions blocks.
 class SettingsKeeper {
  public:
   explicit constexpr SettingsKeeper(const Model& model) : store_(model) {}
 
-  /// Returns whether the settings are still being loaded. Afterwards `stored()`, `unreadable()`, `source()`
-  /// and `certain()` are valid.
+  /// Returns whether the settings are still being loaded. When loading has ended, `stored()`,
+  /// `unreadable()`, `source()` and `certain()` are valid.
   [[nodiscard]] bool loading() const { return store_.loading(); }
   /// Returns the settings that a reset now would load, if `certain()`.
   [[nodiscard]] const Settings& stored() const { return store_.stored(); }
@@ -66,7 +66,7 @@ class SettingsKeeper {
   void poll(const Settings& in_force, Time now);
   /// Returns whether an action without a command has ended and `poll` has not processed its result yet.
   [[nodiscard]] bool has_work() const { return own_save_ && !busy(); }
-  /// Returns when the keeper retries a failed action; disarmed if no failed action waits.
+  /// Returns the time of the next retry of a failed action; disarmed if no failed action waits.
   [[nodiscard]] Deadline retry() const { return retry_; }
 
   // --- memory access; see SettingsStore ---

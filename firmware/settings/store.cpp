@@ -215,8 +215,8 @@ void SettingsStore::retry_or_give_up() {
     return;
   }
   if (update_unfinished()) {
-    // The other place cannot be written. The current copy was read correctly, so the old copies are not
-    // needed.
+    // The save to the other place of this layout has failed. The current copy was read correctly, so the old
+    // copies are not needed.
     copies_to_invalidate_ |= old_copies_;
     old_copies_ = 0;
   }

@@ -25,8 +25,8 @@ struct MemoryJob {
 
 /// Keeps up to two copies of the settings, each in its own place (places.hpp). A save does not change the
 /// current copy: it writes a new copy to the other place, page by page, and reads back each page. The new
-/// copy becomes valid only when the check at its end is written. After a power failure, the memory therefore
-/// contains either the old or the new settings.
+/// copy becomes valid only when the check at its end is written. After a power failure, the store therefore
+/// loads either the old or the new settings.
 ///
 /// If the memory contains copies of older layouts after a firmware update, the first save does not overwrite
 /// them. When the save is verified, the store invalidates these copies: they must not be used again, even if
@@ -52,9 +52,9 @@ class SettingsStore {
     Blank,        ///< all places are blank: factory settings
   };
 
-  /// Begins to load: reads all places, each up to three times. If the memory did not answer the last read at
-  /// a place, the store does not repeat a read that gets no answer at the next place. `found()` and
-  /// `stored()` are valid when loading has ended.
+  /// Begins to load: reads all places, each up to three times. If the last read at a place gets no answer,
+  /// and a read at the next place gets no answer either, the store does not repeat the read at the next
+  /// place. `found()` and `stored()` are valid when loading has ended.
   explicit constexpr SettingsStore(const Model& model) : model_(model) {}
   [[nodiscard]] bool loading() const { return step_ == Step::Load; }
   [[nodiscard]] Found found() const { return found_; }
@@ -78,7 +78,7 @@ class SettingsStore {
       attempt_ = kAttempts - 1;
     }
   }
-  /// Returns whether the last save succeeded. Also true after `begin_invalidating`, which saves nothing.
+  /// Returns whether the last save succeeded. After `begin_invalidating`, which saves nothing, returns true.
   [[nodiscard]] bool saved() const { return saved_; }
 
   /// Returns whether the current copy has this layout, but copies of an older layout are still valid. This
@@ -98,8 +98,8 @@ class SettingsStore {
   /// Returns whether a reset now could load a copy that must not be used: the copy of a failed save, or a
   /// copy of an older layout.
   [[nodiscard]] bool needs_invalidation() const { return copies_to_invalidate_ != 0; }
-  /// Begins to invalidate such copies. Call this only while not `busy()`. If this fails,
-  /// `needs_invalidation()` stays true.
+  /// Begins to invalidate the copies that must not be used. Call this only while not `busy()`. If a copy
+  /// cannot be invalidated, `needs_invalidation()` stays true.
   void begin_invalidating();
 
   /// Returns the settings that a reset now would load; for the exceptions, see SettingsKeeper::certain.
@@ -144,7 +144,7 @@ class SettingsStore {
   std::size_t done_ = 0;                 ///< bytes of that copy that have been processed
   std::size_t copy_size_ = kMemoryPage;  ///< size of that copy in bytes
   std::uint8_t attempt_ = 0;             ///< failed attempts at that copy
-  bool silent_ = false;                  ///< the memory did not answer the last read at the place before
+  bool silent_ = false;                  ///< the memory did not answer the last read at the previous place
   std::uint8_t blank_places_ = 0;
   bool bad_copy_ = false;                 ///< a place of this layout is not blank and has no good copy
   unsigned unread_places_ = 0;            ///< places whose last read got no answer; bit n is place n

@@ -9,9 +9,9 @@ namespace ex9000 {
 /// Keeps only the time of the last restart. The enable flag and the timeout are settings.
 class HostWatchdog {
  public:
-  /// Restarts the watchdog. Call this after a reset, when a request enables the watchdog or writes the
-  /// timeout of the enabled watchdog, for a host OK, and for a request that counts like a host OK (register
-  /// 0x0251). `now` is the time of this event.
+  /// Restarts the watchdog at `now`. Call this when the settings have been loaded after a reset, when a
+  /// request enables the watchdog (even if it was already enabled) or writes the timeout of the enabled
+  /// watchdog, for a host OK, and for a request that counts like a host OK (register 0x0251).
   constexpr void restart(Time now) { started_ = now; }
 
   /// Returns whether the watchdog is enabled and its timeout, VV x 0.1 s, has certainly passed since the last
@@ -21,7 +21,8 @@ class HostWatchdog {
     return expiry(settings).reached(now);
   }
 
-  /// Returns when the watchdog expires unless it is restarted; disarmed if it is not enabled.
+  /// Returns the time at which the watchdog expires if it is not restarted. The result is disarmed if the
+  /// watchdog is not enabled.
   [[nodiscard]] constexpr Deadline expiry(const Settings& settings) const {
     Deadline deadline;
     if (settings.watchdog_enabled) {

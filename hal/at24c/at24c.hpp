@@ -77,8 +77,9 @@ class At24c {
   }
 
   void transfer(Time now) {
-    // After a write, the driver polls: it sends the device address and the first byte of the memory address.
-    // This writes nothing. When the EEPROM acknowledges both, the write has ended.
+    // After the transfer of the bytes for a page, the driver polls: it sends the device address and the first
+    // byte of the memory address. This writes nothing. When the EEPROM acknowledges these two bytes, it has
+    // programmed the page.
     transfer_.device = kDevice;
     transfer_.header = {header_.data(), step_ == Step::Programming ? 1U : step_ == Step::Reading ? 0U : 2U};
     transfer_.source = step_ == Step::Writing ? rest_.first(chunk()) : Bytes();

@@ -14,8 +14,9 @@ void Memory::begin(bool writing, std::uint16_t address, std::size_t size) {
         "memory: a job crosses the end of the memory, or a write crosses the end of a page; "
         "keep each job within the memory, and each write within a page");
   }
-  // The bytes that a read needs besides the data: the device address twice, and a word address of two bytes.
-  // A write really needs only three, but also counts as four here.
+  // Besides the data, a read transfers four bytes: the device address twice, and a memory address of two
+  // bytes. A write transfers the device address only once. This double nevertheless adds the time of four
+  // bytes to each job.
   constexpr std::int64_t kAddressing = 4;
   writing_ = writing;
   address_ = address;

@@ -24,7 +24,7 @@ class Memory {
 
   void start_read(std::uint16_t address, MutableBytes destination, Time now);
   void start_write(std::uint16_t address, Bytes source, Time now);
-  /// Has no effect, because `run` ends a job when the job's virtual time has passed.
+  /// Has no effect, because the job ends in `run`.
   bool poll(Time /*now*/) { return false; }
   [[nodiscard]] bool busy() const { return ends_ != kNever; }
   [[nodiscard]] bool succeeded() const { return succeeded_; }
@@ -33,23 +33,23 @@ class Memory {
   void run();
 
   /// Ends the job as a power failure does. The simulator also calls this at a reset of the MCU, although a
-  /// real EEPROM would then continue to program. If bytes are being programmed, the first ones are new, in
-  /// proportion to the time since programming began. The next byte is partly erased: its old value OR A5h.
-  /// The other bytes are old.
+  /// real EEPROM would then continue to program. If the job is programming bytes, the first of these bytes
+  /// have their new values; the number of new bytes is proportional to the time since programming began. The
+  /// next byte is partly erased: its value is the old value OR A5h. The other bytes have their old values.
   void cut();
 
   /// A function that saves each programmed range outside this object. `run` calls this function at the end of
   /// a write; if the result is false, the write fails. If `cut` ends a write, `cut` calls this function for
   /// the range that may have changed, and ignores the result. If jobs are set to fail (see `fail`), neither
-  /// of the two calls this function.
+  /// `run` nor `cut` calls this function.
   using Keep = std::function<bool(std::uint16_t address, Bytes bytes)>;
   void keep(Keep keep) { keep_ = std::move(keep); }
 
   /// Sets a function that is called after each successful write, before the device gets the result.
   void on_write(std::function<void()> written) { written_ = std::move(written); }
 
-  /// Sets whether jobs fail. If `on` is true, each job that ends fails and changes no byte, and `cut` changes
-  /// no byte either.
+  /// Sets whether jobs fail. If `on` is true, each job fails at its end, and neither `run` nor `cut` changes
+  /// a byte.
   void fail(bool on) { failing_ = on; }
 
   [[nodiscard]] const std::vector<std::uint8_t>& contents() const { return contents_; }

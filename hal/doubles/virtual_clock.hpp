@@ -7,7 +7,8 @@
 
 namespace ex9000::hal::doubles {
 
-/// The time since the start of the simulation, in nanoseconds. Its 64 bits are sufficient for 292 years.
+/// The time since the start of the simulation, or a duration, in nanoseconds. 64 bits are sufficient for 292
+/// years.
 using VirtualTime = std::chrono::nanoseconds;
 
 constexpr VirtualTime kNever = VirtualTime::max();
@@ -22,7 +23,7 @@ class VirtualClock {
     microseconds_ = std::chrono::duration_cast<std::chrono::microseconds>(now);
   }
 
-  /// Returns the first virtual time at which `now()` is later than its current value by `after`.
+  /// Returns the first virtual time at which `now()` returns its current value plus `after`.
   [[nodiscard]] VirtualTime when(Duration after) const {
     return microseconds_ + std::chrono::microseconds(after.microseconds());
   }

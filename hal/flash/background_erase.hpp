@@ -8,7 +8,8 @@
 
 namespace ex9000::hal::flash {
 
-/// Call a function only while the flash is not busy, unless its description says otherwise.
+/// Call a function of this class only while the flash is not busy, unless the description of the function
+/// says otherwise.
 template <class Flash>
 class BackgroundErase {
  public:
@@ -51,8 +52,8 @@ class BackgroundErase {
   }
 
   [[nodiscard]] bool under_way() const { return state_ != State::None; }
-  /// Returns whether the erase has ended since `start` or `resume`. If it has ended, no erase is
-  /// `under_way()` any more.
+  /// Returns whether the erase has ended since `start` or `resume`. If it has ended, this call makes
+  /// `under_way()` false.
   bool take_end() {
     const bool ended = state_ == State::Running;
     if (ended) {

@@ -21,31 +21,32 @@ namespace ex9000::hal::flash {
 /// hal/memory.hpp; for `Flash`, see hal/flash.hpp. A page that was never written contains FF.
 ///
 /// The sectors contain a log of entries. A write appends an entry with the whole page to the log, and reads
-/// it back. For each page, the entry with the highest sequence is in force. If the power fails, an entry is
-/// either complete or its CRC is wrong, so the page has its new or its old content. No other entry changes.
+/// it back. For each page, the entry with the highest sequence is in force. If the power fails during a
+/// write, the new entry is either complete or its CRC is wrong, so the page has its new or its old content.
+/// No other entry in force changes.
 ///
 /// The store never erases a sector that holds an entry in force. Therefore an erase cannot lose a page, and
 /// the store need not copy entries before an erase. There is always a sector without an entry in force
-/// (slot.hpp). The store writes only to a sector that had a mark (mark.hpp). After a reset, the first write
-/// begins a new sector, because a power failure may have interrupted the programming of a slot that
-/// nevertheless reads FF.
+/// (slot.hpp). The store begins to write to a sector only if the sector has a mark (mark.hpp). After a reset,
+/// the first write begins a new sector, because a power failure may have interrupted the programming of a
+/// slot whose bytes nevertheless read as FF.
 ///
 /// While no job is running, `poll` erases all free sectors in advance. A free sector has neither a mark nor
 /// an entry in force, has not failed (sectors.hpp), and is not the sector that is being written. A job
-/// suspends the erase, except in one case: a write that needs another sector waits for the end of an erase if
-/// no erased sector is left. This occurs in two cases:
+/// suspends the erase. The exception is a write that needs another sector while no erased sector is left: the
+/// write waits for the end of an erase. A write waits in these cases:
 ///
 /// - If the store has not erased a sector of this flash yet. The first erase takes 45 ms typically and 400 ms
 ///   at most.
 /// - If the store uses sectors faster than it erases them. With the longest times of the data sheet, and
-///   without resets or failures in between, writes that are at least 12 ms apart never wait. If writes are
-///   closer together, each sector that has been erased in advance has room for 79 of them.
+///   if no reset and no failure occurs, writes that are at least 12 ms apart never wait. If writes are closer
+///   together, each sector that has been erased in advance has room for 79 writes.
 ///
 /// With the longest times of the data sheet and a poll every millisecond, a read takes at most 5 ms, and a
-/// write takes at most 14 ms if it does not wait for the end of an erase. Typical times are 0 ms and 1 ms. A
-/// job fails if it has not ended after kLongestRead or kLongestWrite. The first job after a reset also waits
-/// for the scan of the log, and it does not fail during the scan. The scan reads at most 50 kB and computes
-/// at most about 1,100 CRCs.
+/// write takes at most 14 ms if it does not wait for the end of an erase. Typically, a read takes 0 ms and a
+/// write takes 1 ms. A read fails if it has not ended after kLongestRead. A write fails if it has not ended
+/// after kLongestWrite. The first job after a reset also waits for the scan of the log, and it does not fail
+/// during the scan. The scan reads at most 50 kB and computes at most about 1,100 CRCs.
 ///
 /// The tests in tests/hal/flash measure these times, cut the power at each operation, and count erases.
 template <class Flash, std::uint32_t kBegin>
@@ -57,8 +58,8 @@ class PageStore {
  public:
   /// The timeouts of jobs. If the memory does not answer, SettingsStore tries to read it six times after a
   /// reset, and the module must be ready to receive requests within 100 ms of the reset. For a command,
-  /// SettingsStore tries to write to it at most six times if the memory contains no copy of an older layout,
-  /// and the module must refuse the command within 200 ms.
+  /// SettingsStore tries at most six times to write to the memory if the memory contains no copy of an older
+  /// layout, and the module must refuse the command within 200 ms.
   static constexpr Duration kLongestRead = milliseconds(12);
   static constexpr Duration kLongestWrite = milliseconds(25);
 

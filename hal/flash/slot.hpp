@@ -9,13 +9,13 @@
 namespace ex9000::hal::flash {
 
 /// The number of sectors that the store uses. Each of the 12 pages of the store (entry.hpp) has at most one
-/// entry in force, so the entries in force are in at most 12 sectors. At least two sectors hold none, so the
-/// store can begin to write to one of them and erase another one in advance.
+/// entry in force, so the entries in force are in at most 12 sectors. At least two sectors hold no entry in
+/// force. The store can begin to write to one such sector and erase another such sector in advance.
 inline constexpr unsigned kSectors = 14;
 static_assert(kSectors >= kPages + 2);
 
-/// A slot has room for an entry. Each page of the flash has five slots, so that no entry crosses the end of a
-/// page.
+/// A slot has room for an entry. Each page of the flash contains five whole slots, so no entry crosses the
+/// end of a page of the flash.
 inline constexpr unsigned kSlotsOfAFlashPage = 5;
 inline constexpr unsigned kSlotSize = 48;
 inline constexpr unsigned kSlotsOfASector = kFlashSector / kFlashPage * kSlotsOfAFlashPage;
@@ -24,7 +24,7 @@ static_assert(kEntrySize <= kSlotSize && kSlotsOfAFlashPage * kSlotSize <= kFlas
 
 /// The number of a slot, 0 to kSlots - 1. The first slot of each sector is for the mark of the sector.
 using Slot = std::uint16_t;
-/// No slot. Slot 0 is for a mark, so it never holds an entry.
+/// The value that means "no slot". Slot 0 never holds an entry, because it is for a mark.
 inline constexpr Slot kNoSlot = 0;
 
 /// Returns the offset of a slot from the beginning of the first sector, in bytes.

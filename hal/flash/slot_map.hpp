@@ -1,4 +1,5 @@
-// Maps each page to the slot of its newest entry: the entry with the highest sequence.
+// Maps each page of the store to the slot of the newest entry of the page. This is the entry with the highest
+// sequence.
 #pragma once
 
 #include <array>
@@ -15,8 +16,8 @@ class SlotMap {
   /// Returns the slot of the newest entry of `page`; kNoSlot if no entry of `page` is recorded.
   [[nodiscard]] Slot newest(std::size_t page) const { return slots_[page]; }
 
-  /// Records the slot of an entry that `is_good`. Has no effect if an entry of `page` with the same or a
-  /// higher sequence is already recorded.
+  /// Records the slot of a good entry of `page`; see `is_good`. Has no effect if an entry of `page` with the
+  /// same or a higher sequence is already recorded.
   void add(std::size_t page, std::uint32_t sequence, Slot slot) {
     if (slots_[page] == kNoSlot || sequence > sequences_[page]) {
       slots_[page] = slot;

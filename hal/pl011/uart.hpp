@@ -14,18 +14,20 @@
 
 namespace ex9000::hal::pl011 {
 
-/// `base`: address of the registers; `clock`: clock of the UART in Hz; `DriverEnable`: the RS-485 driver,
-/// with the functions `start()`, which turns it off, and `drive(bool on)`; `EndTimer`: a one-shot timer for
-/// this UART only. The interrupt of this timer calls `on_end_timer`.
+/// `base`: address of the registers; `clock`: frequency of the clock of the UART in Hz; `DriverEnable`: the
+/// driver enable, with the functions `start()`, which turns the RS-485 driver off, and `drive(bool on)`,
+/// which turns it on or off; `EndTimer`: a one-shot timer for this UART only. The interrupt of this timer
+/// calls `on_end_timer`.
 ///
 /// The FIFOs stay off, so that each byte causes an interrupt when it arrives and the silence after it can be
 /// measured. The disadvantage is an overrun if an interrupt is delayed by more than a character time.
 ///
-/// The main loop writes `begun_` and the interrupts write `ended_`. The driver is on while their values
-/// differ.
+/// The main loop writes `begun_` and the interrupts write `ended_`. The driver is on only while `begun_` and
+/// `ended_` differ.
 template <std::uint32_t base, std::uint32_t clock, class DriverEnable, class EndTimer>
 class Uart {
-  static_assert(largest_baud_error(clock) < kTolerableBaudError, "this clock cannot generate all baud rates");
+  static_assert(largest_baud_error(clock) < kTolerableBaudError,
+                "clock: the error of at least one baud rate is 1 % or more; it must be less than 1 %");
 
  public:
   /// Turns the driver off. Call this once, before `open`.
@@ -63,8 +65,8 @@ class Uart {
   void on_interrupt(Deliver deliver) {
     const Bits<MaskedInterrupts> why = kMaskedInterrupts.read();
     if (why.has(kWasReceived)) {
-      // The receiver contains only one byte, and reading it clears the flag. If the transmit flag is set too,
-      // it causes another interrupt.
+      // The receiver contains only one byte. The read of this byte clears the receive flag. If the transmit
+      // flag is also set, it causes another interrupt.
       const Bits<Data> data = kData.read();
       deliver(static_cast<std::uint8_t>(data.value()), status_of(data));
     } else if (why.has(kWasTransmitted)) {
@@ -74,10 +76,10 @@ class Uart {
     }
   }
 
-  /// Turns the driver off and returns true if the last byte has been sent; else restarts the end timer and
+  /// If the last byte has been sent, turns the driver off and returns true. Else restarts the end timer and
   /// returns false. A PL011 has no interrupt for the end of a transmission, so this function checks the busy
   /// flag. For the interrupt of the end timer. This timer first expires about one character time after the
-  /// last byte has begun.
+  /// beginning of the last byte.
   bool on_end_timer() {
     if (kFlags.read().has(kBusy)) {
       EndTimer::restart(bit_);

@@ -1,5 +1,5 @@
-// The UART's baud-rate divisor and its error. Sources: LM3S6965 data sheet, 12.3.2; TM4C123GH6PM data
-// sheet, 14.3.2; RP2040 data sheet, 4.2.7.1.
+// The baud-rate divisor of a PL011 UART, and the error of the resulting baud rate. Sources: LM3S6965 data
+// sheet, 12.3.2; TM4C123GH6PM data sheet, 14.3.2; RP2040 data sheet, 4.2.7.1.
 #pragma once
 
 #include <cstdint>
@@ -32,8 +32,9 @@ constexpr std::uint32_t largest_baud_error(std::uint32_t clock) {
 }
 
 /// The limit for the baud-rate error of the module, in millionths: the error must be smaller. With parity, a
-/// receiver samples the stop bit 10.5 bits after the edge of the start bit, so the errors of the sender and
-/// the receiver together must be below 1/21. The module may use about a fifth of that.
+/// receiver samples the stop bit 10.5 bits after the beginning of the start bit. The sum of the errors of the
+/// sender and the receiver must therefore be less than 1/21. The limit for the module is about a fifth of
+/// this value.
 constexpr std::uint32_t kTolerableBaudError = 10'000;
 
 }  // namespace ex9000::hal::pl011

@@ -27,7 +27,7 @@ class Bits {
 };
 
 /// A 32-bit register. `set` and `clear` read the register and then write it. Use them only if no interrupt
-/// can write the same register in between.
+/// can write the same register between the read and the write.
 template <class Name>
 class Register {
  public:

@@ -11,12 +11,13 @@
 
 namespace ex9000::hal::rp2040 {
 
-/// For the second stage of the boot sequence only. All functions are inlined, because the image, which
-/// contains the functions that are not inlined, is not in RAM yet.
+/// For the second stage of the boot sequence only. All functions of this class are inlined. A function that
+/// is not inlined would be in the image, and the image is not in RAM yet.
 class Boot {
  public:
-  /// Switches the processor and the flash to the reference clock. They run on the PLL after a reset of only
-  /// the processor, for example by a debug probe, and `copy` requires a slower clock.
+  /// Switches the processor and the flash interface to the reference clock, because `copy` requires a slower
+  /// clock than the PLL. They still run on the PLL after a reset of only the processor, for example by a
+  /// debug probe.
   [[gnu::always_inline]] static void use_reference() {
     constexpr Bits<SystemControl> kFromPll(1);
     constexpr Bits<SystemSelected> kReferenceSelected(1);
@@ -26,9 +27,9 @@ class Boot {
   }
 
   /// Switches the reference clock to the crystal, because the ring oscillator may run at less than 2 MHz.
-  /// Blocks for at most about 5 ms if the crystal starts. If the crystal is not stable after
-  /// `kMostReads` reads, this function returns without the switch. The image then waits for the crystal after
-  /// it has started the watchdog.
+  /// Blocks for at most about 5 ms if the crystal starts. If the crystal is not stable after `kMostReads`
+  /// reads, this function does not switch the clock. The image then starts the watchdog and waits for the
+  /// crystal.
   [[gnu::always_inline]] static void use_crystal() {
     constexpr unsigned kMostReads = 20'000;  // a read takes at least 0.5 us
     Crystal::start();
@@ -41,8 +42,8 @@ class Boot {
   }
 
   /// Copies `words` words, 1 to 65,536, from `address` of the flash to `destination`. A word takes 64 clocks
-  /// of the processor: 5.3 us with a crystal of 12 MHz. The boot ROM reads the second stage with the same
-  /// command, Read Data (03h), so the command works on the flash without configuration.
+  /// of the processor: 5.3 us with a crystal of 12 MHz. Uses the command Read Data (03h). The boot ROM reads
+  /// the second stage with the same command, so the command works without a configuration of the flash.
   [[gnu::always_inline]] static void copy(std::uint32_t address, std::uint32_t* destination,
                                           std::uint32_t words) {
     constexpr std::uint32_t kReadData = 0x03;
@@ -63,7 +64,7 @@ class Boot {
     }
   }
 
-  /// Makes `vectors` the vector table, loads its stack pointer, and jumps to its reset handler.
+  /// Makes `vectors` the vector table, loads the stack pointer from it, and jumps to its reset handler.
   [[noreturn, gnu::always_inline]] static void jump(const std::uint32_t* vectors) {
     kVectors.write(Bits<Vectors>(static_cast<std::uint32_t>(reinterpret_cast<std::uintptr_t>(vectors))));
     // NOLINTNEXTLINE(performance-no-int-to-ptr): the table contains the address of the reset handler

@@ -32,8 +32,9 @@ class Clocks {
   template <const ClockTree& clock>
   static void use() {
     static_assert(clock.oscillator() >= 750'000'000 && clock.oscillator() <= 1'600'000'000,
-                  "the PLL's oscillator requires 750 MHz to 1600 MHz");
-    static_assert(clock.frequency() <= 133'000'000, "the processor allows at most 133 MHz");
+                  "clock: the frequency of the PLL's oscillator must be 750 MHz to 1600 MHz");
+    static_assert(clock.frequency() <= 133'000'000,
+                  "clock: the frequency of the processor must be at most 133 MHz");
     while (!Crystal::stable()) {
     }
     Crystal::make_reference();

@@ -1,5 +1,5 @@
-// The flash chip on the board, through the synchronous serial interface (SSI). Sources: RP2040 data sheet,
-// 4.10 (SSI) and 2.19.6.2 (pins of the flash); W25Q16JV data sheet, 8.1 and 8.2 (instructions).
+// The driver of the flash chip on the board. It uses the synchronous serial interface (SSI). Sources: RP2040
+// data sheet, 4.10 (SSI) and 2.19.6.2 (pins of the flash); W25Q16JV data sheet, 8.1 and 8.2 (instructions).
 #pragma once
 
 #include <cstddef>
@@ -18,11 +18,12 @@ namespace ex9000::hal::rp2040 {
 /// not mapped into memory after `start`.
 ///
 /// All functions are for the main loop. A byte that `read` returns takes 0.3 us. Any other byte takes up to
-/// 0.6 us. A command and its address have four bytes.
+/// 0.6 us. A command and its address together have four bytes.
 class Flash {
  public:
   /// Starts the SSI. Call this once, before the other functions. A reset of the MCU does not end an operation
-  /// of the flash. This function continues a suspended operation, so the flash may be busy afterwards.
+  /// of the flash, and this function resumes a suspended operation. The flash may therefore be busy after
+  /// this call.
   static void start() {
     constexpr std::uint32_t kDivider = 4;  // must be even; 125 MHz / 4 = 31.25 MHz; Read Data allows 50 MHz
     constexpr Bits<Control> kBytesBothWays(7U << 16U);

@@ -26,13 +26,13 @@ struct PinGroup {
 enum class Function : std::uint8_t { Uart = 2, I2c = 3, Software = 5 };
 
 /// `pins` is a mask; bit n is GPIOn. Each function changes only these pins. All functions are for interrupts
-/// and the main loop. `write` first reads the levels, so no interrupt may change the same pins during a
-/// `write`.
+/// and the main loop. `write` reads the output levels before it changes them, so no interrupt may change the
+/// output levels of the same pins during a `write`.
 class Gpio {
  public:
   [[nodiscard]] static std::uint32_t read(std::uint32_t pins) { return kLevels.read().value() & pins; }
 
-  /// Sets the levels of `pins` at the same time. A pin whose level does not change has no glitch.
+  /// Sets the output levels of all `pins` at the same time. A pin whose level does not change has no glitch.
   static void write(std::uint32_t pins, std::uint32_t levels) {
     kOutInvert.write(Bits<Out>((kOut.read().value() ^ levels) & pins));
   }
@@ -40,15 +40,15 @@ class Gpio {
   static void clear(std::uint32_t pins) { kOutClear.write(Bits<Out>(pins)); }
 
   /// Makes `pins` inputs. Enables the weak pull-up if `pull_up` is true, else the weak pull-down. Choose
-  /// `pull_up` so that an open pin reads as inactive.
+  /// `pull_up` so that an open pin has its inactive level.
   static void make_input(std::uint32_t pins, bool pull_up) {
     kDriveClear.write(Bits<Drive>(pins));
     make(pins, Function::Software, pull_up ? kInputPulledUp : kInputPulledDown);
   }
 
-  /// Makes `pins` outputs of 8 mA with the initial `levels`. Call this once for a pin after a reset. There is
-  /// no glitch, because a pin drives nothing until its function is software control (SIO). Until then, the
-  /// weak pull-down holds the pin low, unless the connected circuit pulls it high.
+  /// Makes `pins` outputs of 8 mA with the initial `levels`. After a reset, call this only once for each pin.
+  /// There is no glitch, because a pin drives nothing until its function is software control (SIO). Until
+  /// then, the weak pull-down holds the pin low, unless the connected circuit pulls it high.
   static void make_output(std::uint32_t pins, std::uint32_t levels) {
     write(pins, levels);
     kDriveSet.write(Bits<Drive>(pins));
@@ -60,7 +60,8 @@ class Gpio {
     make(pins, function, kPeripheralPulledUp);
   }
 
-  /// Makes the pins in `outputs` drive their level, and the other pins in `pins` inputs. Pulls do not change.
+  /// The pins in `outputs` become outputs and drive their output levels. The other pins in `pins` become
+  /// inputs. The pulls do not change. `outputs` must be a subset of `pins`.
   static void choose_outputs(std::uint32_t pins, std::uint32_t outputs) {
     kDriveClear.write(Bits<Drive>(pins & ~outputs));
     kDriveSet.write(Bits<Drive>(outputs));
@@ -148,7 +149,7 @@ class Gpio {
   static constexpr std::uint32_t kPinsAWord = 8;
   static constexpr std::uint32_t kBothEdges = 0xC;
 
-  /// Returns both edge bits of each pin that is set in the lowest eight bits of `pins`.
+  /// Returns both edge bits of each pin whose bit is set in the lowest eight bits of `pins`.
   static std::uint32_t spread(std::uint32_t pins) {
     std::uint32_t bits = pins & 0xFFU;
     bits = (bits | bits << 12U) & 0x000F'000FU;

@@ -12,9 +12,9 @@
 
 namespace ex9000::hal::rp2040 {
 
-/// A single master at 100 kHz. `lines`: the pins of data and clock, in this order; `clock`: system clock in
-/// Hz. The main loop fills the queue of commands and empties the queue of received bytes. An interrupt only
-/// disables itself and wakes the main loop. For the functions of a master, see I2cTransfer.
+/// The only master of a bus, at 100 kHz. `lines`: the pins of data and clock, in this order; `clock`: system
+/// clock in Hz. The main loop fills the queue of commands and empties the queue of received bytes. An
+/// interrupt only disables itself and wakes the main loop. For the functions of a master, see I2cTransfer.
 template <const PinGroup& lines, std::uint32_t clock>
 class I2c {
  public:
@@ -48,8 +48,8 @@ class I2c {
   [[nodiscard]] bool busy() const { return busy_; }
   [[nodiscard]] I2cResult result() const { return result_; }
 
-  /// Disables the interrupt, because its line stays asserted until the main loop has removed the cause. For
-  /// the I2C interrupt.
+  /// Disables the interrupt, because the interrupt request stays asserted until the main loop has removed the
+  /// cause. For the I2C interrupt.
   static void on_interrupt() { kInterruptMask.write({}); }
 
  private:
@@ -97,8 +97,8 @@ class I2c {
 
   /// The number of entries of each queue.
   static constexpr std::size_t kQueue = 16;
-  /// The timeout, which restarts when the main loop queues a command or takes a received byte. The bytes of a
-  /// full queue take 1.5 ms. The rest is a reserve for delays of the main loop.
+  /// The timeout of a transfer. It restarts when the main loop queues a command or takes a received byte. The
+  /// bytes of a full queue take 1.5 ms. The rest of the timeout is a reserve for delays of the main loop.
   static constexpr Duration kTimeout = milliseconds(5);
 
   // --- freeing the bus ---
@@ -123,7 +123,7 @@ class I2c {
     freeing_ = true;
   }
 
-  /// Sets up the master, connects the pins to it, and begins a transfer that is waiting.
+  /// Sets up the master, and connects the pins to it. If a transfer is waiting, begins this transfer.
   void hand_over(Time now) {
     constexpr std::uint32_t kBitRate = 100'000;
     constexpr std::uint32_t kPeriod = clock / kBitRate;
@@ -185,8 +185,8 @@ class I2c {
     }
   }
 
-  /// Queues the commands of the rest of the transfer, as far as there is room, and enables the interrupts for
-  /// the next event. Queues nothing after an abort.
+  /// Queues the remaining commands of the transfer while the queues have room. Then enables the interrupts
+  /// for the next event. Queues nothing after an abort.
   void fill(Time now) {
     const std::size_t size = transfer_->size();
     while (!aborted_ && queued_ < size && has_room()) {
@@ -199,8 +199,8 @@ class I2c {
     kInterruptMask.write(kStopped | kAborted | (more ? kQueueLow : Bits<Interrupts>()));
   }
 
-  /// Returns whether the queue of commands has room for another command and, for a read, the queue of
-  /// received bytes has room for its byte.
+  /// Returns whether the queue of commands has room for another command. For a read, the queue of received
+  /// bytes must also have room for the byte that this command reads.
   [[nodiscard]] bool has_room() const {
     return kStatus.read().has(kRoom) && (transfer_->writes() || queued_ - received_ < kQueue);
   }

@@ -13,10 +13,11 @@ namespace ex9000::hal::rp2040 {
 template <const auto& groups, unsigned channels, bool active_high>
 class InputPins {
  public:
-  /// Makes the pins inputs. Call this once, kPullsSettle before `start`.
+  /// Makes the pins inputs. Call this once, at least kPullsSettle before `start`.
   static void make_inputs() { Gpio::make_input(kPins, !active_high); }
 
-  /// Enables edge interrupts and returns the levels; bit n is channel n. Each later edge is flagged.
+  /// Enables edge interrupts and returns the levels; bit n is channel n. Each edge after the read of these
+  /// levels is flagged.
   static std::uint16_t start() {
     Gpio::watch_edges(kPins);
     const std::uint32_t levels = settle(kPins).levels;
@@ -69,9 +70,9 @@ class InputPins {
     std::uint32_t levels;   ///< bit n is GPIOn; 1 = logic 1
   };
 
-  /// Clears the flags of `flagged` and those of new edges, and reads the levels after the last of these
-  /// edges. Repeats this if a new edge is flagged, because an edge between the clearing of the flags and the
-  /// read of the levels would count twice: now because of its level, and later because of its flag.
+  /// Clears the edge flags of the pins in `flagged`, and then reads the levels. If a new edge is flagged,
+  /// repeats both steps. Without the repetition, an edge between the two steps would count twice: now because
+  /// of its level, and later because of its flag. Returns all flagged pins and the last levels.
   static Settled settle(std::uint32_t flagged) {
     Settled settled{0, 0};
     do {

@@ -1,5 +1,5 @@
-// The reset controller of the peripherals and the power-on state machine. Source: RP2040 data sheet, 2.13 and
-// 2.14.
+// The reset controller of the peripherals, and the power-on state machine, which can reset the second core.
+// Source: RP2040 data sheet, 2.13 and 2.14.
 #pragma once
 
 #include <cstdint>
@@ -24,9 +24,9 @@ constexpr std::uint32_t operator|(std::uint32_t a, Block b) { return a | static_
 
 class Resets {
  public:
-  /// Resets `blocks` and waits for a few clocks until they can be used. Their clocks must run. If the clock
-  /// of a block does not run, this function waits until the watchdog resets the MCU. The blocks are in reset
-  /// already, except after a reset of only the processor, for example by a debug probe.
+  /// Resets `blocks` and waits until they can be used. This takes a few clock cycles. If the clock of a block
+  /// does not run, this function waits until the watchdog resets the MCU. The blocks are already in reset
+  /// before this call, except after a reset of only the processor, for example by a debug probe.
   static void restart(std::uint32_t blocks) {
     kReset.set(Bits<Reset>(blocks));
     kReset.clear(Bits<Reset>(blocks));
@@ -34,8 +34,9 @@ class Resets {
     }
   }
 
-  /// Resets the second core, which may run after a reset of only the first one. It then sleeps in the boot
-  /// ROM. It does not stay in reset, because a debug probe cannot connect to a core in reset.
+  /// Resets the second core, which may still run after a reset of only the first core. After this call, the
+  /// second core sleeps in the boot ROM. This function does not keep the second core in reset, because a
+  /// debug probe cannot connect to a core in reset.
   static void restart_second_core() {
     constexpr Bits<ForceOff> kSecondCore(1U << 16U);
     kForceOff.set(kSecondCore);

@@ -36,8 +36,8 @@ class OneShotTimer {
     const Time begin = Clock::now();
     const Duration to_alarm = after + Duration(1);
     kAlarm.write(Bits<Alarm>((begin + to_alarm).microseconds()));
-    // The alarm fires only when the time equals its value. An interrupt may have delayed the write until
-    // after this time. In this case, the following lines force the interrupt.
+    // The alarm fires only when the time equals the value of the alarm. If another interrupt delayed the
+    // write of the value until after this time, the following lines force the interrupt of the timer.
     if (!(Clock::now().since(begin) < to_alarm) && kArmed.read().has(Bits<Armed>(kThis))) {
       kArmed.write(Bits<Armed>(kThis));
       kForce.set(Bits<Force>(kThis));
@@ -45,7 +45,8 @@ class OneShotTimer {
   }
 
   /// Returns whether the timer has expired, and clears its flag. The interrupt of the timer must call this
-  /// first, because the timer has not expired if it was restarted while the interrupt was pending.
+  /// first, and must do nothing else if the result is false. The result is false if the timer was restarted
+  /// while the interrupt was pending, and the timer has not expired again.
   static bool take_expiry() {
     if (!kStatus.read().has(Bits<Status>(kThis))) {
       return false;
@@ -56,7 +57,7 @@ class OneShotTimer {
   }
 
  private:
-  static_assert(number < 4, "there are four alarms");
+  static_assert(number < 4, "number: must be 0 to 3");
   static constexpr std::uint32_t kThis = 1U << number;
 
   struct Alarm;

@@ -69,13 +69,13 @@ class WatchdogRegisters {
   static constexpr Bits<ResetBy> kAllButOscillators{0x1'FFFC};
 };
 
-/// `reference`: frequency in MHz of the reference clock when the crystal is its source.
+/// `reference`: frequency of the reference clock in MHz while the crystal is the source of this clock.
 template <std::uint32_t reference>
 class HardwareWatchdog : public WatchdogRegisters {
  public:
-  /// Starts the tick of the watchdog and the timer, and then the watchdog. The watchdog runs until the next
-  /// reset. While the ring oscillator is the reference clock, the tick and the countdown are up to twelve
-  /// times longer than with a crystal of 12 MHz.
+  /// Starts the tick, which drives the watchdog and the timer, and then starts the watchdog. The watchdog
+  /// runs until the next reset. While the ring oscillator is the source of the reference clock, each tick and
+  /// the countdown can take up to twelve times as long as with a crystal of 12 MHz.
   static void start() {
     kMark.write(kOfAnImage);
     kTick.write(Bits<Tick>(reference) | kTickEnable);

@@ -1,5 +1,5 @@
 // General-purpose pins. Sources: LM3S6965 data sheet, 8.3 to 8.5; TM4C123GH6PM data sheet, 10.3 to 10.5. The
-// TM4C has the registers of the LM3S6965 on its APB aperture, and more registers, for example GPIOPCTL.
+// APB aperture of the TM4C has the registers of the LM3S6965 and more registers, for example GPIOPCTL.
 #pragma once
 
 #include <cstdint>

@@ -105,7 +105,8 @@ class I2c {
   static constexpr std::uint32_t kBoth = kClock | kDataPin;
   static constexpr std::uint32_t kPortControlFunction = 3;
 
-  /// A byte takes about 90 us, and the address before the first byte takes as long. The rest is a reserve.
+  /// A byte takes about 90 us, and the address before the first byte also takes about 90 us. The rest of the
+  /// timeout is a reserve.
   static constexpr Duration kByteTimeout = milliseconds(3);
 
   // --- freeing the bus ---
@@ -122,8 +123,8 @@ class I2c {
     static bool data_is_high() { return kPort.read(kDataPin) != 0; }
   };
 
-  /// Begins to free the bus, and resets the peripheral. Without this reset, the peripheral would continue an
-  /// unfinished byte and report its end as the end of the next byte.
+  /// Resets the peripheral and begins to free the bus. Without this reset, the peripheral would continue an
+  /// unfinished byte and report the end of this byte as the end of the next byte.
   void begin_freeing() {
     constexpr Bits<SoftwareReset> kI2c0(1U << 12U);
     kSoftwareReset.write(kI2c0);
@@ -195,7 +196,8 @@ class I2c {
     }
   }
 
-  /// Aborts the transfer and begins to free the bus, which ends the transfer in the device too.
+  /// Aborts the transfer and begins the recovery of the bus. The recovery also ends the transfer in the
+  /// device.
   void give_up(I2cResult result) {
     finish(result);
     begin_freeing();

@@ -13,7 +13,7 @@ namespace ex9000::hal::stellaris {
 template <const auto& groups, unsigned channels, bool active_high>
 class InputPins {
  public:
-  /// Makes the pins inputs. Call this once, kPullsSettle before `start`.
+  /// Makes the pins inputs. Call this once, at least `kPullsSettle` before `start`.
   static void make_inputs() {
     unsigned first = 0;
     for (const PinGroup& group : groups) {
@@ -55,7 +55,7 @@ class InputPins {
   }
 
   /// Calls `deliver(channel, level)` for each channel on `port` that has had an edge. The group of the last
-  /// channel may also contain pins after this channel. For an edge of such a pin, `channel` is `channels` or
+  /// channel may also contain pins without a channel. For an edge of such a pin, `channel` is `channels` or
   /// greater. The level is read after the flag has been cleared, so that an edge in between is flagged again.
   /// For the port's interrupt.
   template <Port port, class Deliver>
@@ -65,11 +65,11 @@ class InputPins {
   }
 
  private:
-  /// Clears the flags of `flagged` and then reads the levels. Repeats both steps for `pins` with a new edge,
-  /// because an edge between the clearing of the flags and the read of the levels would count twice: now
-  /// because of its level, and later because of its flag. Pins that are neither in `pins` nor in `flagged`
-  /// keep their flags. Returns the cleared flags in bits 0 to 7 and the levels of all pins of the port in
-  /// bits 8 to 15; 1 = logic 1.
+  /// Clears the flags of `flagged` and then reads the levels. Repeats both steps while any of `pins` has a
+  /// new edge, because an edge between the clearing of the flags and the read of the levels would count
+  /// twice: now because of its level, and later because of its flag. Pins that are neither in `pins` nor in
+  /// `flagged` keep their flags. Returns the cleared flags in bits 0 to 7 and the levels of all pins of the
+  /// port in bits 8 to 15; 1 = logic 1.
   [[gnu::noinline]] static std::uint32_t settle(Gpio gpio, std::uint32_t pins, std::uint32_t flagged) {
     std::uint32_t cleared = 0;
     std::uint32_t levels = 0;

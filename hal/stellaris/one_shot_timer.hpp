@@ -28,8 +28,9 @@ class OneShotTimer {
     kControl.write(kEnable);
   }
 
-  /// Returns whether the timer has expired, and clears its flag. Its interrupt must call this first: the
-  /// timer has not expired if it was restarted while its interrupt was pending.
+  /// Returns whether the timer has expired since the last `restart`, and clears the flag of the expiry. The
+  /// timer's interrupt must call this first, because `restart` may have been called while the interrupt was
+  /// pending.
   static bool take_expiry() {
     if (!kMaskedInterrupts.read().has(kHasTimedOut)) {
       return false;

@@ -14,8 +14,7 @@ namespace ex9000::hal::stellaris {
 template <const auto& groups, unsigned channels, bool active_high>
 class OutputPins {
  public:
-  /// Makes the pins outputs with all channels de-energised, as they are while the pins float. Call this once,
-  /// before `drive`.
+  /// Makes the pins outputs, with all channels de-energised. Call this once, before `drive`.
   static void start() {
     each_group(0, [](const Gpio& gpio, std::uint32_t pins, std::uint32_t levels) {
       gpio.make_output(pins, levels);
@@ -30,7 +29,7 @@ class OutputPins {
   }
 
  private:
-  /// Returns the number of channels before `group`.
+  /// Returns the number of pins in the groups before `groups[group]`.
   static constexpr unsigned before(std::size_t group) {
     unsigned sum = 0;
     for (std::size_t i = 0; i < group; ++i) {

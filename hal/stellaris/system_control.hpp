@@ -41,9 +41,10 @@ constexpr std::uint32_t kTimer2 = 1U << 18U;
 class SystemControl {
  public:
   /// Switches the processor to `clock`. Call this once after reset, when the watchdog is running.
-  /// Blocks until the crystal has started, which can take some milliseconds, and the PLL has locked, which
-  /// takes a few hundred microseconds more. If the PLL never locks, the watchdog resets the MCU. If the
-  /// crystal never starts, the processor and the watchdog have no clock, and the outputs stay off.
+  /// Blocks until the crystal has started and the PLL has locked. The start of the crystal can take some
+  /// milliseconds. The PLL then takes a few hundred microseconds more. If the PLL never locks, the watchdog
+  /// resets the MCU. If the crystal never starts, the processor and the watchdog have no clock, and the
+  /// outputs stay off.
   static void use(const ClockTree& clock) {
     constexpr Bits<Rcc> kBypass(1U << 11U);
     constexpr Bits<Rcc> kPowerDown(1U << 13U);
@@ -68,7 +69,8 @@ class SystemControl {
     kRcc.write(rcc.without(kBypass));
   }
 
-  /// Enables the clocks of `gates` and waits until the registers of these peripherals can be accessed.
+  /// Enables the clocks of the peripherals in `gates`, and waits until the registers of these peripherals can
+  /// be accessed.
   static void open(const ClockGates& gates) {
     kRcgc0.set(Bits<Rcgc0>(gates.rcgc0));
     kRcgc1.write(Bits<Rcgc1>(gates.rcgc1));  // after reset, these clocks are off
@@ -80,9 +82,9 @@ class SystemControl {
     }
   }
 
-  /// Returns the reason of the last reset, and clears it. Call this once after each reset, as early as
-  /// possible: most resets do not clear the bits of RESC (data sheets, "Reset Cause"), so another reset
-  /// before this call may add its bit to them.
+  /// Returns the reason of the last reset, and clears RESC. Call this once after each reset, as early as
+  /// possible. Most resets do not clear the bits of RESC (data sheets, "Reset Cause"), so if another reset
+  /// occurs before this call, RESC may contain the bits of both resets.
   static ResetReason take_reset_reason() {
     constexpr Bits<ResetCause> kPin(1U << 0U);
     constexpr Bits<ResetCause> kPowerOn(1U << 1U);

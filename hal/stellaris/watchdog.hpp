@@ -43,7 +43,7 @@ class HardwareWatchdog {
 
   static constexpr Duration kCountdown = milliseconds(750);
   static_assert(2 * kCountdown.microseconds() < kWatchdogPeriod.microseconds(),
-                "the watchdog resets the MCU after two countdowns");
+                "kCountdown is too long; two countdowns must take less than kWatchdogPeriod");
 };
 
 }  // namespace ex9000::hal::stellaris

@@ -262,7 +262,7 @@ TEST(Documents, EveryOptionCommandAndFaultHasATableRow) {
   for (const std::string& option : options) {
     EXPECT_TRUE(has_row(option)) << option;
   }
-  const std::vector<std::string> commands = column_of(help, "through all lines, from 1:\n", 20);
+  const std::vector<std::string> commands = column_of(help, "through all lines of the bus file:\n", 20);
   const std::vector<std::string> troubles = column_of(help, "The troubles:\n", 22);
   EXPECT_GE(commands.size(), 15U);
   EXPECT_GE(troubles.size(), 13U);

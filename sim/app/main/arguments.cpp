@@ -68,8 +68,9 @@ void apply_writing(const WritingTexts& texts, Writing& writing) {
   }
 }
 
-/// Returns the prefix of the error message: the place in the bus file if `setup` contains it, otherwise the
-/// option of the command line, or `eeprom=` for this key of a module.
+/// Returns the prefix of the error message. If the wrong value is in the bus file, the prefix is the place of
+/// its key there. Otherwise the prefix is the option of the command line, or `eeprom=` for the EEPROM file of
+/// a module.
 std::string where(const SetupError& error, const Setup& setup) {
   if (error.module) {
     return setup.lines[*error.line].modules[*error.module].eeprom_place;
@@ -82,8 +83,8 @@ std::string where(const SetupError& error, const Setup& setup) {
   return "--" + error.key + ": ";
 }
 
-/// Returns how a message refers to a key and its value: as the key of the bus file if the bus file sets it,
-/// otherwise as the option of the command line.
+/// Returns the text with which a message refers to a key: `'KEY'VALUE in FILE` if the bus file contains the
+/// key, otherwise the option of the command line, `--KEYVALUE`. `value` is empty or begins with a space.
 std::string name_of(const std::string& key, const std::string& value, const Setup& setup) {
   const auto has_key = [&key](const auto& part) { return part.places.count(key) != 0; };
   const bool in_file = has_key(setup) || std::any_of(setup.lines.begin(), setup.lines.end(), has_key);
@@ -154,10 +155,10 @@ void add_writing(CLI::App& app, WritingTexts& texts) {
          "--log", texts.log,
          "print each frame on the bus as one line of text: time, direction, bytes, meaning; json: print only "
          "JSON objects on standard output, one for each frame and each note")
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeLast)  // lets a user override a script's option
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeLast)  // a later --log overrides one in a script
       ->type_name("[text|json|off]");
   app.add_option("--capture", texts.capture,
-                 "write the frames to this pcapng file for Wireshark; overwrites the file")
+                 "write the frames to this pcapng file for Wireshark; an existing file is overwritten")
       ->type_name("FILE");
 }
 
@@ -233,7 +234,7 @@ CLI::App* add_describe(CLI::App& app, DescribeTexts& texts) {
       ->type_name(describe_formats());
   describe
       ->add_option("--address", texts.address,
-                   "set the module's address in hex, for home-assistant and node-red (default: 01)")
+                   "name the module's Modbus address in hex, for home-assistant and node-red (default: 01)")
       ->type_name("HH");
   describe
       ->add_option(
@@ -259,8 +260,8 @@ std::vector<const CLI::Option*> given_of(const CLI::App& app) {
   return app.get_options([](const CLI::Option* option) { return option->count() != 0; });
 }
 
-/// Returns the name of an option. Positional arguments have no option name, so for them this function returns
-/// the first one as the user wrote it.
+/// Returns the name of an option. A positional argument has no such name. If `option` is positional, the
+/// result is its first value, as the user wrote it.
 std::string name_of(const CLI::Option& option) {
   return option.get_positional() ? option.results().front() : option.get_name();
 }
@@ -311,13 +312,13 @@ Parsed parse_arguments(int argc, const char* const* argv) {
   bool schema = false;
   app.add_option("MODULE", texts.line.modules, "the modules on the line, or BUS.json");
   app.add_option("--pty", texts.line.pty,
-                 std::string("create a pseudo-terminal and link it at this path (default: ") + kDefaultPty +
-                     " without --tcp, --modbus-tcp, --serial and --speed max)")
+                 std::string("create a pseudo-terminal, and a link to it at this path (default: ") +
+                     kDefaultPty + " if none of --tcp, --modbus-tcp, --serial and --speed max is given)")
       ->type_name("LINK");
   app.add_option("--tcp", texts.line.tcp, "serve the line's bytes over TCP (default HOST: 127.0.0.1)")
       ->type_name("[HOST:]PORT");
   app.add_option("--modbus-tcp", texts.line.modbus_tcp,
-                 "serve the Modbus modules of the line as a gateway for Modbus TCP (default HOST: 127.0.0.1)")
+                 "open a Modbus TCP gateway to the Modbus modules of the line (default HOST: 127.0.0.1)")
       ->type_name("[HOST:]PORT");
   app.add_option("--serial", texts.line.serial, "connect the modules to a real line through this serial port")
       ->type_name("DEVICE");
@@ -331,14 +332,14 @@ Parsed parse_arguments(int argc, const char* const* argv) {
                  "set the line's format: 8N1, 8N2, 8E1 or 8O1 (default: the first module's)")
       ->type_name("FORMAT");
   app.add_option("--line", texts.line.kind,
-                 "set how long bytes take: paced (default): as long as on a real line; instant: no time")
+                 "set how long bytes take; paced (default): as long as on a real line; instant: no time")
       ->type_name("paced|instant");
   app.add_option("--control", texts.control, "create a UNIX socket for commands at this path")
       ->type_name("PATH");
   app.add_option(
          "--panel", texts.panel,
-         "serve a page for a browser on this machine that shows the modules and the bus (default port: "
-         "9042, or any free port if that is in use)")
+         "serve, for browsers on this computer, a page with the modules and the frames (default port: "
+         "9042, or any free port if port 9042 is in use)")
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeLast)
       ->type_name("[PORT|off]");
   app.add_flag("--watch", texts.watch,
@@ -354,14 +355,14 @@ Parsed parse_arguments(int argc, const char* const* argv) {
       ->allow_extra_args(false);
   app.add_option("--speed", texts.speed,
                  "run N times as fast as the wall clock, 0.001 to 1000 (default: 1); max: as fast as "
-                 "possible, without ports and with --for; step: only the control command 'advance' moves the "
-                 "time")
+                 "possible; requires --for, and cannot be combined with a port, --control or --panel; step: "
+                 "only the control command 'advance' advances the time; requires --control")
       ->type_name("N|max|step");
   app.add_option(
          "--threads", texts.threads,
          "run the lines of a bus file on at most N threads (default: one for each processor, up to 64)")
       ->type_name("N");
-  app.add_option("--for", texts.lasts, "end after this time on the lines, for example 10s or 24h")
+  app.add_option("--for", texts.lasts, "end when this time has passed on the lines, for example 10s or 24h")
       ->type_name("TIME");
   app.add_option("--seed", texts.seed,
                  "set the seed of random faults and bouncing inputs; the same seed repeats them (default: 1)")
@@ -373,7 +374,7 @@ Parsed parse_arguments(int argc, const char* const* argv) {
   app.add_flag("--example", example, "print an example of a bus file and exit");
   app.add_flag("--schema", schema, "print the JSON Schema of bus files and exit");
   app.add_flag("--models", models, "list the models and exit");
-  app.require_subcommand(0, 1);  // at most one, so that a file may have the name of a subcommand
+  app.require_subcommand(0, 1);  // with the limit 1, `play describe` plays the file `describe`
   PlayTexts play_texts;
   const CLI::App* const playing = add_play(app, play_texts);
   DescribeTexts describe_texts;

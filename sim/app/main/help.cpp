@@ -24,18 +24,18 @@ A bus file, BUS.json, takes the place of the modules and describes any number of
 --schema prints the JSON Schema. Options that describe a line, for example --tcp and --fault, cannot be combined with
 a bus file.
 
-Commands of the control socket: each is one line of text, with the reply `ok ...` or `error: ...`. N is a module's
-position on the command line, or in the bus file through all lines, from 1:
+Commands of the control socket: each is one line of text, with the reply `ok ...` or `error: ...`. N is the position
+of a module. Positions count from 1, on the command line or through all lines of the bus file:
 )";
 
 constexpr const char* kPlayHelp = R"(
-A file is a list of steps: `> $01M` and `< !019042` for DCON, `=> 01 01 0000 000D` and `<= ...` for Modbus
-without its CRC, `silence`, `wait 1.5s`, `bytes HEX`, `checksum on|off`, `baud RATE`, `format FORMAT`, and for a
-module `power on|off`, `power-cycle`, `reset`, `init on|off`, `input C on|off`, `pulse C [xCOUNT]`, `outputs HHHH`,
+A file is a list of steps: `> $01M` and `< !019042D` for DCON, `=> 01 01 0000 000D` and `<= ...` for Modbus
+frames without the CRC, `silence`, `wait 1.5s`, `bytes HEX`, `checksum on|off`, `baud RATE`, `format FORMAT`, and for
+a module `power on|off`, `power-cycle`, `reset`, `init on|off`, `input C on|off`, `pulse C [xCOUNT]`, `outputs HHHH`,
 `led on|off|flashing`.
 A file with `source:` and `model:` lines before the steps is a transcript, which is played on each of these models. A
-file without `model:` lines is a scenario for the modules or the bus file on the command line. A scenario has more
-steps: `module N`, `line NAME`, `fault [N] FAULT` as for --fault, and `fault off K|all`. See
+file without `model:` lines is a scenario for the modules or the bus file on the command line. A scenario can
+have more steps: `module N`, `line NAME`, `fault [N] FAULT` as for --fault, and `fault off K|all`. See
 tests/conformance/README.md.
 )";
 
@@ -49,10 +49,10 @@ constexpr const char* kScheduleHelp = R"(
   with probability 0.01 (for each reply) | after 3 writes (to the EEPROM).
   Without WHEN the fault begins immediately and stays active; power-cut, foreign-traffic and hang
   then occur once. `for 2s` limits how long the fault lasts.
-  Faults use the time that the log shows. The units of time are us, ms, s, min and h.
+  Faults follow the time of the line, which is the time in the log. The units of time are us, ms, s, min and h.
 
-An input that changes by itself is C square PERIOD [for TIME] [bounce TIME] or
-C key at TIME|every TIME for TIME [bounce TIME], for --input (with N before it) and for bus files.
+The description of an input that changes by itself is C square PERIOD [for TIME] [bounce TIME] or
+C key at TIME|every TIME for TIME [bounce TIME], for --input and for bus files. For --input, write N before it.
 )";
 
 constexpr const char* kDescribeExamples = R"(

@@ -19,8 +19,8 @@ class PlayRecord final : public play::PlayObserver {
   using Print = LineRecord::Print;
 
   /// Writes the log and the capture that `writing` requests. `print` receives the lines of the log. The first
-  /// call of `run_begins` opens the capture file if `writing` names one. That call and later calls may throw
-  /// the exceptions of Capture.
+  /// call of `run_begins` opens the capture file if `writing` names one. This call and all later calls of
+  /// member functions may throw the exceptions of Capture.
   PlayRecord(Writing writing, Print print);
 
   // --- play::PlayObserver ---

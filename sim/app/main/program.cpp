@@ -41,8 +41,8 @@ void run(const Setup& setup) {
     }
   };
   boost::asio::signal_set signals(io);
-  // From here on, a stop signal stops `io` instead of the process, so the destructors run. They remove the
-  // control socket and the links to pseudo-terminals.
+  // A stop signal stops `io` and does not end the process, so the destructors run. They remove the control
+  // socket and the links to pseudo-terminals.
   add_stop_signals(signals);
   signals.async_wait([&io](const boost::system::error_code& /*error*/, int /*signal*/) { io.stop(); });
   const auto greet = [&errors](const std::string& text) { errors.write(text + "\n"); };

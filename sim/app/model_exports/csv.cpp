@@ -27,8 +27,8 @@ struct Row {
   std::string meaning;
 };
 
-/// Returns the text of a cell. Puts the text in quotes and doubles each quote in it if the text contains a
-/// comma, a quote or a line break.
+/// Returns the text of a cell. If `text` contains a comma, a quote or a line break, the result is in quotes,
+/// and each quote of `text` is doubled.
 std::string quoted_cell(const std::string& text) {
   if (text.find_first_of(",\"\r\n") == std::string::npos) {
     return text;

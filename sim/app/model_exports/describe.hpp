@@ -6,7 +6,7 @@
 
 namespace ex9000::sim {
 
-/// The arguments of `describe`. An argument that the user does not give has its initial value here.
+/// The arguments of `describe`. If the user omits an argument, its member keeps the initial value.
 struct DescribeTexts {
   std::string model;
   std::string format = "markdown";

@@ -50,10 +50,10 @@ struct NetworkAddress {
 /// `modbus: !include FILE` to configuration.yaml.
 std::string home_assistant_hub(const Model& model, const NetworkAddress& network_address);
 
-/// Returns a flow to import into Node-RED with node-red-contrib-modbus, as a JSON array: a tab that reads the
-/// values of `shown_by`, switches the outputs and clears the latches and counters that the model has, and
-/// clears the timeout status. The ids of the nodes are the same in all flows for the same model and Modbus
-/// address.
+/// Returns a flow to import into Node-RED with node-red-contrib-modbus, as a JSON array. The tab of the flow
+/// reads the values that `shown_by` returns, and clears the timeout status. If the model has outputs, the tab
+/// switches them. If the model has inputs, the tab clears their latches and counters. The ids of the nodes
+/// are the same in all flows for the same model and Modbus address.
 std::string node_red_flow(const Model& model, const NetworkAddress& network_address);
 
 /// Returns a device template of Wiren Board's wb-mqtt-serial, for /etc/wb-mqtt-serial.conf.d/templates.

@@ -51,13 +51,13 @@ class Hub {
   /// after a timeout.
   [[nodiscard]] std::string watchdog_actions() const {
     const std::string after =
-        model_.outputs == 0 ? "the timeout status stays set" : "the outputs keep their safe values";
-    return "# With register 0x0251 = 1, each poll restarts the host watchdog, which then watches Home\n"
-           "# Assistant. It expires if the polls stop for longer than its timeout (register 0x01E8; factory\n"
-           "# setting: 25.5 s), which must be longer than the shortest scan_interval. Polls of any other\n"
-           "# master also restart it. Call these actions once:\n" +
+        model_.outputs == 0 ? "the timeout status stays set" : "the module refuses to switch the outputs";
+    return "# If register 0x0251 is 1, each poll of this module restarts the host watchdog. If the polls\n"
+           "# stop for longer than the timeout in register 0x01E8 (factory setting: 25.5 s), the host\n"
+           "# watchdog expires. The timeout must be longer than the shortest scan_interval. Polls of any\n"
+           "# other master also restart the host watchdog. Call these actions once:\n" +
            write("register", "watchdog-feed", "value: 1") + write("coil", "watchdog-enable", "state: true") +
-           "# After a timeout, " + after + " until you call these:\n" +
+           "# After a timeout of the host watchdog, " + after + " until you call these actions:\n" +
            write("coil", "timeout-status", "state: true") + write("coil", "watchdog-enable", "state: true");
   }
 
@@ -153,9 +153,9 @@ std::string head(const Model& model, const NetworkAddress& network_address) {
   return "# " + std::string(model.designation) + " at address " + hex_byte_text(network_address.address) +
          ", for Home Assistant's modbus integration. In configuration.yaml:\n"
          "#   modbus: !include modbus.yaml\n"
-         "# Put further modules on the same line under this hub: Home Assistant does not load a second hub "
-         "with the same host and port.\n"
-         "# A module on a serial port has, in place of type, host and port:\n"
+         "# Add further modules of the same RS-485 line to this hub, because Home Assistant does not load a "
+         "second hub with the same host and port.\n"
+         "# For modules on a serial port, write these keys of the hub in place of type, host and port:\n"
          "#   type: serial\n"
          "#   port: /dev/ttyUSB0\n"
          "#   baudrate: " +

@@ -128,23 +128,25 @@ std::string dcon_notes(const Models& models) {
   const bool outputs = any_has(models, [](const Model& model) { return model.has_outputs(); });
   const bool inputs = any_has(models, [](const Model& model) { return model.has_inputs(); });
   std::string text =
-      "- `AA` is the module's address in hex, `**` addresses all modules, which do not reply. CR ends every "
-      "request and reply. With the checksum enabled, two hex digits precede CR: the sum of all characters "
-      "before them, modulo 256.\n"
+      "- `AA` is the module's address in hex. `**` addresses all modules, and no module replies. CR ends "
+      "every request and reply. If the checksum is enabled, two hex digits precede CR: the sum of all "
+      "characters before these digits, modulo 256.\n"
       "- `(First)` and `(Second)` are two hex digits each; the table above lists their channels (relay RL1 "
       "is DO0); bit 0 is the lowest channel.";
-  text += inputs ? " `$AALS` has latches in place of inputs, and 00 in place of outputs." : "";
-  text += outputs ? " `~AA4V` has 00 in place of inputs." : "";
+  text += inputs ? " The reply to `$AALS` has latches in place of inputs, and 00 in place of outputs." : "";
+  text += outputs ? " The reply to `~AA4V` has 00 in place of inputs." : "";
   text +=
-      "\n- `TT` is 40, and `%` also accepts 24; `CC` is the baud rate: " + baud_codes() +
-      "; plus 40, 80 or C0 for the line formats 8N2, 8E1 and 8O1; `FF` is 80 if the counters count rising "
-      "edges, otherwise 00; the checksum adds 40.\n"
-      "- `SS` is 04 or 84 after a timeout of the host watchdog, 80 while it is enabled, otherwise 00; the "
-      "table above lists the values of each model.\n"
+      "\n- `TT` is 40, and `%` also accepts 24. `CC` is the code of the baud rate: " + baud_codes() +
+      "; plus 40, 80 or C0 for the line formats 8N2, 8E1 and 8O1. `FF` is 80 if the counters count rising "
+      "edges, otherwise 00; the checksum adds 40 to `FF`. All codes are in hex.\n"
+      "- `SS` is 04 or 84 while the timeout status is set. Otherwise, on models with the value 80, it is 80 "
+      "while the host watchdog is enabled. In all other cases it is 00. The table above lists the values of "
+      "each model.\n"
       "- The reply to a rejected command is `?AA`.";
-  text += outputs ? " Models with outputs reply `?` to a rejected command that sets outputs, and `!` to one "
-                    "that is ignored because the timeout status is set."
-                  : "";
+  text += outputs
+              ? " Models with outputs reply `?` to a rejected command that sets outputs. While the "
+                "timeout status is set, they reply `!` to a valid command that sets outputs, and ignore it."
+              : "";
   return text +
          "\n- Access: a *stored* value is in the EEPROM before the module replies. (I): the module must run "
          "in INIT mode, or INIT* must be tied to GND when the command arrives. For `%` this applies only to "

@@ -102,7 +102,7 @@ class Flow {
     }
   }
 
-  /// Adds a node that reads all items of the row with one request, and a node that shows their values.
+  /// Adds a node that reads all items of `shown` with one request, and a node that shows their values.
   void add_reading(const Shown& shown) {
     const std::string name = "read " + std::string(shown.id);
     Json read = node(name, "modbus-read", 1);
@@ -122,8 +122,8 @@ class Flow {
     ++row_;
   }
 
-  /// Adds a node that writes the item, a node that shows what is written and, in a row for each of `values`,
-  /// a node that sends this value to the node that writes.
+  /// Adds a node that writes item `index` of `shown`, and a node that shows the written values. For each of
+  /// `values`, also adds a row with a node that sends this value to the node that writes.
   void add_write(const Shown& shown, unsigned index,
                  const std::vector<std::pair<const char*, bool>>& values) {
     const std::string key = shown.key_of(index);

@@ -66,9 +66,9 @@ constexpr const Reading* reading_of(std::string_view id) {
   return nullptr;
 }
 
-/// Returns whether kReadings covers all rows of kBitRegisters and kWordRegisters and contains no other rows,
-/// and whether a row of kBitRegisters has a button if and only if it has the rule kOnlyOn. Add each new row
-/// of these tables to kReadings.
+/// Returns true if two conditions are met. First, kReadings has one entry for each row of kBitRegisters and
+/// kWordRegisters, and no other entries. Second, a row of kBitRegisters has a button if, and only if, it has
+/// the rule kOnlyOn. For each new row of kBitRegisters or kWordRegisters, add an entry to kReadings.
 constexpr bool covers_every_row() {
   for (const modbus::BitRegister& row : modbus::kBitRegisters) {
     const Reading* const reading = reading_of(row.id);

@@ -11,9 +11,10 @@
 
 namespace ex9000::sim {
 
-/// How exports for Modbus clients present an item. These exports write only Output and Button. They do not
-/// write the other items, even if masters can write them. Comments in the Home Assistant export describe
-/// actions for the host watchdog, which write other items if the user calls them.
+/// How exports for Modbus clients present an item. These exports write only items with the roles Output and
+/// Button. They do not write the other items, even if masters can write them. The Home Assistant export also
+/// contains comments with actions for the host watchdog. If the user calls these actions, they write other
+/// items.
 enum class Role : std::uint8_t {
   Output,   ///< read and written
   Input,    ///< a level or a latch
@@ -37,8 +38,8 @@ struct Shown {
 
   /// Returns the name with the channel, for example `Output 3`, or only the name if the row has no channels.
   [[nodiscard]] std::string name_of(unsigned index) const;
-  /// Returns the id with the channel, for example `outputs_3`, or only the id if the row has no channels; has
-  /// `_` in place of `-`. The result is unique in the model.
+  /// Returns the id with the channel, for example `outputs_3`, or only the id if the row has no channels. The
+  /// result contains `_` in place of `-`, and is unique in the model.
   [[nodiscard]] std::string key_of(unsigned index) const;
 };
 

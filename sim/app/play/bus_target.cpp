@@ -133,8 +133,8 @@ void BusTarget::pulse_input(unsigned channel, std::uint32_t count) {
 }
 
 step::Led::Shows BusTarget::led(step::Led::Shows /*expected*/) {
-  // Lets no virtual time pass, so that the check does not extend the time between other steps. The unit tests
-  // of StatusLed check how the LED flashes.
+  // No virtual time passes here, so the check does not extend the time between other steps. The unit tests of
+  // StatusLed check how the LED flashes.
   if (module().powered() && module().module().led_pattern() == StatusLed::Pattern::HostTimeout) {
     return step::Led::Shows::Flashing;
   }
@@ -163,7 +163,7 @@ void BusTarget::choose_line(const std::string& name) {
   const std::string names = sim::joined(names_, ", ");
   throw std::runtime_error(
       "no line '" + name + "'; " +
-      (names.empty() ? "the only line has no name; remove the step" : "there are " + names));
+      (names.empty() ? "the only line has no name; remove the step" : "expected one of " + names));
 }
 
 /// Chooses a line and a module. If the line changes, discards the bytes that the master of the new line has

@@ -18,7 +18,7 @@ namespace ex9000::play {
 using Memories = std::vector<std::optional<std::vector<std::uint8_t>>>;
 /// Reads the EEPROM files that `setup` names, even if another process uses them. Does not change the files.
 /// The result has nullopt for a module without an EEPROM file and for a file that does not exist. Throws
-/// std::invalid_argument with a one-line message if a file is not an image or is not readable.
+/// std::invalid_argument with a one-line message if a file is not an EEPROM image or is not readable.
 Memories read_memories(const sim::Setup& setup);
 
 /// All lines have the same virtual time. The observer may be null; otherwise it must outlive the target.

@@ -29,7 +29,7 @@ std::vector<Transcript> load_all(const std::string& path) {
     fail(error.what());
   }
   if (all.empty()) {
-    fail(path + ": contains no file that ends with .txt; name a transcript, a scenario or a folder of them");
+    fail(path + ": contains no .txt file; name a transcript, a scenario or a folder of such files");
   }
   return all;
 }

@@ -19,11 +19,15 @@ struct Task {
   sim::Writing writing;
 };
 
-/// Plays the files. Prints one line of text for each run and a summary. Returns whether all runs have passed.
-/// Throws std::invalid_argument with a one-line message if the path or the content of a file is wrong, if the
-/// bus is missing, lacks something that a scenario uses, or is not used, if a fault of `bus` names a module
-/// that its line does not have, if an EEPROM file of `bus` is not an image or is not readable, or if the
-/// capture is a file that is played or that `bus` names. In these cases `observer` is not called.
+/// Plays the files. Prints one line of text for each run, and then a summary. Returns whether all runs have
+/// passed. In the following cases, throws std::invalid_argument with a one-line message, and does not call
+/// `observer`:
+/// - The path or the content of a file is wrong.
+/// - A file is a scenario, but `task` has no `bus`, or `bus` lacks something that the scenario uses.
+/// - A file is a transcript, but `task` has a `bus`.
+/// - A fault of `bus` names a module that its line does not have.
+/// - An EEPROM file of `bus` is not an EEPROM image, or is not readable.
+/// - The capture is a file that is played or that `bus` names.
 bool play(const Task& task, const std::function<void(const std::string& line)>& print,
           PlayObserver& observer);
 

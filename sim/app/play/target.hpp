@@ -22,14 +22,14 @@ class Target {
   Target& operator=(const Target&) = delete;
   virtual ~Target() = default;
 
-  /// Provides a module of this model with `preset` stored (nothing is stored if `preset` is null), supply on,
-  /// INIT* released and inputs off. Called once for each transcript, before the other functions; not called
-  /// for a scenario.
+  /// Provides a module of this model. The memory of the module contains `preset`, or nothing if `preset` is
+  /// null. The supply is on, INIT* is released, and the inputs are off. Called once for each transcript,
+  /// before the other functions; not called for a scenario.
   virtual void start(const Model& model, const Settings* preset) = 0;
 
   /// Sends `bytes` on the line without a gap, at the master's rate.
   virtual void send(const Bytes& bytes) = 0;
-  /// Returns the received bytes when `count` bytes have arrived, or when none has arrived for `patience`.
+  /// Returns the received bytes when `count` bytes have arrived, or when no byte has arrived for `patience`.
   virtual Bytes receive(std::size_t count, std::chrono::milliseconds patience) = 0;
   /// Lets `time` pass, then returns the received bytes that no earlier call has returned.
   virtual Bytes listen(std::chrono::nanoseconds time) = 0;
@@ -39,22 +39,22 @@ class Target {
 
   /// Switches the supply. After switching on, returns when the module has had the time to start up.
   virtual void power(bool on) = 0;
-  /// Resets the module with the supply on, and returns when the module has had the time to start up.
+  /// Resets the module without loss of power, and returns when the module has had the time to start up.
   virtual void reset() = 0;
   virtual void set_init(bool asserted) = 0;
   virtual void set_input(unsigned channel, bool level) = 0;
   virtual void pulse_input(unsigned channel, std::uint32_t count) = 0;
   virtual std::uint16_t outputs() = 0;
-  /// Returns the state of the LED. `expected` is the value in the step: a target that can only watch the LED
-  /// may use it to choose how long to watch.
+  /// Returns the state of the LED. `expected` is the state in the step. A target that can only watch the LED
+  /// may use `expected` to choose how long to watch.
   virtual step::Led::Shows led(step::Led::Shows expected) = 0;
 
   // Functions for a target with several modules and with faults. They throw std::runtime_error if the module,
   // the line or the fault does not exist, or if the fault command is wrong. The implementations in this class
   // always throw.
 
-  /// Chooses the module for the following calls by its position, which counts from 0 across all lines. The
-  /// master then sends on the line of this module.
+  /// Chooses the module for the following calls. `position` is the position of the module, from 0, across all
+  /// lines. The master then sends on the line of this module.
   virtual void choose_module(std::size_t /*position*/) {
     throw std::runtime_error("there is only one module");
   }
@@ -63,7 +63,7 @@ class Target {
     throw std::runtime_error("there is only one line");
   }
   /// Carries out `fault FAULT`, `fault off K|all` or `faults` for the chosen line, or `fault N FAULT` for
-  /// module N, which counts from 1 across all lines.
+  /// module N. N is the position of the module, from 1, across all lines.
   virtual void run_fault_command(const std::string& /*command*/) {
     throw std::runtime_error("this target has no faults");
   }

@@ -377,7 +377,7 @@ std::vector<std::string> transcript_files(const std::string& directory) {
 std::vector<Transcript> load(const std::string& path) {
   std::ifstream file = open_regular_file(path);
   if (!file.is_open()) {
-    fail(path + ": cannot be read; name a transcript, a scenario or a folder of them");
+    fail(path + ": cannot be read; name a transcript, a scenario or a folder of such files");
   }
   unsigned line = 0;
   try {

@@ -102,11 +102,11 @@ struct Transcript {
   std::vector<Step> steps;
 };
 
-/// The duration of a `silence` step, in which no byte may arrive. Without faults, the reply to a request that
-/// the module receives while it is idle begins earlier.
+/// The duration of a `silence` step, in which no byte may arrive. Without faults, an idle module begins its
+/// reply to a request within this time.
 constexpr std::chrono::milliseconds kSilence{250};
 
-/// Returns what is wrong if `model` has no input with this number; empty if it has one.
+/// Returns an error message if `model` has no input `channel`; otherwise an empty string.
 std::string missing_input(const Model& model, unsigned channel);
 
 /// Returns the paths of all files below `directory` that end with .txt, sorted. Throws

@@ -15,8 +15,9 @@
 
 namespace ex9000::sim {
 
-/// Bytes that the master's end receives go to every port. The rate that a master sets at a port becomes the
-/// line's rate. Pacer or SteppedLine puts the bytes and the requests of masters on the line.
+/// Every port gets the bytes that the master's end of the line receives. If a master sets a rate at a port,
+/// this rate becomes the line's rate. Pacer or SteppedLine puts the bytes and the requests of masters on the
+/// line.
 class LinePorts final : private BusObserver {
  public:
   using All = std::vector<std::unique_ptr<Port>>;
@@ -31,19 +32,20 @@ class LinePorts final : private BusObserver {
   void hear(std::uint8_t byte) { heard_.push_back(byte); }
   /// Returns whether a station other than the master has stopped sending since the last `hand_out`.
   [[nodiscard]] bool reply_is_complete() const { return stopped_sending_; }
-  /// Writes the bytes received since the last call to all ports. If `reply_is_complete()` is true at the time
-  /// of this call, also calls `Port::sent` of all ports. Does not block: if a port has no room, drops the
-  /// bytes. Reports the first of consecutive drops with a notice.
+  /// Calls `Port::send` of all ports with the bytes that `hear` has stored, and then discards these bytes. If
+  /// `reply_is_complete()` is true at the time of this call, also calls `Port::sent` of all ports. Does not
+  /// block: a port that has no room drops bytes. Reports the first of consecutive drops at a port with a
+  /// notice.
   void hand_out();
   /// Sets the line to the rate of the port, if the port has one, and reports mismatches.
   void take_rate(const Port& port);
   /// Returns the number of bytes written to each port so far, including dropped bytes.
   [[nodiscard]] std::uint64_t sent() const { return sent_; }
-  /// Reports each mismatch between the rate or format of the line and that of a module once. A mismatch that
-  /// ends and begins again is reported again.
+  /// Reports each module that listens but cannot receive because its rate or format differs from that of the
+  /// line. Reports a mismatch only once, unless the mismatch ends and begins again.
   void report_mismatches();
 
-  /// Lets the ports and the server deliver bytes again if they wait.
+  /// Lets the ports and the server continue if they have stopped because `received` returned false.
   void resume();
 
   [[nodiscard]] const All& all() const { return ports_; }

@@ -32,8 +32,8 @@ class LineRecord final : private Station {
   /// Starts to call `take` with each frame when the frame has ended, and `note` with each note.
   void tell(FrameWatch::Take take, BusLog::Note note);
   /// Ends the log and the capture at `end` in the line's time. The line may run beyond `end`, because the
-  /// program reads the wall clock only at some moments; the log and the capture do not depend on this. Call
-  /// this before `end`.
+  /// program reads the wall clock only at some moments. The log and the capture omit everything that happens
+  /// after `end`. Call this before the line's time reaches `end`.
   void end_at(VirtualTime end);
   /// Returns the collector of the frames; null if no frames are recorded.
   FrameWatch* frames() { return listens_ ? &frames_ : nullptr; }

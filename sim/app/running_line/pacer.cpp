@@ -17,8 +17,8 @@ constexpr std::size_t kMostWaiting = 4096;
 /// consecutive transactions.
 constexpr std::chrono::milliseconds kFarthestAhead{5};
 
-/// The shortest delay that is reported. A master may notice a reply that is late by this time, and a user
-/// must be able to find the reason.
+/// The shortest delay that is reported. A master may notice this delay of a reply, and a user must be able to
+/// find the reason.
 constexpr VirtualTime kReportedDelay = std::chrono::milliseconds(20);
 
 }  // namespace
@@ -51,8 +51,8 @@ VirtualTime Pacer::wall() const {
   return first_ + (pace_.speed == 1 ? real : std::chrono::duration_cast<VirtualTime>(real * pace_.speed));
 }
 
-/// Returns the moment at which the wall clock reaches `time`. If the speed is not 1, the result is at most a
-/// century after the start, because the clock's range is finite.
+/// Converts `time`, a time of the line, to a time of the wall clock. If the speed is not 1, the result is at
+/// most a century after the start, because the clock's range is finite.
 std::chrono::steady_clock::time_point Pacer::when(VirtualTime time) const {
   constexpr VirtualTime kCentury = std::chrono::hours(24 * 365 * 100);
   const VirtualTime ahead = time - first_;
@@ -90,7 +90,7 @@ void Pacer::follow() {
   catch_up(present);
   ports_.hand_out();
   if (frames_ != nullptr) {
-    frames_->run(present);  // not a later time: an event that has become due since then may continue a frame
+    frames_->run(present);  // an event that has become due after `present` may continue a frame
   }
   if (paused_ && !is_full()) {
     paused_ = false;
@@ -114,7 +114,7 @@ void Pacer::arm_timer() {
     next = std::min(next, line_.clock().virtual_now() - kFarthestAhead);
   }
   if (next >= timer_expires_) {
-    return;  // setting the timer later would cost more than one early `follow`
+    return;  // a call of `follow` that is too early costs less than a change of the timer
   }
   timer_expires_ = next;
   timer_.expires_at(when(next));
@@ -126,8 +126,8 @@ void Pacer::arm_timer() {
   });
 }
 
-/// Reports the delay of an event that was due at `next`, if the delay is at least kReportedDelay. After a
-/// report, only a delay at least twice as long as the reported one is reported, because a busy host causes
+/// Reports the delay of an event that was due at `next`, if the delay is at least kReportedDelay. Reports a
+/// later delay only if it is at least twice as long as the last reported delay, because a busy host causes
 /// many delays.
 void Pacer::report_delay(VirtualTime next) {
   if (next > wall()) {

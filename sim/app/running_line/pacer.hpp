@@ -16,22 +16,23 @@ namespace ex9000::sim {
 
 /// The relation between virtual time and the wall clock.
 struct Pace {
-  /// Compensates for the wall clock time that the process takes to wake up and read: bytes from a master
-  /// count as written this much before the program reads them, but never before an event that has already
-  /// happened. If the port is connected to a real line, the bytes count as written earlier by their
-  /// transmission time too. Without this compensation, the host's delays would extend every transaction.
+  /// Compensates for the wall clock time that the process takes to wake up and read. The pacer subtracts this
+  /// value from the time at which the program reads bytes, and uses the result as the time at which the
+  /// master has written them. If the port is connected to a real line, the pacer also subtracts the
+  /// transmission time of the bytes. The result is never before an event that has already happened. Without
+  /// this compensation, the host's delays would extend every transaction.
   VirtualTime host_latency = std::chrono::microseconds(300);
-  /// While a byte is on the wires, and for this time after it, the pacer processes events without waiting for
-  /// the wall clock. If virtual time is then more than 5 ms ahead of the wall clock, masters have to wait. If
-  /// this value is zero, every event waits for the wall clock.
+  /// While a byte is on the wires, and until `lead` has passed after its end, the pacer processes events
+  /// without waiting for the wall clock. If virtual time is then more than 5 ms ahead of the wall clock,
+  /// masters have to wait. If `lead` is zero, every event waits for the wall clock.
   VirtualTime lead{0};
-  /// After a Modbus reply, a frame to another address waits until the silence that ends a Modbus frame has
-  /// passed. If `lead` is not zero, a frame after a frame of the master waits for this silence too. After an
-  /// ASCII reply, or after bytes of an unknown sender, a frame to one Modbus module or to all of them waits
-  /// until these modules no longer treat the earlier bytes as part of a frame. Without these delays, many
-  /// masters, for example libmodbus, would begin a frame too early after a Modbus reply, and the modules that
-  /// have received the reply would receive both as one frame. On a real line, a slow adapter usually causes
-  /// this delay.
+  /// After a Modbus reply of a module that still has power, a frame to another address waits until the
+  /// silence that ends a Modbus frame has passed. If `lead` is not zero, a frame after a frame of the master
+  /// waits for this silence too. After any other bytes that the master has not sent, a frame to address 0 or
+  /// to the address of a Modbus module waits until modules no longer treat these bytes as part of the frame.
+  /// Without these delays, many masters, for example libmodbus, would begin a frame too early after a Modbus
+  /// reply. Modules that have received the reply would then treat the reply and this frame as one frame. On a
+  /// real line, a slow adapter usually causes this delay.
   bool keep_frames_apart = true;
   /// The ratio of virtual time to the wall clock.
   double speed = 1;
@@ -78,7 +79,7 @@ class Pacer final {
   std::chrono::steady_clock::time_point began_;
   VirtualTime first_{0};          ///< the line's time at `began_`
   bool paused_ = false;           ///< a port or the server waits for `resume`
-  VirtualTime longest_delay_{0};  ///< of the delays of the host that were reported, in wall clock time
+  VirtualTime longest_delay_{0};  ///< the longest reported delay of the host, in wall clock time
 };
 
 }  // namespace ex9000::sim

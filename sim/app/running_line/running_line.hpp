@@ -38,14 +38,15 @@ class RunningLine {
   /// std::runtime_error with a one-line message if a file cannot be written.
   void renew_memories();
   /// Creates the missing EEPROM files and appends them to `made`. Throws std::invalid_argument with a
-  /// one-line message if a file exists by now or cannot be created.
+  /// one-line message if such a file exists now or cannot be created.
   void make_missing_memories(std::list<NewFile>& made);
 
   LineRecord& record() { return *record_; }
   /// Connects the memories to their EEPROM files: from now on, all data that a module with such a file stores
   /// is written to the file. Call this after `make_missing_memories`.
   void start();
-  /// From now on, the line's time passes at `speed` times the speed of the wall clock, while `io` runs.
+  /// Accepts masters. From now on, while `io` runs, the line's time passes at `speed` times the speed of the
+  /// wall clock.
   void start_paced(double speed);
   /// Accepts masters. The line's time passes only when the caller advances it. `arrived`: see
   /// SteppedLine::start.

@@ -18,8 +18,8 @@ class SteppedLine {
   using Arrived = std::function<void()>;
 
   /// If at least this many bytes are stored after a port has delivered bytes, the port delivers no more bytes
-  /// of the same master until `put_on_line`. If the server has delivered them, it delivers no more bytes of
-  /// any client until then.
+  /// of the same master until `put_on_line`. If at least this many bytes are stored after the server has
+  /// delivered bytes, the server delivers no more bytes of any client until `put_on_line`.
   static constexpr std::size_t kMostBytes = 65'536;
 
   /// `frames` may be null. All arguments must outlive this object.
@@ -29,13 +29,13 @@ class SteppedLine {
   /// Accepts masters. `arrived` is called whenever bytes have arrived at a port or at the server.
   void start(Arrived arrived);
 
-  /// Returns how many bytes have arrived that are not on the line yet.
+  /// Returns the number of bytes that have arrived since the last `put_on_line`.
   [[nodiscard]] std::size_t waiting() const { return waiting_; }
   /// Reads what is available at the ports and at the server, within the limit of `kMostBytes`.
   void read_ports();
-  /// Puts the stored bytes on the line, without a gap, after those that the master still has to send. Adds
-  /// the requests of the server to the queue of the line. If a port or the server has stopped at
-  /// `kMostBytes`, it continues.
+  /// Adds the stored bytes to the end of the master's queue; the master sends them without a gap. Adds the
+  /// stored requests of the server to the line's queue. If a port or the server has stopped at `kMostBytes`,
+  /// lets it deliver bytes again.
   void put_on_line();
 
   [[nodiscard]] VirtualTime now() const { return line_.clock().virtual_now(); }
@@ -49,7 +49,8 @@ class SteppedLine {
   void hand_out() { ports_.hand_out(); }
 
  private:
-  /// Puts bytes that have arrived together on the line, or adds the requests in them to the line's queue.
+  /// Processes bytes that have arrived together: adds them to the master's queue, or adds the requests in
+  /// them to the line's queue.
   using Put = std::function<void()>;
 
   bool receive(std::size_t size, Put put);

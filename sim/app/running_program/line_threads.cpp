@@ -29,7 +29,7 @@ void LineThreads::start() {
     } catch (const std::system_error& error) {
       throw std::runtime_error("cannot start thread " + std::to_string(number) + " of " +
                                std::to_string(workers_.size()) + ": " + error.code().message() +
-                               "; use fewer with --threads");
+                               "; set a smaller number with --threads");
     }
   }
 }
@@ -49,7 +49,7 @@ void LineThreads::run(boost::asio::io_context& io) {
 }
 
 void LineThreads::pause_for(const std::function<void()>& action) {
-  std::promise<void> pause;  // if `action` throws, the destructor ends the pause
+  std::promise<void> pause;  // if `action` throws, the destructor of `pause` ends the pause
   const std::shared_future<void> ended = pause.get_future().share();
   std::vector<std::future<void>> paused;
   for (Worker& worker : workers_) {

@@ -1,4 +1,4 @@
-// Runs the lines of a program on several threads.
+// Runs the simulated lines on several threads.
 #pragma once
 
 #include <boost/asio/executor_work_guard.hpp>
@@ -16,8 +16,8 @@ namespace ex9000::sim {
 /// `action` of `pause_for`. Only the main thread may call the public functions of this class.
 class LineThreads {
  public:
-  /// If `threads` is less than two, the lines run on the main thread, in `main`. `main` must outlive this
-  /// object.
+  /// `main` is the io_context of the main thread, and must outlive this object. If `threads` is less than
+  /// two, the lines run on the main thread and use `main`.
   LineThreads(boost::asio::io_context& main, std::size_t threads);
   ~LineThreads() { end(); }
   LineThreads(const LineThreads&) = delete;

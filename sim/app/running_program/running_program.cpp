@@ -41,8 +41,8 @@ RunningProgram::RunningProgram(boost::asio::io_context& io, Setup setup, Print p
     print_ = [this](const std::string& line) { watch_->print(line); };
   }
   for (const LineSetup& line : setup_.lines) {
-    // A line of the text log begins with the name of the simulated line, if it has one. JSON has a key for
-    // the name.
+    // If a simulated line has a name, each of its lines in the text log begins with this name. JSON has a
+    // key for the name.
     const bool as_it_is = line.name.empty() || for_machines();
     const std::string lead = as_it_is ? "" : line.name + ": ";
     lines_.push_back(std::make_unique<RunningLine>(
@@ -139,7 +139,7 @@ void RunningProgram::open_capture() {
   }
   const std::string place = place_of(setup_.places, "capture");
   with_place(place, [this] {
-    // The links and the control socket exist now, so that their inodes can be compared with the capture's.
+    // The links and the control socket must exist before this check, because it compares inodes.
     refuse_overwriting(*setup_.capture, in_use_by(setup_));
   });
   made_.emplace_back(*setup_.capture, is_there(*setup_.capture));
@@ -237,9 +237,9 @@ void RunningProgram::start() {
   }
 }
 
-/// Creates the missing EEPROM files, begins the capture, prints the greeting, and starts paced lines. The
-/// other steps of the start that can fail come first. If one of them fails, no EEPROM file is created, and an
-/// existing capture file keeps its content.
+/// Creates the missing EEPROM files, begins the capture, prints the greeting, and starts paced lines.
+/// `start` calls this after the other steps that can fail. If such a step fails, no EEPROM file is created,
+/// and an existing capture file keeps its content.
 void RunningProgram::begin() {
   make_files_and_greet();
   for (const auto& running : lines_) {

@@ -13,8 +13,8 @@
 namespace ex9000::sim {
 
 /// Between commands, all lines have the same time. Events depend only on the commands and on the bytes that
-/// arrive: if the same bytes arrive before the same commands, the replies are the same at the same virtual
-/// times.
+/// arrive: if the same bytes arrive before the same commands, modules send the same replies at the same
+/// virtual times.
 class Stepper {
  public:
   using Answer = std::function<void(const Control::Reply&)>;
@@ -22,15 +22,16 @@ class Stepper {
   /// Returns whether the program has been asked to end.
   using StopRequested = std::function<bool()>;
 
-  /// The lines must outlive this object. When their time reaches `end`, the program ends; kNever if the run
-  /// has no end. `stop_requested` is called repeatedly during an `advance` with many events.
+  /// The lines must outlive this object. When their time reaches `end`, the program ends. `end` is kNever if
+  /// the run has no end. `stop_requested` is called repeatedly during an `advance` with many events.
   Stepper(std::vector<SteppedLine*> lines, VirtualTime end, StopRequested stop_requested);
 
   /// Returns whether the first word of `command` is `advance`.
   static bool is_advance(const std::string& command);
   /// Carries out `advance TIME [after N] [quiet]` in these steps:
-  /// - If fewer than N bytes have arrived that no earlier `advance` has put on a line, returns. The next
-  ///   steps then follow in the call of `arrived` after which N bytes have arrived.
+  /// - Counts the bytes that have arrived, except those that an earlier `advance` has put on a line. If there
+  ///   are fewer than N, returns. The first call of `arrived` that finds at least N such bytes then carries
+  ///   out the next steps.
   /// - Reads what is available at all ports and Modbus TCP servers, and puts it on their lines.
   /// - Advances the lines by TIME, but not beyond `end`. With `quiet`, stops earlier, as soon as nothing is
   ///   pending on any line.

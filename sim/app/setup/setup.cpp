@@ -36,10 +36,10 @@ void check(const LineSetup& line, std::size_t position) {
   if (line.serial && !line.first_port().empty()) {
     wrong("serial",
           "cannot be combined with {pty}, {tcp} or {modbus-tcp}, because the master is on the serial line; "
-          "leave out one of them");
+          "leave out {serial} or the other ports");
   }
   if (line.echo && !line.serial) {
-    wrong("echo", "requires {serial}; add it, or leave this out");
+    wrong("echo", "requires {serial}; add {serial}, or leave out {echo}");
   }
   if (line.instant && line.serial) {
     wrong("line",
@@ -88,7 +88,7 @@ void check_speed(const Setup& setup) {
     }
     if (setup.speed.max() && !line.first_port().empty()) {
       wrong("max cannot be combined with {" + line.first_port() +
-            "}, because its masters follow the wall clock; leave out one of them");
+            "}, because masters follow the wall clock; leave out one of them");
     }
   }
   if (setup.speed.stepped() && !setup.control) {

@@ -304,7 +304,7 @@ std::string on_some_line(const Lines& lines, const Words& words) {
   }
   const std::string names = names_of(lines);
   fail("no line '" + words[1] + "'; " +
-       (names.empty() ? "the only line has no name; leave out 'line NAME'" : "there are " + names));
+       (names.empty() ? "the only line has no name; leave out 'line NAME'" : "expected one of " + names));
 }
 
 std::string on_module(const Lines& lines, const Words& words) {

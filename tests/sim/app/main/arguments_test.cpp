@@ -165,7 +165,7 @@ TEST(Arguments, ModbusTcpTakesAnAddressAndReplacesTheDefaultPseudoTerminal) {
   expect_error({"EX9042D-M", "--modbus-tcp", "502", "--tcp", "localhost:502"}, "--modbus-tcp: 127.0.0.1:502",
                "two ports cannot share an address; name one for each");
   expect_error({"EX9042D-M", "--modbus-tcp", "502", "--speed", "max", "--for", "1s"}, "--speed: ",
-               "max cannot be combined with --modbus-tcp, because its masters follow the wall clock");
+               "max cannot be combined with --modbus-tcp, because masters follow the wall clock");
 }
 
 TEST(Arguments, LineIsPacedOrInstantAndStrictGapsRequirePaced) {
@@ -179,7 +179,7 @@ TEST(Arguments, LineIsPacedOrInstantAndStrictGapsRequirePaced) {
 TEST(Arguments, ASerialLineCannotBeCombinedWithAnotherPort) {
   const std::string mend =
       "cannot be combined with --pty, --tcp or --modbus-tcp, because the master is on the serial line; leave "
-      "out one of them";
+      "out --serial or the other ports";
   expect_error({"EX9042D", "--serial", "/dev/ttyUSB0", "--tcp", "5020"}, "--serial: ", mend);
   expect_error({"EX9042D", "--serial", "/dev/ttyUSB0", "--pty", "a"}, "--serial: ", mend);
   expect_error({"EX9042D", "--serial", "/dev/ttyUSB0", "--modbus-tcp", "502"}, "--serial: ", mend);
@@ -188,7 +188,7 @@ TEST(Arguments, ASerialLineCannotBeCombinedWithAnotherPort) {
 TEST(Arguments, EchoRequiresASerialLineAndASerialLineCannotBeInstant) {
   EXPECT_FALSE(accepted({"EX9042D", "--serial", "/dev/ttyUSB0"}).echo);
   EXPECT_TRUE(accepted({"EX9042D", "--serial", "/dev/ttyUSB0", "--echo"}).echo);
-  expect_error({"EX9042D", "--echo"}, "--echo: ", "requires --serial; add it");
+  expect_error({"EX9042D", "--echo"}, "--echo: ", "requires --serial; add --serial, or leave out --echo");
   expect_error(
       {"EX9042D", "--serial", "/dev/ttyUSB0", "--line", "instant"}, "--line: instant",
       "cannot be combined with --serial, because bytes on a serial line take time; leave out one of them");

@@ -172,7 +172,7 @@ TEST(Play, RefusesStepsThatDoNotFitTheBusBeforePlaying) {
   };
   for (const Wrong& wrong :
        {Wrong{"module 4", "no module 4", "expected a position from 1 to 3"},
-        Wrong{"line shed", "no line 'shed'", "there are hall, yard"},
+        Wrong{"line shed", "no line 'shed'", "expected one of hall, yard"},
         Wrong{"input 0 on", "the EX9042D has no inputs", "choose a module with inputs"},
         Wrong{"module 2\npulse 8", "the EX9052D has no input 8", "it has 0 to 7"},
         Wrong{"fault lost", "'lost' is not a fault", "expected one of bit-errors"},
@@ -315,10 +315,10 @@ TEST(Play, RefusesAFileWithoutValidSteps) {
             std::string::npos);
   EXPECT_NE(played("/dev/zero", true).find("/dev/zero: cannot be read"), std::string::npos)
       << "/dev/zero has no end";
-  EXPECT_NE(played(directory.path(), true).find("contains no file that ends with .txt; name a transcript"),
+  EXPECT_NE(played(directory.path(), true).find("contains no .txt file; name a transcript"),
             std::string::npos);
   std::filesystem::create_directory(directory / "folder.txt");  // not a file
-  EXPECT_NE(played(directory.path(), true).find("contains no file that ends with .txt; name a transcript"),
+  EXPECT_NE(played(directory.path(), true).find("contains no .txt file; name a transcript"),
             std::string::npos);
   write_file(directory / "empty.txt", "; nothing\n");
   EXPECT_NE(played(directory / "empty.txt", true).find("has no step; add one"), std::string::npos);

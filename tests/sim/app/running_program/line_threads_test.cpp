@@ -94,7 +94,8 @@ void start_without_permission() {
 
 TEST(LineThreadsDeathTest, AThreadThatCannotStartIsReported) {
   EXPECT_EXIT(start_without_permission(), testing::ExitedWithCode(0),
-              "^cannot start thread 1 of 2: Resource temporarily unavailable; use fewer with --threads\n$");
+              "^cannot start thread 1 of 2: Resource temporarily unavailable; set a smaller number with "
+              "--threads\n$");
 }
 
 TEST(LineThreads, AnExceptionOfAnActionEndsThePauseAndReachesTheCaller) {

@@ -316,8 +316,8 @@ TEST(WrongLineOfABusFile, InvalidOrConflictingKeysAreRefusedWithTheirPlace) {
            {"\"serial\": \"a\", \"pty\": \"b\"",
             "serial: cannot be combined with 'pty', 'tcp' or 'modbus-tcp', because the master is on the "
             "serial "
-            "line; leave out one of them"},
-           {"\"pty\": \"a\", \"echo\": true", "echo: requires 'serial'; add it, or leave this out"},
+            "line; leave out 'serial' or the other ports"},
+           {"\"pty\": \"a\", \"echo\": true", "echo: requires 'serial'; add 'serial', or leave out 'echo'"},
            {"\"serial\": \"a\", \"line\": \"instant\"",
             "line: instant cannot be combined with 'serial', because bytes on a serial line take time; leave "
             "out one of them"},
@@ -465,9 +465,8 @@ TEST(BusFile, AnErrorNamesTheConflictingKeyOrOption) {
   EXPECT_EQ(error("", "", max_with_panel), cannot + "--panel; leave out one of them\n");
   EXPECT_EQ(error("\"control\": \"a\", ", "", max),
             cannot + "'control' in " + path + "; leave out one of them\n");
-  EXPECT_EQ(
-      error("", "\"tcp\": 0, ", max),
-      cannot + "'tcp' in " + path + ", because its masters follow the wall clock; leave out one of them\n");
+  EXPECT_EQ(error("", "\"tcp\": 0, ", max),
+            cannot + "'tcp' in " + path + ", because masters follow the wall clock; leave out one of them\n");
   EXPECT_EQ(error("\"log\": \"json\", ", "", {"--watch"}),
             "ex9000-sim: --watch: cannot be combined with 'log' json in " + path +
                 ", because both write to standard output; leave out one of them\n");

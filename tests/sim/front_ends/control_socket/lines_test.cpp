@@ -195,7 +195,7 @@ TEST(ControlLines, CommandsForALineRequireItsNameIfThereAreSeveralLines) {
     EXPECT_EQ(lines.tell(command), "error: there are several lines; put 'line NAME' before the command")
         << command;
   }
-  EXPECT_EQ(lines.tell("line shed faults"), "error: no line 'shed'; there are hall, yard");
+  EXPECT_EQ(lines.tell("line shed faults"), "error: no line 'shed'; expected one of hall, yard");
   EXPECT_TRUE(has(lines.tell("line hall"),
                   "expected line NAME and a command of a line, for example line NAME faults"));
   for (const char* command : {"line hall list", "line hall 1 power off", "line hall quit",
