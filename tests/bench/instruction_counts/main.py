@@ -46,7 +46,7 @@ def rows_of(counter, numbers):
 
     add("received byte", counter.received_byte)
     for edges, highest in sorted(counter.edges.items()):
-        add("input edge" if edges == 1 else f"input edge, {edges} at once", highest, edges)
+        add("edge with a filter" if edges == 1 else f"edge with a filter, {edges} at once", highest, edges)
     add("sent byte", counter.sent_byte)
     names = {
         execution.TICK: "tick's interrupt",

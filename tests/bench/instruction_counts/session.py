@@ -62,8 +62,10 @@ class Session:
                 self._set_init(False)
 
     def count_edges(self, passes):
-        """Counts the instructions of edges. Changes each input alone, then all inputs of each group together, `passes`
-        times each. The levels alternate between high and low."""
+        """Counts the instructions of edges while the first channel has a filter, because each edge of any channel then
+        also reads the clock and wakes the main loop. Changes each input alone, then all inputs of each group together,
+        `passes` times each. The levels alternate between high and low."""
+        self._set_filter(1)
         groups = self._board.groups
         for pins in [[pin] for group in groups for pin in group] + groups:
             for attempt in range(passes):
@@ -74,6 +76,7 @@ class Session:
                 self._run(SLICE)
                 self._log(False)
                 self._let_counter_catch_up()
+        self._set_filter(0)
 
     def count_rest(self):
         self._let_counter_catch_up()
@@ -194,6 +197,10 @@ class Session:
         if self._ascii:
             return reply.endswith(b"\r")
         return len(reply) >= 4 and crc16(reply[:-2]) == reply[-2:]
+
+    def _set_filter(self, milliseconds):
+        value = f"{milliseconds:04X}"
+        self._converse(dcon(f"~01X0240{value}", True) if self._ascii else rtu(f"01 06 0240 {value}"))
 
     def _set_init(self, asserted):
         self._emulator.set_pin(self._board.init, not asserted)
