@@ -208,9 +208,9 @@ class Bus(Panel):
             move()
             self.browser.until(f"{PICTURE} !== before")
         label = "document.getElementById('canvas').ariaLabel"
-        self.browser.until(f"{label} === 'Earlier 1000 ms of 1 line'")
+        self.browser.until(f"{label} === 'An earlier period of 1000 ms on 1 line'")
         self.browser.click("#pause")
-        self.browser.until(f"{label} === 'The last 1000 ms of 1 line'")
+        self.browser.until(f"{label} === 'The last 1000 ms on 1 line'")
 
     def test_each_of_several_fast_clicks_on_a_fault_counts(self):
         simulator, _ = self.show_two()

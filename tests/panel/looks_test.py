@@ -72,7 +72,7 @@ class Looks(Panel):
             ("list", "Outputs"), ("list", "Inputs"), ("switch", "2 EX9052D-M: input DI3"),
             ("StaticText", "counter of DI3:"), ("image", "DI3: rising edge not latched"),
             ("region", "Modules"), ("region", "Bus"), ("region", "Faults of the bus"), ("table", "Frames"),
-            ("button", "Pause"), ("searchbox", "Search"), ("image", "The last 1000 ms of 1 line"),
+            ("button", "Pause"), ("searchbox", "Search"), ("image", "The last 1000 ms on 1 line"),
             ("switch", "Fault gone"), ("textbox", "Another fault"), ("combobox", "Target of the fault"), ("status", ""),
         ):
             self.assertIn(wanted, found)

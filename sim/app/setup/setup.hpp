@@ -18,7 +18,7 @@
 
 namespace ex9000::sim {
 
-/// The position of each key in the bus file, for example `bus.json:2: control`. Keys from the command line
+/// The place of each key in the bus file, for example `bus.json:2: control`. Keys from the command line
 /// are not included.
 using Places = std::map<std::string, std::string>;
 /// Returns the prefix of messages about this key: the place in the bus file, or the option of the command
@@ -33,15 +33,18 @@ struct LineSetup {
   std::optional<TcpAddress> tcp;         ///< address on which the TCP port listens
   std::optional<TcpAddress> modbus_tcp;  ///< address on which the Modbus TCP gateway listens
   std::optional<std::string> serial;     ///< path of the serial port; excludes all other ports
-  /// Returns the key of the first of pty, tcp and modbus-tcp that is set; empty if none is.
+  /// Returns the key of the first port that has a value, in the order pty, tcp, modbus-tcp. Returns an empty
+  /// text if none of these ports has a value.
   [[nodiscard]] std::string first_port() const {
     return pty ? "pty" : tcp ? "tcp" : modbus_tcp ? "modbus-tcp" : "";
   }
 
-  std::optional<std::uint32_t> baud;  ///< rate of the line at first; nullopt: that of its first module
-  std::optional<LineFormat> format;   ///< format of the line at first; nullopt: that of its first module
-  bool echo = false;                  ///< the serial port receives what it sends
-  bool instant = false;               ///< bytes take almost no time
+  /// The baud rate of the line at the start; nullopt: the baud rate of the first module.
+  std::optional<std::uint32_t> baud;
+  /// The format of the line at the start; nullopt: the format of the first module.
+  std::optional<LineFormat> format;
+  bool echo = false;     ///< the serial port receives what it sends
+  bool instant = false;  ///< bytes take almost no time
   bool strict_gaps = false;
   std::vector<Fault> faults;
 };
@@ -91,7 +94,7 @@ struct Setup : Writing {
 };
 
 /// An error in a Setup. A key identifies the place: an option of the command line or a member of a bus file.
-/// The message can therefore use the syntax of either one.
+/// The message can therefore use the syntax of the command line or of the bus file.
 struct SetupError : std::invalid_argument {
   /// `what`: the message without its place. Other keys in the message are in braces, with or without a value,
   /// for example `cannot be combined with {serial}` or `cannot be combined with {log json}`.
@@ -109,18 +112,20 @@ struct SetupError : std::invalid_argument {
   /// of braces and its content.
   [[nodiscard]] std::string named(const NameOfKey& name_of) const;
 
-  std::optional<std::size_t> line;    ///< position of the line; nullopt: not about one line
-  std::optional<std::size_t> module;  ///< position of the module on that line; nullopt: not about one module
+  std::optional<std::size_t> line;  ///< position of the line, from 0; nullopt: not about one line
+  /// The position of the module on that line, from 0; nullopt: not about one module.
+  std::optional<std::size_t> module;
   std::string key;
   std::string value;  ///< the wrong value; empty if the message does not need it
 };
 
-/// Throws SetupError if values cannot be combined, if a value that another value requires is missing, or if a
-/// path or a name is not valid.
+/// Throws SetupError if values cannot be combined, if a value that another value requires is missing, if a
+/// path, an address or a name has two uses, or if a path or a name is not valid.
 void check(const Setup& setup);
 
-// The values of options of the command line. A bus file can contain these values too, except the number of
-// threads and the speed. The parsers throw std::invalid_argument with a one-line message.
+// The functions below parse values of options of the command line. A bus file can contain these values too,
+// except the number of threads and the speed. The functions throw std::invalid_argument with a one-line
+// message.
 
 /// Parses `instant` or `paced`. Returns true for `instant`: bytes take almost no time.
 bool parse_line_kind(const std::string& text);

@@ -191,7 +191,7 @@ Setup read_bus(const Node& root) {
   Setup setup;
   read_members(root, bus_keys, setup);
   if (setup.lines.empty()) {
-    root.refuse("lines", "a bus file requires at least one line; 'ex9000-sim --example' prints one");
+    root.refuse("lines", "a bus file requires at least one line; 'ex9000-sim --example' prints an example");
   }
   return setup;
 }

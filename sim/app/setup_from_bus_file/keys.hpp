@@ -1,5 +1,5 @@
-// Tables of the keys of a bus file, with one row for each key. The reader and its messages use these tables.
-// The JSON Schema and the tables of keys in sim/docs/bus-files.md are generated from them.
+// Tables of the keys of a bus file, with one row for each key. `read_bus` and its error messages use these
+// tables. The JSON Schema and the lists of keys in sim/docs/bus-files.md are generated from these tables.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@ struct BusFileKey {
   void (*take)(Object& object, const Node& value);
 };
 
-/// A module while the reader builds it.
+/// A module whose keys `read_bus` is reading.
 struct ModuleObject {
   ModuleSpec spec;
   LineSetup& line;  ///< the line that the module is on

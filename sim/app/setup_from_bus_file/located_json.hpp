@@ -10,8 +10,8 @@ namespace ex9000::sim {
 struct LocatedJson {
   nlohmann::ordered_json value;  ///< keeps the order of members, because faults are numbered in that order
   /// Line numbers by the path of a value, for example `lines[0].modules[1].baud`; the path of the whole file
-  /// is "". If a key has the form of a path, two values can have the same path. Then the map contains only
-  /// the number of the first one.
+  /// is "". If a key has the form of a path, two values can have the same path. The map then contains only
+  /// the line number of the first value.
   std::map<std::string, unsigned> lines;
 };
 

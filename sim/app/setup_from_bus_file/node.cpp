@@ -42,7 +42,7 @@ void Node::refuse_at(const std::string& path, const std::string& what) const {
 }
 
 /// Returns `FILE:LINE: ` for the value at `path`. If the file does not contain this value, LINE is the line
-/// of the innermost object or list of the file that should contain it.
+/// of the innermost object or list on this path that the file contains.
 std::string Node::place_of(const std::string& path) const {
   std::string place = path;
   while (file_->lines.find(place) == file_->lines.end()) {

@@ -22,11 +22,11 @@ class CaptureFile {
   /// Deletes the content of a regular file. Throws std::runtime_error with a one-line message if this fails.
   void begin();
   /// Writes the block to the kernel, without a buffer in the program: blocks that were written stay in the
-  /// file even if the program is killed. If a write to a regular file fails, removes the incomplete block. If
-  /// that fails too, the message says so. Blocks while a pipe is full, until `gives_up` returns true. The
-  /// file then discards the rest of this block and all later blocks. Throws std::runtime_error with a
-  /// one-line message if the write fails, for example because the disk is full or the reader has closed the
-  /// pipe.
+  /// file even if the program is killed. While a pipe is full, waits until the pipe has room or `gives_up`
+  /// returns true. In the second case, discards the rest of this block and all later blocks. Throws
+  /// std::runtime_error with a one-line message if a write fails, for example because the disk is full or the
+  /// reader has closed the pipe. If a write to a regular file fails, first removes the incomplete block. If
+  /// the removal fails too, the message says so.
   void append(const std::vector<std::uint8_t>& block);
 
  private:

@@ -61,8 +61,9 @@ class Draft {
   bool temporary_ = false;
 };
 
-/// Returns the mode of `file`, which has just been opened. Throws std::invalid_argument with a one-line
-/// message if the file is not open or is not an image. `access` completes the message.
+/// Returns the mode of `file`. Throws std::invalid_argument with a one-line message if the file is not open
+/// or is not an image. Call this immediately after open(): if open() has failed, the message contains the
+/// reason from errno, and `access`, which is "read" or "read and written".
 mode_t require_image(const FileDescriptor& file, const std::string& path, const char* access) {
   struct stat status {};
   if (!file.is_open() || fstat(file.get(), &status) != 0) {
@@ -73,7 +74,7 @@ mode_t require_image(const FileDescriptor& file, const std::string& path, const 
   }
   if (status.st_size != static_cast<off_t>(kSize)) {
     fail(path + ": has " + std::to_string(status.st_size) + " bytes, but an image of the EEPROM has " +
-         std::to_string(kSize) + "; remove it or name another path");
+         std::to_string(kSize) + " bytes; remove this file or name another path");
   }
   return status.st_mode;
 }

@@ -12,23 +12,23 @@
 namespace ex9000::sim {
 
 /// Reads the content of an image, without write access and without a lock: the image may be read-only, and a
-/// running simulator may use it. The result may then contain only a part of a write in progress, like an
-/// image after a power cut. Returns nullopt if there is no file. Throws std::invalid_argument with a one-line
-/// message if the file is not an image or is not readable.
+/// running simulator may use it. If the simulator writes to the image during this call, the result may
+/// contain only a part of this write. Returns nullopt if there is no file. Throws std::invalid_argument with
+/// a one-line message if the file is not an image or is not readable.
 std::optional<std::vector<std::uint8_t>> read_eeprom_file(const std::string& path);
 
 /// An image of the whole EEPROM, byte for byte: 8192 bytes; erased bytes are FFh. While this object has the
 /// file open, the file is locked: no other EepromFile can open it, in this process or in another one.
 ///
-/// When `write` returns true, the kernel has the data: it survives any end of this process, but may be lost
-/// if the machine crashes.
+/// When `write` returns true, the kernel has the data. The data survives any end of this process, but may be
+/// lost if the machine crashes.
 class EepromFile {
  public:
   /// Opens and locks an existing file. Throws std::invalid_argument with a one-line message if the file is
   /// not an image, cannot be read and written, or is in use. Does not create a file.
   explicit EepromFile(std::string path);
 
-  /// Returns the content of the file when it was opened; nullopt if there was no file.
+  /// Returns the content that the file had when the constructor opened it; nullopt if there was no file.
   [[nodiscard]] const std::optional<std::vector<std::uint8_t>>& found() const { return found_; }
   /// Creates the file with the whole image or not at all, and locks it. Throws std::invalid_argument with a
   /// one-line message if the file exists or cannot be created.

@@ -7,9 +7,10 @@
 
 namespace ex9000::sim {
 
-/// Returns `path` with an absolute folder that contains no symbolic links, `.` or `..`: different spellings
-/// of the path of a file become equal. Does not follow a symbolic link at `path` itself. If the folder cannot
-/// be examined, for example because its symbolic links form a loop, returns the absolute path as it is.
+/// Returns `path` as an absolute path, and resolves symbolic links, `.` and `..` in the path of its folder:
+/// different spellings of the path of a file become equal. Does not follow a symbolic link at `path` itself.
+/// If the path of the folder cannot be resolved, for example because symbolic links form a loop, returns
+/// `path` as an absolute path and resolves nothing.
 inline std::string one_spelling(const std::string& path) {
   std::error_code error;
   const std::filesystem::path absolute = std::filesystem::absolute(path, error);

@@ -9,8 +9,8 @@
 namespace ex9000::sim {
 
 /// Opens a regular file for reading. Returns a stream that is not open if `path` is not a regular file or is
-/// not readable. Opens no pipe, because opening a pipe may block, and no device, because a device may have no
-/// end.
+/// not readable. Does not open a pipe, because opening a pipe may block. Does not open a device, because a
+/// device may deliver bytes without end.
 inline std::ifstream open_regular_file(const std::string& path) {
   std::ifstream file;
   std::error_code unknown;

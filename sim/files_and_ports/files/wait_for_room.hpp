@@ -1,4 +1,4 @@
-// Waits for a reader that does not read.
+// Waits until a file descriptor has room for more bytes.
 #pragma once
 
 #include <poll.h>

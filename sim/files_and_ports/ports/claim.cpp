@@ -9,8 +9,8 @@
 
 namespace ex9000::sim {
 
-/// Uses an abstract socket: the kernel gives the name to only one socket at a time, and releases it when the
-/// socket is closed. The name contains a hash, because a path may be too long.
+/// Binds an abstract socket to a name. The kernel gives a name to only one socket at a time, and releases the
+/// name when the socket is closed. The name contains a hash of the path, because the path may be too long.
 Claim::Claim(const std::string& path) : socket_(socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
   sockaddr_un address{};
   address.sun_family = AF_UNIX;

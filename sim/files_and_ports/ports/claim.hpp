@@ -7,10 +7,10 @@
 
 namespace ex9000::sim {
 
-/// At most one object in all processes holds the claim for a path. The system releases the claim when the
-/// process ends, even if a signal kills the process: if no object holds the claim, a file that a simulator
-/// has created at the path is no longer in use. A claim works between processes of all users, but only within
-/// one network namespace.
+/// At most one object in all processes holds the claim for a path. The destructor releases the claim. If the
+/// process ends without the destructor, for example because a signal kills it, the system releases the claim.
+/// Therefore, if no object holds the claim, a file that a simulator has created at the path is no longer in
+/// use. A claim works between processes of all users, but only within one network namespace.
 class Claim {
  public:
   explicit Claim(const std::string& path);

@@ -27,8 +27,9 @@ class OwnEcho {
     until_ = now + bits * awaited_.size() / mode_.baud + kLatency;
   }
 
-  /// Returns how many of the bytes received at `now` are the echo: the leading bytes that match the sent ones
-  /// in order. After a different byte or a timeout, the rest of the echo is no longer expected.
+  /// Returns how many bytes at the beginning of `heard` are echo. Compares `heard`, which the program has
+  /// received at `now`, with the next bytes of the expected echo. After a different byte or a timeout (see
+  /// `kLatency`), expects no more echo until the next call of `sent`.
   [[nodiscard]] std::size_t in(Bytes heard, Clock::time_point now) {
     if (now > until_) {
       awaited_.clear();
@@ -46,9 +47,9 @@ class OwnEcho {
 
  private:
   /// Maximum time from the end of the last byte on the line until the program reads its echo. An adapter may
-  /// collect bytes for 16 ms; a busy host can take seconds. If the limit were too short, a module could carry
-  /// out its own reply. If the adapter has no echo and the next request arrives within this time, the
-  /// request loses its leading bytes that match the reply.
+  /// collect bytes for 16 ms, and a busy host may delay the program by seconds. If the limit were too short,
+  /// a module could carry out its own reply. If the adapter has no echo and the next request arrives within
+  /// this time, the request loses its leading bytes that match the reply.
   static constexpr std::chrono::seconds kLatency{10};
 
   hal::SerialMode mode_;

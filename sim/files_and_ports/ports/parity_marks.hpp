@@ -7,9 +7,9 @@
 
 namespace ex9000::sim {
 
-/// Reads the bytes of a port with the flags INPCK and PARMRK (POSIX.1-2017, 11.2.2): FF 00 X is a byte X with
-/// a line error, FF FF is a byte FF, and all other bytes are unchanged. A mark may be split between two
-/// reads.
+/// Decodes the bytes from a port that has the flags INPCK and PARMRK (POSIX.1-2017, 11.2.2). In hexadecimal:
+/// FF 00 X means a byte X with a line error, FF FF means a byte FF, and all other bytes are unchanged. A mark
+/// may be split between two calls of `read`.
 class ParityMarks {
  public:
   struct Arrived {

@@ -16,7 +16,8 @@ class Port {
   /// Positions of bytes, in ascending order.
   using Positions = std::vector<std::size_t>;
   /// Receives bytes that have arrived, and the positions of those with wrong parity or a framing error.
-  /// Returns false if the port must deliver no more bytes of the same master until `resume`.
+  /// Returns false if the port must wait for `resume` before it delivers more bytes of the master that has
+  /// sent these bytes.
   using Received = std::function<bool(const std::uint8_t* bytes, std::size_t size, const Positions& damaged)>;
 
   Port() = default;
@@ -28,18 +29,19 @@ class Port {
   virtual void start(Received received) = 0;
   /// Continues to deliver bytes after `received` has returned false.
   virtual void resume() = 0;
-  /// Calls `received` during this call for all bytes that have arrived, except those of masters that must
-  /// wait for `resume`; the io_context need not run. Call this only after `start`. Only stepped time uses
-  /// this function. For a serial port it does nothing, because stepped time cannot use serial ports.
+  /// Before this function returns, it passes all bytes that have arrived to `received`, except the bytes of
+  /// masters that must wait for `resume`. The io_context does not have to run. Call this only after `start`.
+  /// Only stepped time uses this function. For a serial port it does nothing, because stepped time cannot use
+  /// serial ports.
   virtual void read_waiting() {}
 
-  /// Sends bytes from the line. The bytes are lost if no master has the port open, as on real wires. Returns
-  /// how many bytes were dropped because a master has the port open and does not read; if several masters do
-  /// not read, the largest of their numbers. A serial port returns how many bytes it has dropped since the
-  /// last call because the kernel had no room for them.
+  /// Sends bytes from the line to each master that has the port open; if there is none, the bytes are lost.
+  /// Returns how many bytes the port has dropped because a master has it open and does not read. If the port
+  /// has dropped bytes for several masters, returns the largest number for one master. A serial port returns
+  /// the number of bytes for which the kernel has had no room since the previous call.
   virtual std::size_t send(const std::vector<std::uint8_t>& bytes) = 0;
-  /// Call this when a station other than the master has turned its driver off, so that no more bytes of its
-  /// reply follow.
+  /// Call this when a station that is not the master has turned off its driver. No more bytes of the reply
+  /// of this station follow.
   virtual void sent() {}
 
   /// Returns the rate of this port, in bits per second; nullopt if masters cannot set a rate at this port, or

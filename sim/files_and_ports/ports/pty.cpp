@@ -26,11 +26,12 @@ std::string link_target(const std::string& link) {
   return std::filesystem::read_symlink(link, error).string();
 }
 
-/// Removes a link to a pseudo-terminal at `link`. Throws if another simulator uses the path, or if any
-/// other file is there.
+/// If a link to a pseudo-terminal exists at the path `link`, removes it. Throws if another simulator uses the
+/// path, or if any other file exists at the path.
 void remove_stale(const std::string& link, const Claim& claim) {
   if (!claim.held()) {
-    throw std::invalid_argument(link + ": another simulator is running there; end it or name another path");
+    throw std::invalid_argument(
+        link + ": another simulator uses this path; end that simulator or name another path");
   }
   if (!is_there(link)) {
     return;
@@ -42,8 +43,8 @@ void remove_stale(const std::string& link, const Claim& claim) {
   unlink(link.c_str());
 }
 
-/// Opens the slave briefly, for operations that work only there. If the device is watched, the system reports
-/// this as if a master had opened and closed the slave (see Visits).
+/// Opens the slave for a short time, to set it up or to discard its unread bytes. If Visits watches the
+/// device, Visits reports this like a master that opens and closes the slave.
 class Slave {
  public:
   explicit Slave(const std::string& device)

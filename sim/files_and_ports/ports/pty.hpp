@@ -15,26 +15,26 @@ namespace ex9000::sim {
 /// no master has it open. The constructor sets the terminal to raw mode.
 class Pty {
  public:
-  /// Creates a pseudo-terminal set to `baud` and a symbolic link to its slave at `link`. Replaces a link to a
-  /// pseudo-terminal that no running simulator uses. Throws std::invalid_argument with a one-line message if
-  /// anything else exists at `link`, another simulator uses the path, or the path cannot be created, and
-  /// std::runtime_error if the system cannot create or set up a pseudo-terminal. After an exception, neither
-  /// the link nor the pseudo-terminal remains.
+  /// Creates a pseudo-terminal, sets its rate to `baud`, and creates a symbolic link to the slave at the path
+  /// `link`. If no other simulator uses this path, replaces an existing link to a pseudo-terminal. Throws
+  /// std::invalid_argument with a one-line message if anything else exists at the path, if another simulator
+  /// uses the path, or if the link cannot be created. Throws std::runtime_error if the system cannot create
+  /// or set up a pseudo-terminal. After an exception, neither a new link nor a new pseudo-terminal remains.
   Pty(std::string link, std::uint32_t baud);
   /// Removes the link if it still leads to this object's slave.
   ~Pty();
   Pty(const Pty&) = delete;
   Pty& operator=(const Pty&) = delete;
 
-  /// Returns the simulator's end for reading; non-blocking. Reading fails if no master has the
-  /// slave open and all bytes have been read.
+  /// Returns the file descriptor of the simulator's end. Reading does not block. If all bytes have been read,
+  /// reading fails: with EAGAIN if a master has the slave open, otherwise with another error.
   [[nodiscard]] int master_fd() const { return master_.get(); }
   [[nodiscard]] const std::string& link() const { return link_; }
   /// Returns the path of the slave, for example /dev/pts/5.
   [[nodiscard]] const std::string& device() const { return device_; }
-  /// Call this when a master has opened or closed the slave. When no master has it open any more, discards
-  /// the bytes that no master has read, as a serial port does: the next master must not receive a reply to
-  /// the previous one. Does not discard them if the next master has opened the slave before this call.
+  /// Call this when a master has opened or closed the slave. If no master has the slave open any more,
+  /// discards the bytes that no master has read, like a serial port: the next master must not receive a reply
+  /// to the previous master. Does not discard them if the next master has opened the slave before this call.
   void take_visit();
   /// Writes the bytes for the master, without blocking. The pseudo-terminal stores a limited number of bytes
   /// that no master has read, for example about 20 KiB on Linux 6.18; further bytes are lost. Returns the
@@ -52,7 +52,7 @@ class Pty {
   Claim claim_;
   std::string device_;
   FileDescriptor master_;
-  bool unread_ = false;  ///< bytes have been written, and `take_visit` has not discarded what is left of them
+  bool unread_ = false;  ///< true from a write until `take_visit` discards the unread bytes
 };
 
 }  // namespace ex9000::sim

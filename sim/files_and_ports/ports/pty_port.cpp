@@ -58,8 +58,8 @@ void PtyPort::read_waiting() {
   }
 }
 
-/// Reads bytes and passes them to `received_`. Returns the number of bytes; 0 if there are none, negative if
-/// there are none and no master has the pseudo-terminal open.
+/// Reads bytes and passes them to `received_`. Returns the number of bytes. If there are none, returns 0 if a
+/// master has the pseudo-terminal open, otherwise a negative number.
 ssize_t PtyPort::take() {
   visits_.take();  // a new master must be detected before the program replies to its bytes
   const ssize_t size = ::read(pty_.master_fd(), bytes_.data(), bytes_.size());

@@ -42,7 +42,7 @@ class PtyPort final : public Port {
   Received received_;
   bool reading_ = false;
   bool paused_ = false;
-  std::array<std::uint8_t, 4096> bytes_{};  ///< a member, because clearing it for each read takes long
+  std::array<std::uint8_t, 4096> bytes_{};  ///< a member, so that it is filled with zeros only once
 };
 
 }  // namespace ex9000::sim

@@ -27,8 +27,8 @@ namespace {
 /// of the host do not cause gaps in the reply.
 constexpr std::chrono::milliseconds kCushion{10};
 
-/// Asks the driver for low latency, because an adapter may otherwise hold bytes back for up to 16 ms, so that
-/// a frame arrives in several pieces. Not all drivers support this setting.
+/// Asks the driver for low latency. Without this setting, an adapter may hold bytes back for up to 16 ms, and
+/// a frame may arrive in several pieces. Not all drivers support the setting.
 void ask_for_low_latency(int fd) {
   serial_struct settings{};
   if (ioctl(fd, TIOCGSERIAL, &settings) == 0) {
@@ -50,8 +50,8 @@ void set_up(int fd, hal::SerialMode mode) {
   }
   termios settings = before;
   cfmakeraw(&settings);
-  // Disables XON/XOFF, because the port could send XOFF on the line. If the format has parity, bytes with
-  // line errors are marked, see ParityMarks.
+  // Disables XON/XOFF. Otherwise, the port could send XOFF on the line. If the format has parity, the kernel
+  // marks bytes with line errors (see ParityMarks).
   settings.c_iflag = has_parity(mode.format) ? INPCK | PARMRK : 0;
   settings.c_cflag &= ~static_cast<tcflag_t>(kTermiosFormat | CRTSCTS);
   settings.c_cflag |= CLOCAL | CREAD | termios_format(mode.format);

@@ -42,7 +42,7 @@ class SerialPort final : public Port {
   bool paused_ = false;
   std::vector<std::uint8_t> held_back_;
   OwnEcho::Clock::time_point began_;  ///< when the first byte in held_back_ was stored
-  bool under_way_ = false;            ///< the beginning of a reply has been written
+  bool under_way_ = false;            ///< the beginning of a reply has been written, but not its end
   std::size_t dropped_ = 0;           ///< bytes that the kernel had no room for since the last `send`
   std::optional<OwnEcho> echo_;
   std::optional<ParityMarks> marks_;  ///< nullopt: the format has no parity

@@ -23,8 +23,8 @@ class TcpListener {
 
   /// Calls `admit` for each client while the io_context runs. Call this once.
   void start(Admit admit);
-  /// Calls `admit` during this call for all clients that have connected; the io_context need not run. Call
-  /// this only after `start`.
+  /// Before this function returns, it calls `admit` for all clients that wait to be accepted. The io_context
+  /// does not have to run. Call this only after `start`.
   void accept_waiting();
   /// Returns the HOST:PORT on which this object listens.
   [[nodiscard]] std::string address() const;

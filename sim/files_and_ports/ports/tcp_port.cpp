@@ -30,9 +30,9 @@ struct TcpPort::Client {
   }
 
   std::array<std::uint8_t, 4096> bytes{};
-  bool reading = false;  ///< waits for more bytes
+  bool reading = false;  ///< the port waits for more bytes from the client
   bool paused = false;
-  bool lingers = false;  ///< has closed its sending side
+  bool lingers = false;  ///< the client has closed its sending side
 };
 
 TcpPort::TcpPort(boost::asio::io_context& io, const TcpAddress& address, Linger linger)
@@ -49,8 +49,8 @@ void TcpPort::start(Received received) {
   listener_.start([this](tcp::socket socket) { admit(std::move(socket)); });
 }
 
-/// If the limit is reached, removes the lingering client that connected first. If no client lingers, refuses
-/// the new client.
+/// If the limit is reached, removes the lingering client that connected first, or rejects the new client if
+/// no client lingers.
 void TcpPort::admit(tcp::socket socket) {
   if (clients_.size() >= kMostMasters) {
     const auto oldest =

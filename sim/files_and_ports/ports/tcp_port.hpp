@@ -19,8 +19,8 @@ namespace ex9000::sim {
 /// all clients, and passes the bytes of each client to the line.
 class TcpPort final : public Port {
  public:
-  /// The maximum time for which the port keeps a client that has closed its sending side, so that the client
-  /// receives the rest of the replies; nullopt: no maximum.
+  /// A client that has closed its sending side can still receive replies. The port keeps such a client for at
+  /// most this time; nullopt: no maximum.
   using Linger = std::optional<std::chrono::milliseconds>;
   static constexpr std::chrono::milliseconds kUsualLinger{1000};
 

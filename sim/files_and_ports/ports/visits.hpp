@@ -26,8 +26,9 @@ class Visits final : public boost::asio::io_context::service {
   int watch(const std::string& device, std::function<void()> visited);
   /// Ends a watch. Its function is not called any more.
   void ignore(int watch);
-  /// Reports all visits up to now. If the system has lost events because its queue was full
-  /// (fs.inotify.max_queued_events), reports a visit of each watched device.
+  /// Reads the kernel's events. Calls `visited` of each watched device that a process has opened or closed.
+  /// If the system has lost events because its queue was full (fs.inotify.max_queued_events), calls `visited`
+  /// of all watched devices.
   void take();
 
  private:
@@ -36,7 +37,7 @@ class Visits final : public boost::asio::io_context::service {
 
   boost::asio::posix::stream_descriptor inotify_;  ///< opened for the first watch
   std::map<int, std::function<void()>> watches_;
-  std::array<char, 4096> events_{};  ///< a member, because clearing it for each read takes long
+  std::array<char, 4096> events_{};  ///< a member, so that it is filled with zeros only once
 };
 
 }  // namespace ex9000::sim

@@ -16,7 +16,7 @@ namespace {
 
 void require_power(const SimulatedModule& module) {
   if (!module.powered()) {
-    fail("the module has no power; switch it on with 'power on'");
+    fail("the module has no power; use 'power on', or end the fault that switches the supply off");
   }
 }
 
@@ -125,7 +125,7 @@ std::string filters(SimulatedModule& module, const Words& /*args*/) {
   return for_each_channel(module.model().inputs, [&](unsigned channel) { return filters.of(channel); });
 }
 
-/// A command for one module. The position of the module precedes it.
+/// A command for one module. The position of the module precedes the command.
 struct Verb {
   std::string_view name;
   std::string_view args;
@@ -144,14 +144,14 @@ constexpr std::array<Verb, 12> kVerbs{{
     {"inputs", "", 0, 0, "reads the input levels in hex; bit n is input n", inputs},
     {"outputs", "", 0, 0, "reads the outputs in hex; bit n is output n", outputs},
     {"timers", "", 0, 0,
-     "reads the remaining time of each timed output in units of 0.1 s; 0: no timer is running", timers},
+     "reads the remaining time of each output's timer in units of 0.1 s; 0: the timer does not run", timers},
     {"filters", "", 0, 0, "reads the filter of each input in ms", filters},
     {"led", "", 0, 0, "reads the status LED: on, off or flashing", led},
     {"hang", "", 0, 0, "stops the main loop until the module watchdog resets the module", hang},
     {"status", "", 0, 0, "reads the model, the settings in force, the mode and the watchdogs", status},
 }};
 
-/// A command for one line. `line NAME` may precede it.
+/// A command for one line. `line NAME` may precede the command.
 struct LineVerb {
   std::string_view shape;
   std::string_view does;
@@ -159,13 +159,13 @@ struct LineVerb {
 
 constexpr std::array<LineVerb, 6> kLineVerbs{{
     {"baud RATE",
-     "sets the line's baud rate, for TCP; a pseudo-terminal overrides it, and a serial port has its own"},
-    {"format FORMAT", "sets the line's format: 8N1, 8N2, 8E1 or 8O1; a serial port has its own"},
+     "sets the line's baud rate until bytes from a pseudo-terminal set it; rejected with a serial port"},
+    {"format FORMAT", "sets the line's format: 8N1, 8N2, 8E1 or 8O1; rejected with a serial port"},
     {"sent", "reads how many bytes the line has written to each of its ports"},
-    {"fault FAULT", "adds a fault, see below; replies with its number. With N: for that module"},
+    {"fault FAULT", "adds a fault, see below; replies with its number. 'N fault FAULT': for module N"},
     {"fault off K|all", "removes the fault with this number, or all faults"},
     {"faults",
-     "lists the faults: number, * if in progress, how often each has occurred, its module, its text"},
+     "lists the faults: number, * if in progress, x and number of occurrences, module, text"},
 }};
 
 std::string shape(const Verb& verb) {
@@ -233,12 +233,13 @@ std::string end_fault(Line& line, const Words& words) {
   } else if (!fault) {
     fail("expected fault off K|all");
   } else if (!line.faults().remove(*fault)) {
-    fail("no fault " + which + " on this line; 'faults' lists them");
+    fail("no fault " + which + " on this line; 'faults' lists the faults");
   }
   return "";
 }
 
-/// Returns the faults of the line as text. `position` is the position of the line's first module, from 0.
+/// Returns the faults of the line as text. `position` is the position of the line's first module across all
+/// lines, from 0.
 std::string list_faults(Line& line, std::size_t position) {
   const std::vector<Faults::Info> faults = line.faults().list();
   std::string text = std::to_string(faults.size()) + (faults.size() == 1 ? " fault:" : " faults:");
@@ -250,7 +251,8 @@ std::string list_faults(Line& line, std::size_t position) {
   return text;
 }
 
-/// Returns the only argument of a command of this `shape`, which sets the line's `key`.
+/// Returns the argument of a command that has this `shape` and sets the line's `key`. Throws
+/// std::invalid_argument if the command does not have exactly one argument, or if the line has a serial port.
 const std::string& new_value(const Control::ControlledLine& controlled, const Words& words,
                              const std::string& shape, const std::string& key) {
   if (words.size() != 2) {
@@ -342,12 +344,12 @@ Control::Reply Control::carry_out(const std::string& command) {
   const std::string first = words.empty() ? "" : words[0];
   try {
     if (command.find('\0') != std::string::npos) {
-      fail("the command contains NUL; leave it out");
+      fail("the command contains NUL; remove the NUL");
     }
     std::string result;
     if (first == "quit" || first == "list" || first == "help") {
       if (words.size() != 1) {
-        fail("'" + first + "' has no arguments; leave them out");
+        fail("'" + first + "': expected no arguments");
       }
       result = first == "quit" ? "" : first == "list" ? list(lines_) : all_shapes();
     } else if (first == "advance") {
@@ -380,9 +382,9 @@ std::string control_commands() {
   }
   row("line NAME ...", "one of the six above, for that line; required if there are several lines");
   row("advance TIME [after N] [quiet]", "");
-  row("", "with --speed step: waits until N bytes have arrived at the ports, sends all of them on the");
-  row("", "lines, and advances the time by TIME; with 'quiet', only until nothing is pending. Replies");
-  row("", "with the time");
+  row("", "requires --speed step. With 'after N', first waits until N bytes have arrived at the ports.");
+  row("", "Sends all arrived bytes on the lines, and advances the time by TIME. With 'quiet', stops as");
+  row("", "soon as nothing is pending. Replies with the time");
   row("list", "lists the modules");
   row("help", "lists the commands");
   row("quit", "ends the simulator");

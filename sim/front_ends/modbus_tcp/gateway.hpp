@@ -20,8 +20,8 @@ using GatewayAnswer = std::function<void(const std::optional<std::vector<std::ui
 /// on the line, or `line` is destroyed first. The answer is:
 /// - for unit 0: nullopt, because a broadcast has no reply;
 /// - for a unit above 247, or if at least one module listens and all that listen speak ASCII: exception 0x0A;
-/// - if the request is not sent, another master sends between the request and the end of the reply, or no
-///   valid reply begins within RequestQueue::kReplyTimeout: exception 0x0B;
+/// - if the request is not sent, if another master sends between the request and the end of the reply, or if
+///   no valid reply begins within RequestQueue::kReplyTimeout: exception 0x0B;
 /// - otherwise: the reply of the module.
 void ask_on_line(Line& line, const MbapFrame& request, const std::weak_ptr<void>& owner,
                  const GatewayAnswer& answer);

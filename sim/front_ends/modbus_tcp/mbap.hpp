@@ -17,7 +17,7 @@ struct MbapFrame {
   std::vector<std::uint8_t> pdu;  ///< 1 to 253 bytes: the function code and its data
 };
 
-/// Finds the frames in the bytes of a connection, however TCP has split or joined them.
+/// Finds the frames in the bytes of a connection. TCP may split a frame into pieces, or join several frames.
 class MbapReader {
  public:
   void add(Bytes bytes);

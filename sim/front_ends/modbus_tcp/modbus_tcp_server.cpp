@@ -36,7 +36,7 @@ struct ModbusTcpServer::Client : std::enable_shared_from_this<Client> {
             },
             [this, &server] { server.go_on(shared_from_this()); }) {}
 
-  /// Returns whether the server may read more bytes of this client while the server is not paused.
+  /// Returns whether the server may read more bytes of this client. Does not consider `paused_`.
   [[nodiscard]] bool may_read() const {
     return socket.is_open() && !ended && !session.broken() && session.unread() < kMostUnread;
   }
@@ -117,8 +117,8 @@ void ModbusTcpServer::read(const ClientPointer& client) {
   });
 }
 
-/// Reads the available bytes, up to the size of a buffer, and delivers them. If there are none, returns the
-/// error.
+/// Reads the available bytes, up to the size of `client->bytes`, and delivers them. Returns the error if no
+/// bytes are available.
 boost::system::error_code ModbusTcpServer::take(const ClientPointer& client) {
   boost::system::error_code error;
   const std::size_t size = client->socket.read_some(boost::asio::buffer(client->bytes), error);
@@ -132,8 +132,8 @@ boost::system::error_code ModbusTcpServer::take(const ClientPointer& client) {
   return error;
 }
 
-/// Calls `received_` with a function that runs `action`. If the client has been removed when this function is
-/// called, the function does not run `action`.
+/// Calls `received_` with a new function, `process`. When `process` is called, it runs `action`, unless the
+/// client has been removed.
 void ModbusTcpServer::deliver(const ClientPointer& client, std::size_t size,
                               const std::function<void()>& action) {
   ++client->arriving;

@@ -23,8 +23,9 @@ class ModbusTcpServer {
  public:
   /// The server calls this function when `size` bytes of a client have arrived, or with a `size` of 0 when a
   /// client accepts replies again. The function must call `process` exactly once, during the call or later.
-  /// Before that, it must advance the line to its present time (Pacer::now), because `process` may send
-  /// requests. The function returns false if the server must stop reading until `resume`.
+  /// Before the call of `process`, the line must be advanced to the line's present time (see Pacer::now),
+  /// because `process` may send requests. The function returns false if the server must stop reading until
+  /// `resume`.
   using Received = std::function<bool(std::size_t size, std::function<void()> process)>;
 
   /// Starts to listen. Throws std::invalid_argument with a one-line message if the address is not available.

@@ -53,8 +53,8 @@ std::string words_text(Bytes bytes) {
   return text;
 }
 
-/// Returns the text for a valid Modbus reply: the values if the function code is 01 to 04, or the exception;
-/// empty for any other reply. `request` and `reply` are PDUs.
+/// Returns the text for a valid Modbus reply: the exception if the reply is one, the values if the function
+/// code is 01 to 04, otherwise an empty text. `request` and `reply` are PDUs.
 std::string values_text(Bytes request, Bytes reply) {
   constexpr std::size_t kValues = 2;  // after the function code and the byte count
   const std::uint8_t function = reply[0];

@@ -15,7 +15,7 @@ namespace ex9000::sim {
 struct ConsoleRequest {
   std::uint64_t id = 0;      ///< chosen by the page, for the reply
   std::size_t line = 0;      ///< position of the line, from 0
-  std::uint8_t address = 0;  ///< of the module; 0: all modules. Unused for a DCON command
+  std::uint8_t address = 0;  ///< address of the module; 0: all modules. A DCON command does not use it
   std::string text;          ///< a DCON command if it begins with a delimiter, otherwise a PDU in hex
 };
 

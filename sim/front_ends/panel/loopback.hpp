@@ -1,4 +1,4 @@
-// The names of this machine's loopback interface, as browsers write them.
+// Checks whether the headers of a browser's request name this machine's loopback interface.
 #pragma once
 
 #include <cstdint>

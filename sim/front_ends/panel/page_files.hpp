@@ -1,4 +1,4 @@
-// The page's files, embedded from sim/front_ends/panel/page.
+// The files of the page. The build embeds them from sim/front_ends/panel/page into the program.
 #pragma once
 
 #include <string_view>

@@ -181,7 +181,7 @@ class Panel::Viewer final : public PanelViewer {
     }
     if (asked_ >= kMostAsked) {
       answers_.push_back(
-          rejection_of(request, "too many requests wait for the line; wait for their replies"));
+          rejection_of(request, "16 requests of this page have no reply yet; wait for a reply"));
       return true;
     }
     try {
@@ -204,7 +204,7 @@ class Panel::Viewer final : public PanelViewer {
   [[nodiscard]] std::string carry_out(const std::string& command) const {
     const Words words = words_of(command);
     return !words.empty() && words[0] == "quit"
-               ? "error: a page cannot end the simulator; press Ctrl-C in its terminal"
+               ? "error: a page cannot end the simulator; press Ctrl-C in the terminal of the simulator"
                : panel_.carry_out_(command).text;
   }
 
@@ -278,10 +278,10 @@ class Panel::Viewer final : public PanelViewer {
 
   Panel& panel_;
   std::uint64_t sent_look_ = 0;
-  std::vector<std::uint64_t> next_entries_;  ///< number of the next entry, for each line
+  std::vector<std::uint64_t> next_entries_;  ///< for each line, the number of the next entry to send
   std::optional<Message> reply_;
-  Message answers_ = Message::array();  ///< to requests of the console
-  std::size_t asked_ = 0;               ///< requests of the console without an answer
+  Message answers_ = Message::array();  ///< answers to console requests, for the next message
+  std::size_t asked_ = 0;               ///< number of console requests without an answer
   std::shared_ptr<Viewer*> lives_ = std::make_shared<Viewer*>(this);
   std::set<std::string> held_;  ///< commands that undo the actions that the page holds active
   std::chrono::steady_clock::time_point last_sent_at_;

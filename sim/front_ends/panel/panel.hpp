@@ -16,7 +16,7 @@
 
 namespace ex9000::sim {
 
-/// The panel's side of one open page.
+/// Carries messages between the panel and one open page.
 class PanelViewer {
  public:
   PanelViewer() = default;
@@ -24,15 +24,15 @@ class PanelViewer {
   PanelViewer& operator=(const PanelViewer&) = delete;
   virtual ~PanelViewer() = default;
 
-  /// Carries out a request of the page; a later call of `next` returns the reply. A request may contain a
-  /// command and a second command that undoes the first one. If the first command succeeds, the page holds
-  /// its action active until the page sends the second command. When this object is destroyed, it carries out
-  /// the second command of each active action. Returns false if `text` is not a valid request, or if the page
-  /// would hold too many actions active.
+  /// Carries out a request of the page; a later call of `next` returns the reply. A request with a command
+  /// may also contain a second command that undoes the first one. If the first command succeeds, the page
+  /// holds the action of this command active until the page sends the second command. When this object is
+  /// destroyed, it carries out the second command of each active action. Returns false if `text` is not a
+  /// valid request, or if the page would hold too many actions active.
   virtual bool ask(const std::string& text) = 0;
-  /// Returns the next message for the page: replies, the recent traffic, and the changes that Panel::look has
-  /// captured, each if the page has not received it yet. The first message also describes the lines and their
-  /// modules. Returns an empty text if there is nothing to send.
+  /// Returns the next message for the page. The message contains all new replies, the new recent traffic, and
+  /// the new changes that Panel::look has captured. The first message also describes the lines and their
+  /// modules. Returns an empty text if there is nothing new and the last message is less than 1 s old.
   virtual std::string next() = 0;
 };
 

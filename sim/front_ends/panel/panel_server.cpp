@@ -94,7 +94,7 @@ class PanelServer::Listener : public std::enable_shared_from_this<PanelServer::L
   std::string models_;
   Panel& panel_;
   std::uint16_t port_ = 0;
-  std::set<Client*> clients_;  ///< each adds and removes itself
+  std::set<Client*> clients_;  ///< each Client adds and removes itself
   bool stopped_ = false;
 };
 
@@ -305,9 +305,10 @@ class PanelServer::Listener::Client : public std::enable_shared_from_this<Client
     });
   }
 
-  /// Processes a request of the page, and disconnects the page if the request is not valid. Reads the next
-  /// request only when the reply to a command has been queued, so a client cannot send commands faster than
-  /// the server answers them. The viewer limits the console requests, which are answered later.
+  /// Processes a request of the page, and disconnects the page if the request is not valid. If the request is
+  /// a command, reads the next request only after the reply to this command has been queued. A client
+  /// therefore cannot send commands faster than the server replies to them. The replies to console requests
+  /// come later; the viewer limits the number of these requests.
   void answer_page_request() {
     answering_ = false;
     const std::string asked = beast::buffers_to_string(buffer_.data());
@@ -352,7 +353,8 @@ std::size_t PanelServer::Listener::pages() const {
                                                 [](const Client* client) { return client->takes_a_page(); }));
 }
 
-/// While a page is open, captures the present state for the pages, now and at least every kLookEvery.
+/// If a page is open, captures the present state, sends each page its next message, and does this again after
+/// kLookEvery at the latest.
 void PanelServer::Listener::look() {
   if (std::none_of(clients_.begin(), clients_.end(),
                    [](const Client* client) { return client->is_page(); })) {

@@ -19,7 +19,7 @@ class Panel;
 /// wait for the page.
 ///
 /// Rejects requests for another host or port (see is_loopback_host), requests that a browser marks as
-/// requests of a page of another origin, and requests for a WebSocket without an Origin.
+/// requests of a page of another origin, and requests for /live that have no header Origin.
 class PanelServer {
  public:
   /// Listens on `port`. If `port` is nullopt, listens on 9042, or on any free port if 9042 is not available.

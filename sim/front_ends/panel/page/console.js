@@ -5,7 +5,7 @@ import {hexByte, make} from "/element.js";
 const mostReplies = 50;
 const intervals = [["200", "0.2 s"], ["1000", "1 s"], ["5000", "5 s"]];
 const everyModule = "all";
-/// The largest numbers of bits and of registers that one request reads.
+/// The maximum number of bits, and the maximum number of registers, that one request can read.
 const mostBits = 2000;
 const mostWords = 125;
 
@@ -37,7 +37,7 @@ function modbusItems(model) {
   }));
 }
 
-/// Returns {label, request} for each DCON command of a model at an address.
+/// Returns {label, request} for each DCON command of a model. `address` replaces AA in the requests.
 function dconItems(model, address) {
   return model.dcon_commands.map(({command, meaning}) => ({
     label: `${command}: ${meaning}`,
@@ -138,8 +138,8 @@ export class Console {
     this.replies.scrollTop = this.replies.scrollHeight;
   }
 
-  /// While polling is switched on, sends the request after `delay` ms, and again an interval after each reply or
-  /// error.
+  /// While polling is switched on, sends the request after `delay` ms. After each reply or error, waits for the chosen
+  /// interval and sends the request again.
   schedule(delay) {
     clearTimeout(this.timer);
     if (!this.poll.checked) {

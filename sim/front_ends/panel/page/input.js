@@ -28,8 +28,8 @@ export class Input {
 
   command(on) { return `input ${this.channel} ${on ? "on" : "off"}`; }
 
-  /// Inverts the level until `release` is called. The simulator restores the level if the page disconnects before this
-  /// call.
+  /// Inverts the level until `release` is called. If the page disconnects before it calls `release`, the simulator
+  /// restores the level.
   press() {
     if (this.held === null) {
       this.held = this.level.on;

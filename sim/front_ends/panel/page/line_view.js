@@ -9,7 +9,7 @@ export const mostUnfolded = 64;
 export class LineView {
   /// `modules`: {position, model} of each module. `count` selects the size of the plates: one, some or many. `open`:
   /// whether the line is open at first. `states`: the state of each module, by position. `plateOf(position)` returns
-  /// the plate of a module; the first call creates the plate.
+  /// the plate of a module. The first call for a module creates its plate.
   constructor(line, modules, count, open, states, plateOf) {
     this.line = line;
     this.modules = modules;

@@ -37,8 +37,8 @@ export class Live {
     socket.onclose = (event) => this.gone(socket, event.code === tooMany ? "tooMany" : "gone");
   }
 
-  /// Restarts the timeout. The timeout detects a simulator that does not respond or a broken connection, because
-  /// neither closes the socket.
+  /// Restarts the timeout. The timeout is necessary because the socket stays open if the simulator does not respond or
+  /// if the connection is broken.
   listen(socket) {
     clearTimeout(this.silence);
     this.silence = setTimeout(() => {

@@ -1,5 +1,5 @@
-// The panel: one page that shows the state and the traffic in the simulator's messages, and sends the user's commands
-// and requests.
+// The page of the panel. It shows the state and the traffic that the messages of the simulator contain, and it sends
+// the user's commands and requests.
 
 import {Console} from "/console.js";
 import {setText} from "/element.js";
@@ -136,7 +136,7 @@ function repaint(when) {
   requestAnimationFrame(repaint);
 }
 
-/// The text for each reason of a lost connection.
+/// The text for each reason why the page is not connected.
 const reasons = {
   gone: "Not connected to the simulator; trying again. The page shows the last known state.",
   tooMany: "Too many pages are open. This page connects when another page is closed.",

@@ -11,8 +11,8 @@ const edgeTerminals = ["DATA+", "DATA−", "+VS", "GND"];
 export class Plate {
   /// `position` counts from 0. `state` contains the parts of the module's state that have arrived, and the caller
   /// updates it. `tell(command, undo)` carries out a command of this module, see `tell` in live.js. `command` and
-  /// `undo` do not contain the module's number. `way()` returns the effect of a click on an input without Shift or Alt:
-  /// toggle, hold or pulse.
+  /// `undo` do not contain the module's number. `way()` returns what a click without Shift or Alt does to an
+  /// input: toggle, hold or pulse.
   constructor(layout, position, state, tell, way) {
     this.layout = layout;
     this.state = state;

@@ -14,8 +14,9 @@ const scaleHeight = 20;
 const inWords = (gap) => gap >= 1e6 ? `${(gap / 1e6).toFixed(2)} s` : `${(gap / 1000).toFixed(1)} ms`;
 
 export class Strip {
-  /// `frame` is the element around `canvas`; it scrolls if it is too small for the lanes in `canvas`. `span` selects
-  /// the visible time in us. Frames for which `matches(entry)` is false are drawn pale.
+  /// `frame` is the element around `canvas`; it scrolls if it is too small for the lanes in `canvas`. The value of
+  /// the element `span` is the length of the visible time in us. Frames for which `matches(entry)` is false are drawn
+  /// pale.
   constructor(frame, canvas, span, matches) {
     this.frame = frame;
     this.canvas = canvas;
@@ -33,7 +34,7 @@ export class Strip {
     this.measure();
   }
 
-  /// Creates a lane for each of `lines`. `now(index)` returns the time of the line at position `index` in us.
+  /// Creates a lane for each of `lines`. `now(index)` returns the time, in us, of the line at position `index`.
   begin(lines, now) {
     this.lines = lines;
     this.now = now;
@@ -122,9 +123,9 @@ export class Strip {
       seen.forEach((lane) => this.drawName(lane));
     }
     this.drawScale(width, bottom, span);
-    const which = this.moved ? "Earlier" : "The last";
+    const which = this.moved ? "An earlier period of" : "The last";
     setAttribute(this.canvas, "aria-label",
-      `${which} ${span / 1000} ms of ${this.lines.length} line${this.lines.length > 1 ? "s" : ""}`);
+      `${which} ${span / 1000} ms on ${this.lines.length} line${this.lines.length > 1 ? "s" : ""}`);
   }
 
   tenths(width) { return width < 500 ? [0, 5, 10] : [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10]; }

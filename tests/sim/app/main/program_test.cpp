@@ -209,7 +209,7 @@ TEST(Program, ALinkInUseByAnotherUsersSimulatorIsNotTakenOver) {
       run({"setpriv", "--reuid=65534", "--clear-groups", simulator_path(), "EX9052D", "--pty", process.tty()},
           process.directory());
   EXPECT_EQ(other.status, 2) << other.error;
-  EXPECT_NE(other.error.find("another simulator is running there"), std::string::npos) << other.error;
+  EXPECT_NE(other.error.find("another simulator uses this path"), std::string::npos) << other.error;
 }
 
 TEST(Program, WrongArgumentsGiveAOneLineErrorAndStatus2AndCreateNoFiles) {

@@ -98,7 +98,8 @@ TEST(ControlView, TimersReadsTheRemainingTimeOfEachTimedOutput) {
   bench.run(milliseconds(200));
   EXPECT_EQ(bench.tell("1 timers"), "ok 0 0 0");
   bench.tell("1 power off");
-  EXPECT_EQ(bench.tell("1 timers"), "error: the module has no power; switch it on with 'power on'");
+  EXPECT_EQ(bench.tell("1 timers"),
+            "error: the module has no power; use 'power on', or end the fault that switches the supply off");
 }
 
 TEST(ControlView, FiltersReadsTheFilterOfEachInput) {

@@ -119,7 +119,7 @@ TEST(PanelConsole, OnePageMayHaveSixteenRequestsInTheQueue) {
   }
   const Message message = bench.look();
   ASSERT_EQ(message["answers"].size(), 1U);
-  EXPECT_EQ(message["answers"][0]["text"], "too many requests wait for the line; wait for their replies");
+  EXPECT_EQ(message["answers"][0]["text"], "16 requests of this page have no reply yet; wait for a reply");
   bench.run(std::chrono::seconds(2));
   EXPECT_EQ(bench.look()["answers"].size(), 16U);
 }
