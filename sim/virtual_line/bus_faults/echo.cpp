@@ -15,8 +15,10 @@ void Echo::wake_at(VirtualTime when) {
 }
 
 void Echo::receive(std::uint8_t byte, ByteStatus /*status*/) {
-  if (sent_ == 0 && heard_.size() < kMostHeard) {
-    heard_.push_back(byte);
+  if (sent_ == 0) {
+    if (heard_.size() < kMostHeard) {
+      heard_.push_back(byte);
+    }
     wake_at(bus_.clock().virtual_now() + delay_);
   }
 }

@@ -134,6 +134,19 @@ TEST(Echo, RepeatsTheBytesThatItReceivesWhileItIsOn) {
   EXPECT_EQ(line.heard, (Heard{{4, ByteStatus::Good}}));
 }
 
+TEST(Echo, WaitsForAPauseAlsoAfterMoreBytesThanItRepeats) {
+  constexpr std::size_t kMost = 1024;
+  TwoOnALine line;
+  Echo echo(line.bus, {9600});
+  echo.switch_on(milliseconds(5));
+  const std::vector<std::uint8_t> bytes(kMost + 20, 0x55);
+  line.sender.send(bytes.data(), bytes.size());
+  line.bus.run_for(line.sender.takes(bytes.size()) + milliseconds(4));
+  EXPECT_EQ(line.heard.size(), bytes.size());
+  line.bus.run_for(seconds(3));
+  EXPECT_EQ(line.heard, Heard(bytes.size() + kMost, {0x55, ByteStatus::Good}));
+}
+
 TEST(Module, ALateDriverHoldsTheLineForTheSetTime) {
   for (const VirtualTime late : {VirtualTime(0), VirtualTime(milliseconds(7))}) {
     Line line({parse_module_spec("EX9042D-M@01,protocol=ascii")}, kPaced, [](std::uint8_t, ByteStatus) {});
