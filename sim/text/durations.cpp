@@ -29,7 +29,7 @@ constexpr std::array<Unit, 5> kUnits{{{"us", 1'000},
                                       {"h", 3600 * kNanosecondsPerSecond}}};
 constexpr long double kYear = 365.0L * 24 * 3600e9L;
 
-/// Returns the time in the unit of `unit` nanoseconds, exact to the nanosecond. `time` must not be negative.
+/// Returns `time` divided by `unit` nanoseconds, as an exact decimal number. `time` must not be negative.
 /// `unit` is a power of ten.
 std::string decimal_text(VirtualTime time, std::int64_t unit) {
   std::string fraction = std::to_string(unit + time.count() % unit).substr(1);
@@ -40,7 +40,8 @@ std::string decimal_text(VirtualTime time, std::int64_t unit) {
 }  // namespace
 
 VirtualTime parse_time(const std::string& text) {
-  static_assert(std::numeric_limits<long double>::digits >= 55, "a year has less than 2^55 ns");
+  static_assert(std::numeric_limits<long double>::digits >= 55,
+                "long double is not exact up to a year in ns; it requires at least 55 binary digits");
   long double value = 0;
   const char* const end = text.data() + text.size();
   const auto [rest, error] = std::from_chars(text.data(), end, value, std::chars_format::fixed);

@@ -1,6 +1,6 @@
 // Measures the processor time that the firmware core requires from the first byte of a request to the end of
-// the reply. The result includes the work of the interrupts in the core. It does not include the time that
-// the bytes take on a serial line.
+// the reply. The result includes the functions of the core that interrupts call. It does not include the time
+// that the bytes take on a serial line.
 #include <benchmark/benchmark.h>
 
 #include <string>
@@ -13,8 +13,8 @@
 namespace ex9000::bench {
 namespace {
 
-/// A module whose clock advances only during its start and in `ask`. Its memory is accessed only during the
-/// start, because no request in this file stores settings.
+/// A module whose clock advances only during its start and in `ask`. The module accesses its memory only
+/// during its start, because no request in this file stores settings.
 class BareModule {
  public:
   explicit BareModule(const Model& model, bool ascii) : module_(model), memory_(8192, 0xFF) {

@@ -61,7 +61,7 @@ def count(log):
 class Passes(unittest.TestCase):
     BYTE = interrupt(NUMBERS.line, 0x2000, received(1), 0x2002)
 
-    def test_the_interrupts_turns_and_single_bytes_of_an_answered_request_are_counted(self):
+    def test_the_interrupts_and_the_turns_and_the_single_bytes_of_an_answered_request_are_counted(self):
         log = ASLEEP + turn(self.BYTE) + turn(interrupt(NUMBERS.silence, 0x3000), *TURN)
         log += turn(interrupt(NUMBERS.line, 0x2000, SENT)) + turn(interrupt(NUMBERS.line_end, 0x4000), 0x500)
         its, found = count(log)
@@ -104,7 +104,7 @@ class Passes(unittest.TestCase):
 
 
 class Capacity(unittest.TestCase):
-    def test_the_instruction_count_for_more_edges_is_extrapolated_linearly(self):
+    def test_the_instruction_count_for_more_edges_than_were_measured_is_extrapolated_linearly(self):
         found = capacity.Found()
         found.edges = {1: 80, 3: 120, 5: 160}
         self.assertEqual(found.edges_at_once(6), 180)

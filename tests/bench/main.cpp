@@ -34,7 +34,7 @@ class Reporter final : public benchmark::ConsoleReporter {
     const double at_most = counter(run, "at_most", kNoLimit);
     if (figure < at_least || figure > at_most) {
       std::cerr << run.benchmark_name() << ": the figure is " << figure << "; expected " << at_least << " to "
-                << at_most << " on a quiet machine\n";
+                << at_most << " if other programs do not use the processors\n";
     }
   }
 

@@ -1,5 +1,5 @@
-// Measures how close a master on the simulator's pseudo-terminal comes to the maximum rate of the line, in
-// percent.
+// Measures the transaction rate of a master on the simulator's pseudo-terminal, in percent of the maximum
+// rate of the line.
 #include <benchmark/benchmark.h>
 #include <modbus/modbus.h>
 
@@ -14,7 +14,8 @@ namespace ex9000::bench {
 namespace {
 
 constexpr int kBaud = 115200;
-/// FC01 with 13 coils: a request of 8 characters, a reply of 7 characters, and one silence of 1.75 ms.
+/// The shortest duration of a transaction, in seconds. FC01 with 13 coils requires a request of 8 characters,
+/// a reply of 7 characters, and one silence of 1.75 ms.
 constexpr double kTransaction = 15.0 * 10 / kBaud + 1.75e-3;
 constexpr int kTransactions = 60;
 constexpr int kRounds = 25;

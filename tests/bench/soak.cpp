@@ -110,7 +110,7 @@ class Bus {
 int main(int argc, char** argv) {
   const long seconds = argc > 1 ? std::atol(argv[1]) : 600;
   if (argc > 2 || seconds < 1) {
-    std::fprintf(stderr, "soak: expected a number of seconds (default: 600)\n");
+    std::fprintf(stderr, "soak: expected one number of seconds, at least 1 (default: 600)\n");
     return 2;
   }
   std::array<Bus, 2> buses;

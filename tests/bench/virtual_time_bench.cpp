@@ -57,12 +57,13 @@ void idle_line(benchmark::State& state) {
   }
   if (line.module(0).module().led_pattern() != StatusLed::Pattern::HostTimeout ||
       line.module(1).module().state().settings.timeout_status) {
-    state.SkipWithError("module 1 must flash, and module 2 must not");
+    state.SkipWithError(
+        "expected the host watchdog of module 1 to expire, and the host watchdog of module 2 not to expire");
   }
   state.counters["figure"] = benchmark::Counter(seconds(ran), benchmark::Counter::kIsRate);
   state.counters["at_least"] = 1000;
 }
-BENCHMARK(idle_line)->Name("32 modules idle, watchdogs armed: x real time");
+BENCHMARK(idle_line)->Name("32 modules idle, host watchdogs enabled: x real time");
 
 /// Measures a line whose master polls the modules in turn. The master sends each request shortly after the
 /// silence that follows the previous reply.

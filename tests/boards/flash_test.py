@@ -17,7 +17,8 @@ ECHO_INSTEAD = "; ".join([f'proc {name} {{args}} {{ echo "> {name} $args" }}' fo
 
 
 def openocd_script(board: Path) -> str | None:
-    """Returns the OpenOCD script that a board.cmake, or the file that it includes, sets; None if neither sets one."""
+    """Returns the OpenOCD script that the file `board` names. If `board` names no script but includes a file, returns
+    the script that the included file names. Returns None if there is no script."""
     text = board.read_text()
     if match := re.search(r"set\(openocd_script (\S+)\)", text):
         return match.group(1).replace("${CMAKE_CURRENT_LIST_DIR}", str(board.parent))

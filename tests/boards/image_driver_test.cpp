@@ -43,9 +43,9 @@ class OnBoard : public testing::TestWithParam<ImageName> {
     EXPECT_EQ(bench.resets, 0U);
     EXPECT_EQ(bench.ask("$01M"), "!019055");
   }
-  /// Sends the command that stores a name. Switches the supply off at the time `after` from the start of the
-  /// command, and on again 50 ms later. Sets cut_a_page_. Returns whether the master had received a character
-  /// of the reply before the cut.
+  /// Sends the command that stores a name. Switches the supply off when the time `after` has passed since the
+  /// start of the command. Switches the supply on again 50 ms later. Sets cut_a_page_. Returns whether the
+  /// master had received a character of the reply before the cut.
   bool cut_while_it_stores(const std::string& name, Instant after) {
     const std::string command = "~01O" + name + "\r";
     bench.line.heard.clear();
@@ -58,11 +58,11 @@ class OnBoard : public testing::TestWithParam<ImageName> {
     power_up();
     return answered;
   }
-  /// The numbers of cuts with each outcome.
+  /// The number of power cuts with each outcome.
   struct Outcomes {
-    unsigned old = 0;
-    unsigned stored_only = 0;  ///< stored, but no reply
-    unsigned answered = 0;
+    unsigned old = 0;          ///< the old name
+    unsigned stored_only = 0;  ///< the new name, but no reply before the cut
+    unsigned answered = 0;     ///< the new name, and a reply before the cut
   };
   Net& clock() { return bench.pins.at('B', I2cBlock::kClockPin); }
   Net& data() { return bench.pins.at('B', I2cBlock::kDataPin); }
@@ -74,7 +74,8 @@ class OnBoard : public testing::TestWithParam<ImageName> {
       expect_comes_up();
       EXPECT_EQ(bench.ask("~01OPUMP"), "?01");
       line->drive(End::Fault, Drive::Nothing);
-      bench.run_for(seconds(3));  // meanwhile the module invalidates the copy of the refused store
+      // In this time, the module invalidates the copy that the refused store may have written.
+      bench.run_for(seconds(3));
       EXPECT_EQ(bench.ask("~01O9055"), "!01");
       line->drive(End::Fault, Drive::Low);
       EXPECT_EQ(bench.ask("~01OPUMP"), "?01");
@@ -137,8 +138,9 @@ TEST_P(OnBoard, ComesUpWithin100msAfterAResetAtAnyTimeWhileItReadsItsSettings) {
   EXPECT_EQ(bench.ask("$01M"), "!019055");
 }
 
-TEST_P(OnBoard, HasOldOrNewSettingsAfterAPowerCutAndNewOnesIfItHasReplied) {
-  // The command takes at most 9.4 ms and its turn-around 1 ms. After that, the store takes about 10 ms.
+TEST_P(OnBoard, HasOldOrNewSettingsAfterAPowerCutAndNewSettingsIfItHasReplied) {
+  // The command takes at most 9.4 ms, and the turn-around takes 1 ms. After that, the store takes about
+  // 10 ms.
   constexpr microseconds kCommandIsSent{10'300};
   constexpr microseconds kInBetween{5000};
   power_up();
@@ -165,7 +167,7 @@ TEST_P(OnBoard, HasOldOrNewSettingsAfterAPowerCutAndNewOnesIfItHasReplied) {
   }
 }
 
-TEST_P(OnBoard, TheDriverIsOffUnlessItReplies) {
+TEST_P(OnBoard, TheDriverIsOffUnlessTheModuleReplies) {
   power_up();
   EXPECT_TRUE(bench.line.drives.empty());
   bench.ask("$01M");
@@ -231,7 +233,7 @@ TEST_P(ModbusOnBoard, RepliesImmediatelyAfterT35) {
   }
 }
 
-TEST_P(OnBoard, IgnoresABreakBetweenRequestsAndDropsARequestThatContainsOne) {
+TEST_P(OnBoard, IgnoresABreakBetweenRequestsAndDropsARequestThatContainsABreak) {
   constexpr Character kBreak{0, true, 30};
   power_up();
   bench.line.send_one(kBreak);
@@ -252,11 +254,11 @@ TEST_P(OnBoard, DropsARequestThatHasACharacterWithoutAStopBit) {
   bench.line.send_one({'\r', false, 0});  // a character with a wrong stop bit may have been any character
   bench.run_for(milliseconds(100));
   EXPECT_TRUE(bench.line.heard.empty());
-  EXPECT_EQ(bench.ask(""), "") << "the request contains a damaged character, so the module must drop it";
+  EXPECT_EQ(bench.ask(""), "") << "the module must drop a request that contains a damaged character";
   EXPECT_EQ(bench.ask("$01M"), "!019055");
 }
 
-TEST_P(OnBoard, DropsARequestThatLostACharacterToAnOverrun) {
+TEST_P(OnBoard, DropsARequestIfAnOverrunLosesACharacterOfIt) {
   power_up();
   bench.line.send({'~', '0', '1', 'O', 'P', 'U'});
   bench.run_for(milliseconds(8));
@@ -269,7 +271,7 @@ TEST_P(OnBoard, DropsARequestThatLostACharacterToAnOverrun) {
   EXPECT_EQ(bench.ask("$01M"), "!019055");
 }
 
-TEST_P(OnBoard, AcceptsAHostOkThatAnotherOneFollowsWithoutAPause) {
+TEST_P(OnBoard, AcceptsAHostOkIfASecondHostOkFollowsWithoutAPause) {
   const Model& model = *find_model(bench.image.model);
   Settings settings = Settings::factory(model);
   settings.baud_code = 0x0A;  // at 115200 baud a host OK takes 0.35 ms
@@ -431,7 +433,8 @@ class OnBoardForMonths : public OnBoard {};
 
 TEST_P(OnBoardForMonths, WorksAcrossTheWrapOfEvery32BitCount) {
   power_up();
-  Instant shortest = kNever;  // from the end of a command that stores to its reply
+  // The times from the end of a command that stores a setting until the module begins its reply.
+  Instant shortest = kNever;
   Instant longest{0};
   const auto store = [&](const std::string& command) {
     bench.line.drives.clear();

@@ -1,5 +1,6 @@
-// Tests the host watchdog of an image (wire.md section 6): when it expires, and what the outputs do after
-// that, also during commands and stores, and after power cuts.
+// Tests the host watchdog of an image (wire.md section 6): when the host watchdog expires, and which values
+// the outputs have after the expiry. In some tests, the module receives commands or stores settings at the
+// expiry, or a power cut follows the expiry.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -99,7 +100,7 @@ TEST_P(ExpiryOnBoard, IsAtMostOneTickLateIfTheWakeTimerFails) {
 
 /// Sends commands that end at different times before and after the expiry: a command that only drives
 /// outputs, a command that stores a power-on value (in Modbus, it also drives the outputs), and a command
-/// that drives outputs while the command before it is being stored.
+/// that drives outputs while the module stores the setting of the previous command.
 TEST_P(HostWatchdogOnBoard, NoCommandDrivesOutputsAfterTheExpiry) {
   constexpr unsigned kVv = 5;
   constexpr std::uint16_t kCommanded = 0x3C96;
@@ -124,7 +125,7 @@ TEST_P(HostWatchdogOnBoard, NoCommandDrivesOutputsAfterTheExpiry) {
         bench.run_for(microseconds(50));
       }
       if (!second.empty()) {
-        bench.run_for(milliseconds(6));  // the first command is being stored
+        bench.run_for(milliseconds(6));  // the module now stores the setting of the first command
         bench.line.send(second);
       }
       bench.run_until(std::max(bench.timeline.now(), over + kExpiresWithin));
@@ -141,13 +142,13 @@ TEST_P(HostWatchdogOnBoard, NoCommandDrivesOutputsAfterTheExpiry) {
   }
   EXPECT_GT(moments, 2 * too_late);
   std::printf(
-      "%u cases; in %u of them a single command ended or a second command began more than 1 ms after the "
+      "%u cases; in %u cases, a single command ended or a second command began more than 1 ms after the "
       "expiry\n",
       moments, too_late);
 }
 
 // firmware/extensions.md: register 0x0251.
-TEST_P(HostWatchdogOnBoard, ExpiresOnlyAfterTheLastRequestIfEveryRequestFeedsIt) {
+TEST_P(HostWatchdogOnBoard, ExpiresOnlyAfterTheLastRequestIfEveryRequestRestartsIt) {
   constexpr unsigned kVv = 5;
   Settings settings = set_up(*find_model(image().model), protocol());
   settings.fed_by_requests = true;
@@ -194,10 +195,10 @@ TEST_P(HostWatchdogOnBoard, ATimedOutputDoesNotChangeTheOutputsAfterTheExpiry) {
   }
 }
 
-/// wire.md D6. From the expiry on, the outputs have the old safe value. When the command that changes the
-/// safe value has been stored, the outputs take the new safe value. They never take the value of a later
-/// command.
-TEST_P(HostWatchdogOnBoard, ASafeValueThatIsBeingStoredAtTheExpiryIsDrivenWhenItIsStored) {
+/// wire.md D6. If the module is storing a new safe value at the expiry, the outputs first take the old safe
+/// value. When the new safe value is stored, the outputs take the new safe value. After the expiry, the
+/// outputs never take the value of a later command.
+TEST_P(HostWatchdogOnBoard, IfASafeValueIsBeingStoredAtTheExpiryTheOutputsTakeItAfterTheStore) {
   constexpr unsigned kVv = 5;
   constexpr std::uint16_t kCommanded = 0x3C96;
   // `~AA5S` stores the driven value.
@@ -276,12 +277,14 @@ TEST_P(HostWatchdogOnBoard, ASafeValueThatIsBeingStoredAtTheExpiryIsDrivenWhenIt
   EXPECT_GT(stored_before, 0U);
   EXPECT_GT(stored_behind, 0U);
   EXPECT_GT(too_late, 0U);
-  std::printf("a new safe value stored %u times before the expiry, %u times after it; too late %u times\n",
-              stored_before, stored_behind, too_late);
+  std::printf(
+      "the new safe value was stored before the expiry in %u cases and after the expiry in %u cases; the "
+      "command was too late in %u cases\n",
+      stored_before, stored_behind, too_late);
 }
 
-/// The state of the EEPROM when the host watchdog expires: no command is being stored, the module transfers a
-/// command's settings on the EEPROM's bus, or the EEPROM programs them.
+/// The state of the EEPROM when the host watchdog expires: the module stores nothing, the module transfers a
+/// command's settings on the EEPROM's bus, or the EEPROM programs these settings.
 enum class Storing : std::uint8_t { Nothing, OnTheBus, Programming };
 
 TEST_P(HostWatchdogOnBoard, NoCommandedValueReturnsAfterTheExpiryAndAPowerCut) {
@@ -367,7 +370,8 @@ TEST_P(HostWatchdogOnBoard, NoCommandedValueReturnsAfterTheExpiryAndAPowerCut) {
   EXPECT_LT(unstored, cuts / 2);
   EXPECT_GT(done, 0U);
   std::printf(
-      "%u power cuts, %u of them before the timeout was stored; %u commands in progress were completed\n",
+      "%u power cuts; %u power cuts came before the timeout status was stored; the settings of %u commands "
+      "were stored\n",
       cuts, unstored, done);
 }
 

@@ -1,12 +1,12 @@
-// Runs the examples in each section of the documents that has a `text` block. A `sh` block runs in one
-// terminal if it begins with a command that starts a simulator that runs until it is stopped. All other `sh`
-// blocks and all `python` blocks run in a second terminal. The `text` blocks are the expected output of the
-// second terminal. A `json` block is the content of the file `bus.json`. Apart from this file, the working
-// directory at first contains only links to `boards` and `build`, because the examples use the programs and
-// images there. For the line `sim/run`, the test runs only the last command of sim/run. The script itself
-// also installs packages and builds the simulator; tests/first-command runs the script. Another test in this
-// file checks that the tables of the documents list the options, control commands and faults in the output of
-// `ex9000-sim --help`.
+// If a section of a document has a `text` block, the test runs the examples of this section. If a `sh` block
+// begins with a command that starts a simulator, this block runs in the first terminal. The simulator runs
+// until the test stops it. All other `sh` blocks and all `python` blocks run in a second terminal. The `text`
+// blocks are the expected output of the second terminal. A `json` block is the content of the file
+// `bus.json`. Apart from this file, the working directory at first contains only links to `boards` and
+// `build`, because the examples use the programs and images there. For the line `sim/run`, the test runs only
+// the last command of sim/run. The script itself also installs packages and builds the simulator;
+// tests/first-command runs the script. Another test in this file checks that the tables of the documents list
+// each option, control command and fault that `ex9000-sim --help` lists.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -85,7 +85,8 @@ std::vector<Section> sections_of(const std::string& document) {
   return result;
 }
 
-/// Replaces the TCP port 5020 of the documents, which may be in use on this machine.
+/// Replaces the TCP port 5020 of the documents with `port`, because another program on this machine may use
+/// port 5020.
 void replace_port(std::string& text, const std::string& port) {
   const std::string written = "5020";
   for (auto at = text.find(written); at != std::string::npos; at = text.find(written, at + port.size())) {
@@ -93,8 +94,8 @@ void replace_port(std::string& text, const std::string& port) {
   }
 }
 
-/// Increases the timeouts of the documents, because a busy machine can take longer: the time for which socat
-/// waits after each request, and the time for which mbpoll waits for a reply.
+/// Sets two timeouts of the examples to 10 s: the time for which socat waits after a request, and the time
+/// for which mbpoll waits for a reply. A busy machine can require more time than the documents state.
 void extend_timeouts(std::string& text) {
   text = std::regex_replace(text, std::regex("socat -t [0-9.]+ "), "socat -t 10 ");
   text = std::regex_replace(text, std::regex("mbpoll -"), "mbpoll -o 10 -");
@@ -108,7 +109,7 @@ bool requires_pymodbus(const Section& section) {
   });
 }
 
-/// Returns whether the block begins with a command that starts a simulator that runs until it is stopped.
+/// Returns whether the block begins with an `ex9000-sim` command that does not end by itself.
 /// `ex9000-sim describe` and `ex9000-sim play` end by themselves.
 bool starts_the_simulator(const Block& block) {
   const auto begins_with = [&](const char* text) { return block.text.rfind(text, 0) == 0; };
@@ -232,8 +233,8 @@ std::set<std::string> rows() {
   return rows;
 }
 
-/// Returns the first column of a table in the help, `width` characters wide. The table starts after the line
-/// that ends with `heading` and ends at the next blank line.
+/// Returns the cells in the first column of a table in the help. The column is `width` characters wide. The
+/// table starts after the line that ends with `heading`, and it ends at the next blank line.
 std::vector<std::string> column_of(const std::string& help, const std::string& heading, std::size_t width) {
   std::vector<std::string> cells;
   std::istringstream lines(help.substr(help.find(heading) + heading.size()));

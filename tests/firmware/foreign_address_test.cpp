@@ -80,8 +80,8 @@ void every_function_to_every_other_address(const char* model) {
       if (address == kOwnAddress) {
         continue;
       }
-      // For function 05, this data means coil 0000 on. With many other functions, the request is invalid. The
-      // module must ignore valid and invalid requests.
+      // With function 05, this data switches coil 0x0000 on. With many other functions, the request is
+      // invalid. The module must ignore both valid and invalid requests for other addresses.
       Bytes frame{static_cast<std::uint8_t>(address), static_cast<std::uint8_t>(function), 0, 0, 0xFF, 0};
       if (function == 0x0F) {
         frame = {frame[0], frame[1], 0, 0, 0, 8, 1, 0xFF};

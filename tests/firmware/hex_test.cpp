@@ -32,7 +32,7 @@ TEST(Hex, ALowerCaseLetterIsNotADigit) {
   }
 }
 
-TEST(Hex, TwoDigitsGiveAByteHighDigitFirst) {
+TEST(Hex, TwoDigitsGiveAByteAndTheFirstIsTheHighDigit) {
   for (unsigned byte = 0; byte < 256; ++byte) {
     EXPECT_EQ(hex_byte(digit(byte / 16), digit(byte % 16)), static_cast<int>(byte));
   }

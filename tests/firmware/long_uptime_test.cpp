@@ -94,12 +94,12 @@ TEST(LongUptime, DiagnosticCountersKeepCounting) {
   const auto high = static_cast<std::uint8_t>(kAcrossTheWrap >> 8U);
   EXPECT_EQ(bench.ask({0x01, 0x08, 0x00, 0x0C, 0x00, 0x00}),
             CoreBench::with_crc({0x01, 0x08, 0x00, 0x0C, high, low}));
-  // The two diagnostic requests are bus messages too.
+  // The two requests that read a counter are bus messages too.
   EXPECT_EQ(bench.ask({0x01, 0x08, 0x00, 0x0B, 0x00, 0x00}),
             CoreBench::with_crc({0x01, 0x08, 0x00, 0x0B, high, static_cast<std::uint8_t>(low + 2)}));
 }
 
-TEST(LongUptime, TheWatchdogIsFedWithEveryTickAndNeverWithoutOne) {
+TEST(LongUptime, TheModuleWatchdogIsFedOnceForEachTick) {
   ModuleWatchdog watchdog;
   watchdog.main_loop_alive();
   for (unsigned tick = 0; tick < kAcrossTheWrap; ++tick) {

@@ -87,8 +87,8 @@ class ModuleBench {
   [[nodiscard]] std::string heard_text() const { return {heard_.begin(), heard_.end()}; }
   void forget_heard() { heard_.clear(); }
 
-  /// Appends every change of the outputs to `changes` until the next call. `changes` must exist until the
-  /// next call. If there is no next call, it must exist as long as the outputs can change.
+  /// Appends every change of the outputs to `changes` until the next call of `watch_outputs`. `changes` must
+  /// exist until that call. If there is no such call, `changes` must exist as long as the outputs can change.
   void watch_outputs(std::vector<OutputChange>& changes) {
     module().output_pins().on_change([this, &changes](std::uint16_t channels) {
       changes.push_back({now(), channels});

@@ -21,7 +21,7 @@ using std::chrono::microseconds;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-/// A timed output, a filter time and the timeout of the host watchdog may end at most this time too late
+/// A timed output, a filter time and the timeout of the host watchdog may end late by at most this time
 /// (firmware/extensions.md; wire.md section 6).
 constexpr milliseconds kLatest{1};
 
@@ -29,7 +29,7 @@ std::uint16_t outputs_of(ModuleBench& bench) { return bench.module().outputs(); 
 
 // --- timed outputs ---
 
-TEST(TimedOutput, IsSwitchedOffAfterItsTimeNeverEarlyAndAtMost1MsLate) {
+TEST(TimedOutput, IsSwitchedOffAtTheEndOfItsTimeOrAtMost1MsLater) {
   for (const unsigned units : {1U, 2U, 7U, 600U}) {
     ModuleBench bench("EX9043D,baud=115200");
     std::vector<OutputChange> changes;
@@ -62,7 +62,7 @@ TEST(TimedOutput, IsSwitchedOffInTimeWhileSettingsAreStoredOrAReplyIsSent) {
 TEST(TimedOutput, EndsWithTheExpiryOfTheHostWatchdogAndIsNotSwitchedOffLater) {
   ModuleBench bench("EX9043D,baud=115200");
   ASSERT_EQ(bench.ask("@010001"), ">");
-  ASSERT_EQ(bench.ask("~015S"), "!01");  // the safe value has output 0 on
+  ASSERT_EQ(bench.ask("~015S"), "!01");  // in the safe value, output 0 is on
   ASSERT_EQ(bench.ask("~01X0280000A"), "!01");
   ASSERT_EQ(bench.ask("~013105"), "!01");
   bench.run(milliseconds(500));
@@ -92,7 +92,7 @@ TEST(TimedOutput, StoresNothing) {
 
 // --- filters ---
 
-TEST(InputFilter, ALevelCountsAfterItsTimeNeverEarlyAndAtMost1MsLate) {
+TEST(InputFilter, ALevelCountsAtTheEndOfTheFilterTimeOrAtMost1MsLater) {
   for (const unsigned time : {1U, 30U, 2000U}) {
     ModuleBench bench("EX9052D,baud=115200");
     ASSERT_EQ(bench.ask("~01X0243" + hex_word_text(time)), "!01");
@@ -105,7 +105,7 @@ TEST(InputFilter, ALevelCountsAfterItsTimeNeverEarlyAndAtMost1MsLate) {
   }
 }
 
-TEST(InputFilter, TheLevelAtResetIsTheBaselineWithoutFilterTime) {
+TEST(InputFilter, TheLevelAtResetImmediatelyBecomesTheBaseline) {
   ModuleBench bench("EX9052D,baud=115200");
   ASSERT_EQ(bench.ask("~01X024307D0"), "!01");
   ASSERT_EQ(bench.ask("~01X025000F0"), "!01");
@@ -118,7 +118,7 @@ TEST(InputFilter, TheLevelAtResetIsTheBaselineWithoutFilterTime) {
 }
 
 // The module knows its settings, including the filter times, only some milliseconds after the reset.
-TEST(InputFilter, ALevelThatChangesWhileTheModuleStartsCountsAfterItsTime) {
+TEST(InputFilter, IfALevelChangesWhileTheModuleStartsItCountsAfterTheFilterTime) {
   constexpr milliseconds kFilter{30};
   for (int offset = 1; offset < 40; ++offset) {
     ModuleBench bench("EX9052D,baud=115200");
@@ -137,7 +137,7 @@ TEST(InputFilter, ALevelThatChangesWhileTheModuleStartsCountsAfterItsTime) {
 }
 
 // The settings are known, but the module does not listen yet, because INIT* bounces.
-TEST(InputFilter, APulseBeforeTheModuleListensCounts) {
+TEST(InputFilter, APulseCountsEvenIfItEndsBeforeTheModuleListens) {
   ModuleBench bench("EX9052D,baud=115200");
   ASSERT_EQ(bench.ask("~01X02430001"), "!01");
   bench.module().power(false);
@@ -160,7 +160,7 @@ TEST(InputFilter, APulseBeforeTheModuleListensCounts) {
 
 // --- requests that restart the host watchdog ---
 
-TEST(FedByRequests, ARequestRestartsTheHostWatchdogAtItsEnd) {
+TEST(FedByRequests, TheEndOfARequestRestartsTheHostWatchdog) {
   ModuleBench bench("EX9043D,baud=115200");
   ASSERT_EQ(bench.ask("@010001"), ">");
   ASSERT_EQ(bench.ask("~01X02510001"), "!01");
@@ -175,7 +175,8 @@ TEST(FedByRequests, ARequestRestartsTheHostWatchdogAtItsEnd) {
   EXPECT_LE(changes[0].at - fed, milliseconds(500) + kLatest);
 }
 
-// The second request ends less than a millisecond before or after the time at which the watchdog expires.
+// The second request ends less than a millisecond before or after the time at which the watchdog expires if
+// this request does not restart it.
 TEST(FedByRequests, OnlyARequestBeforeTheExpiryRestartsTheHostWatchdog) {
   const std::string request = "$01M\r";
   const VirtualTime takes = VirtualTime(10'000'000'000 / 115200) * static_cast<int>(request.size());
@@ -210,9 +211,9 @@ TEST(FedByRequests, AModbusRequestRestartsTheHostWatchdogAtTheEndOfItsSilence) {
   }
 }
 
-// --- reset reason and statistics ---
+// --- reset reason, uptime and timeout count ---
 
-TEST(ResetReasons, DistinguishPowerOnResetPinAndModuleWatchdog) {
+TEST(ResetReasons, DifferForPowerOnForTheResetPinAndForTheModuleWatchdog) {
   ModuleBench bench("EX9043D,baud=115200");
   EXPECT_EQ(bench.ask("~01X0301"), "!010001");
   bench.module().reset();
@@ -238,7 +239,7 @@ TEST(Uptime, CountsSecondsBeyondTheRangeOfTheClock) {
   EXPECT_EQ(bench.ask("~01X0302"), "!0100000000");
 }
 
-TEST(TimeoutCount, CountsEveryExpiryUntilItIsCleared) {
+TEST(TimeoutCount, CountsEveryExpiryAndIsClearedByAWriteOf0) {
   ModuleBench bench("EX9043D,baud=115200");
   for (int i = 0; i < 3; ++i) {
     ASSERT_EQ(bench.ask("~013101"), "!01");
@@ -249,7 +250,7 @@ TEST(TimeoutCount, CountsEveryExpiryUntilItIsCleared) {
   EXPECT_EQ(bench.ask("~01X0304"), "!010000");
 }
 
-// --- statistics ---
+// --- origin of the settings, and counts ---
 
 void restart_with(ModuleBench& bench, const std::vector<std::uint8_t>& memory) {
   bench.module().power(false);
@@ -286,7 +287,7 @@ TEST(SettingsSourceRegister, ReturnsTheSourceOfTheSettings) {
   }
 }
 
-/// Returns a memory with two copies of layout 2.
+/// Returns a memory with two copies of the factory settings, both in layout 2.
 std::vector<std::uint8_t> memory_of_earlier_firmware(const Model& model) {
   std::vector<std::uint8_t> memory(kStoredMemory, 0xFF);
   put_layout_2(model, Settings::factory(model), 7, memory.data(), kPlaces[2].address);
@@ -305,7 +306,7 @@ TEST(StoreCount, ReadsZeroAfterAnUpdateUntilTheFirstStore) {
 
 // The power failed during the first store after the update: the new copy is complete, and the old copies are
 // still valid.
-TEST(StoreCount, CountsTheStoreThatFinishesAnUpdateAtStart) {
+TEST(StoreCount, CountsTheRepetitionOfTheFirstStoreAfterAnUpdate) {
   const Model& model = *find_model("EX9043D");
   std::vector<std::uint8_t> memory = memory_of_earlier_firmware(model);
   Settings settings = Settings::factory(model);
@@ -337,7 +338,7 @@ std::vector<std::uint8_t> read_word(std::uint8_t high, std::uint8_t low) {
   return {0x01, 0x03, high, low, 0, 1};
 }
 
-TEST(LineTallyRegisters, CountRequestsLostDuringAStoreUntilTheRegistersAreCleared) {
+TEST(LineTallyRegisters, CountRequestsLostDuringAStoreAndAreClearedByFunction08) {
   ModuleBench bench("EX9043D-M,baud=115200");
   bench.recorder().clear();
   bench.send(with_crc({0x01, 0x06, 0x01, 0xE8, 0, 50}));

@@ -152,7 +152,7 @@ TEST(Storing, ATimeoutStatusIsClearedOnceAndNotAgain) {
   }
 }
 
-TEST(Storing, ReadingRefusedAndOutputCommandsWriteNothing) {
+TEST(Storing, CommandsThatReadOrDriveOutputsAndRefusedCommandsWriteNothing) {
   ModuleBench bench("EX9055D");
   for (const char* command :
        {"$012", "$016", "@01", "#010", "~010", "~012", "~014P", "$01F", "$01M", "$015", "~01O", "~013000",
@@ -173,7 +173,7 @@ TEST(Storing, AnUnchangedSafeBitIsNotStoredButStillDrivesItsOutput) {
   EXPECT_EQ(bench.module().memory().writes(), writes);
 }
 
-TEST(Storing, APowerFailureNeverLeavesACommandHalfDoneOrLosesAnAcknowledgedOne) {
+TEST(Storing, APowerFailureNeitherLeavesACommandHalfDoneNorLosesAnAcknowledgedCommand) {
   const std::vector<std::string> commands{"%0133400680", "~01OABCDEF", "~013164", "~015P", "~015S"};
   int cuts = 0;
   for (const std::string& command : commands) {
@@ -210,7 +210,7 @@ TEST(Storing, APowerFailureNeverLeavesACommandHalfDoneOrLosesAnAcknowledgedOne) 
   std::printf("power cuts of whole modules: %d\n", cuts);
 }
 
-TEST(Storing, UnreadableSettingsGiveFactorySettingsALedPatternAndNoWrite) {
+TEST(Storing, UnreadableSettingsCauseFactorySettingsAndALedPatternButNoWrite) {
   ModuleBench bench("EX9042D,name=OLD");
   for (const bool no_answer : {false, true}) {
     bench.module().power(false);
@@ -249,7 +249,7 @@ TEST(Storing, AStoreIsPermanentEvenIfTheMemoryDidNotAnswerAtReset) {
   }
 }
 
-TEST(Storing, ARefusedStoreIsNotInForceAfterTheNextResetEvenIfItWasWritten) {
+TEST(Storing, RefusedSettingsAreNotInForceAfterTheNextResetEvenIfTheyWereWritten) {
   ModuleBench bench("EX9042D,name=OLD");
   bench.send("~01ONEW\r");
   bench.line().bus().run_until(bench.line().bus().next());       // the turn-around is over
@@ -266,8 +266,8 @@ TEST(Storing, ARefusedStoreIsNotInForceAfterTheNextResetEvenIfItWasWritten) {
 }
 
 TEST(Storing, AStoringCommandIsRefusedWhileAnEarlierTimeoutCannotBeStored) {
-  // The timeout has disabled the watchdog, but the module has not stored this change yet. The module must
-  // refuse the command that disables the watchdog while the memory cannot store the change.
+  // The timeout has disabled the watchdog, but the module has not stored this change yet. As long as the
+  // memory cannot store the change, the module must refuse the command that disables the watchdog.
   ModuleBench bench("EX9042D");
   ASSERT_EQ(bench.ask("~013103"), "!01");
   bench.module().memory().fail(true);
@@ -280,7 +280,7 @@ TEST(Storing, AStoringCommandIsRefusedWhileAnEarlierTimeoutCannotBeStored) {
   EXPECT_EQ(bench.ask("~012"), "!01003");
 }
 
-TEST(Storing, AnotherModelsSettingsAreNotUsed) {
+TEST(Storing, SettingsOfAnotherModelAreNotUsed) {
   ModuleBench bench("EX9043D");
   ModuleBench other("EX9042D");
   ASSERT_EQ(other.ask("@011FFF"), ">");

@@ -9,8 +9,8 @@
 
 namespace ex9000::sim {
 
-/// No function blocks. Only one thread at a time uses a port: the thread that runs the io_context of the
-/// line, or the main thread during a pause (see LineThreads).
+/// None of the functions blocks. Only one thread at a time uses a port: the thread that runs the io_context
+/// of the line, or the main thread during a pause (see LineThreads).
 class Port {
  public:
   /// Positions of bytes, in ascending order.

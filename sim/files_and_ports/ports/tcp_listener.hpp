@@ -11,7 +11,7 @@
 
 namespace ex9000::sim {
 
-/// No function blocks.
+/// None of the functions blocks.
 class TcpListener {
  public:
   /// Receives the socket of each client. The socket does not block, sends without delay (TCP_NODELAY), and

@@ -12,7 +12,7 @@ namespace ex9000::sim {
 
 /// A service of an io_context, so that all pseudo-terminals of the io_context share one inotify instance: by
 /// default, a user may have only 128 inotify instances on Debian. Call boost::asio::use_service to get the
-/// service. No function blocks.
+/// service. None of the functions blocks.
 class Visits final : public boost::asio::io_context::service {
  public:
   static boost::asio::io_context::id id;

@@ -16,7 +16,7 @@ namespace ex9000::sim {
 
 /// Takes the requests from the bytes of a client. Passes each request to the line only after the answer to
 /// the previous one, so that the clients of a line take turns. Replies have the order of the requests. The
-/// destructor drops requests that have not been sent. No function blocks.
+/// destructor drops requests that have not been sent. None of the functions blocks.
 class MbapSession {
  public:
   /// Sends a reply to the client. Returns false if the client accepts no more at present.

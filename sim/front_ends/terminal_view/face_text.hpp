@@ -26,10 +26,11 @@ inline constexpr Lamps kPlainLamps{"*", "-"};
 std::vector<std::string> face_text(std::size_t number, const SimulatedModule& module, VirtualTime now,
                                    const Lamps& lamps);
 
-/// Returns a short text for each of these parts that differs between `before` and `now`, or for all of these
-/// parts if `before` is null: the supply, INIT*, the settings in force, the LED, the outputs, the power-on
-/// and safe values, the inputs, the counters, the latches, and the host watchdog without its remaining time.
-/// Parts that do not exist in `now` have no text: the outputs of a model without outputs, for example.
+/// Returns a short text for each part that differs between `before` and `now`. If `before` is null, each part
+/// counts as different. The parts are the supply, INIT*, the settings in force, the LED, the outputs, the
+/// power-on and safe values, the inputs, the counters, the latches, and the host watchdog without its
+/// remaining time. A part that does not exist in `now`, for example the outputs of a model without outputs,
+/// has no text.
 std::vector<std::string> changes_text(const Model& model, const Face* before, const Face& now);
 
 }  // namespace ex9000::sim

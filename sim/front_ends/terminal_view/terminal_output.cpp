@@ -21,8 +21,8 @@ std::string environment(const char* name) {
   return value == nullptr ? "" : value;
 }
 
-/// Returns the value of the first of these variables that is not empty, because this variable determines the
-/// character encoding (POSIX.1-2017, XBD 8.2). Returns an empty string if all are empty.
+/// Returns the value of the first of LC_ALL, LC_CTYPE and LANG that is not empty. This variable determines
+/// the character encoding (POSIX.1-2017, XBD 8.2). Returns an empty string if all three are empty.
 std::string locale() {
   for (const char* variable : {"LC_ALL", "LC_CTYPE", "LANG"}) {
     if (std::string value = environment(variable); !value.empty()) {

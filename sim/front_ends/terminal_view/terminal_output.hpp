@@ -18,7 +18,7 @@ bool names_utf8(const std::string& locale);
 /// shell.
 class TerminalOutput final : public Terminal {
  public:
-  /// Opens the terminal of `descriptor`, which remains open.
+  /// Opens the terminal of `descriptor`. Never closes `descriptor`.
   explicit TerminalOutput(
       int descriptor, GivesUp gives_up = [] { return false; });
   /// Writes as much output as the terminal accepts without blocking, and discards the rest.

@@ -59,8 +59,8 @@ void Watch::print(const std::string& lines) {
   put(painted_.empty() ? lines : back_over(painted_.size()) + lines + "\n" + joined(painted_, "\n"));
 }
 
-/// Passes all lines to the terminal in one call, so that the terminal shows no partial output between two
-/// calls. Without a terminal, passes them to `print_`.
+/// Passes all lines to the terminal in one call, because the terminal could show incomplete output between
+/// two calls. Without a terminal, passes the lines to `print_`.
 void Watch::put(const std::string& lines) {
   if (terminal_ == nullptr) {
     print_(lines);
@@ -69,8 +69,8 @@ void Watch::put(const std::string& lines) {
   }
 }
 
-/// Returns the lines of as many modules as fit on the screen. Keeps one row for the cursor. If not all
-/// modules fit, adds a line with the number of hidden modules.
+/// Returns the lines of as many modules as fit on the screen. Keeps one row free for the cursor. If not
+/// all modules fit, adds a line with the number of hidden modules.
 std::vector<std::string> Watch::painting() const {
   const std::vector<std::vector<std::string>> faces = all_faces();
   std::size_t rows = 0;

@@ -26,7 +26,7 @@ class Watch {
   /// Adds a line; call this before `look`. `line` must outlive this object, and `present` returns the time of
   /// the line. An empty name is not shown.
   void add_line(std::string name, const Line& line, std::function<VirtualTime()> present);
-  /// Shows the changes since the last look. Does nothing while the terminal has not accepted all earlier
+  /// Shows the changes since the last call. Does nothing while the terminal has not accepted all earlier
   /// output.
   void look();
   /// Prints lines of other output, above the faces if faces are drawn.

@@ -15,7 +15,7 @@ UpperPdu dissected_by(const Frame& frame) {
   if (was_dcon(frame.bytes)) {
     return {"data-text-lines", "DCON"};
   }
-  // The column shows the protocol even if the dissector cannot decode the frame.
+  // Wireshark's protocol column shows `Modbus RTU` even if the dissector cannot decode the frame.
   return {frame.bytes.size() < kShortestThatMbrtuTakes ? "data" : "mbrtu", "Modbus RTU"};
 }
 

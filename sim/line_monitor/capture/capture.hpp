@@ -17,10 +17,11 @@ namespace ex9000::sim {
 /// distinguish requests from replies: set mbrtu.tcp.port to this value.
 constexpr std::uint16_t kCapturedModulesPort = 9000;
 
-/// Each line becomes an interface, and each frame becomes a packet, outbound if the master sends it. A frame
-/// that looks like a DCON frame, even a damaged one, is marked as text. All other frames are marked as Modbus
-/// RTU or, if they have fewer than five bytes, as data. The errors of a frame become the comment of its
-/// packet. A frame that a fault puts on a line is not marked as request or reply.
+/// Each line becomes an interface, and each frame becomes a packet. The packet is outbound if the master
+/// sends the frame, otherwise inbound. A frame that looks like a DCON frame, even a damaged one, is marked as
+/// text. All other frames are marked as Modbus RTU or, if they have fewer than five bytes, as data. The
+/// errors of a frame become the comment of its packet. A frame that a fault puts on a line is not marked as
+/// request or reply.
 class Capture {
  public:
   /// Opens the file; see CaptureFile. All functions may throw the exceptions of CaptureFile.

@@ -69,7 +69,8 @@ bool checksum_is_right(const std::string& text) {
 /// turn-around of a line can produce 00, and some terminals send LF after CR.
 bool is_skipped(std::uint8_t byte) { return byte == 0x00 || byte == '\n'; }
 
-/// Returns the position of the delimiter if only bytes of `is_skipped` precede it; otherwise the beginning.
+/// Returns the position of the first byte that is not 00 or LF if this byte is a delimiter; otherwise the
+/// beginning of `bytes`.
 FrameBytes::const_iterator dcon_begin(const FrameBytes& bytes) {
   const auto first = std::find_if_not(bytes.begin(), bytes.end(), is_skipped);
   const bool delimits =
@@ -113,7 +114,8 @@ bool lies_in(const Row& row, modbus::Functions listed, unsigned address) {
          });
 }
 
-/// Returns the meaning of the address in a request without its CRC. Its function is at most 10 (hex).
+/// Returns the meaning of the address in `request`. `request` must not include the CRC, and its function code
+/// must be at most 10 (hex).
 std::string row_meaning(Bytes request) {
   if (modbus::is_host_ok(request)) {
     return ", host OK";

@@ -15,7 +15,8 @@ enum class Speaker { Master, Module };
 /// then printable characters, then optionally CR. Bytes 00 and LF may precede a delimiter.
 bool looks_like_dcon(const FrameBytes& bytes);
 /// Returns whether the bytes have the form of a DCON frame or of a damaged DCON frame. A damaged DCON frame
-/// begins with a delimiter or the first character of a reply, ends with CR, and has no correct CRC.
+/// begins with a delimiter or the first character of a reply, ends with CR, and is not a Modbus frame with a
+/// correct CRC.
 bool was_dcon(const FrameBytes& bytes);
 
 /// Returns the bytes as text for people. If the bytes have the form of a DCON frame, the text contains their

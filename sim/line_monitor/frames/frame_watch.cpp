@@ -11,8 +11,8 @@ namespace {
 
 constexpr std::size_t kMaster = 0;
 
-// The longest pauses inside a frame: between the pieces of a master's write at a high rate, and between two
-// key presses of a person.
+// The longest pauses inside a frame. The first is for a master that writes a frame in pieces; at low rates,
+// the time of four characters is longer and applies instead. The second is for a person who types a frame.
 constexpr VirtualTime kLongestPauseInWrite = std::chrono::milliseconds(5);
 constexpr VirtualTime kLongestPauseInTyping = std::chrono::seconds(5);
 

@@ -22,12 +22,12 @@ struct Frame {
     LineFormat format = LineFormat::k8N1;
 
     /// Returns the byte that receivers in the sender's mode read; nullopt if the start bit is lost, because
-    /// receivers then do not detect the byte.
+    /// receivers then do not detect the start of the byte.
     [[nodiscard]] std::optional<std::uint8_t> byte() const {
       constexpr Levels kStartBit = 1;
       return (arrives & kStartBit) == 0 ? std::optional(byte_of(arrives)) : std::nullopt;
     }
-    /// Returns the status that receivers in the sender's mode report if they detect the byte.
+    /// Returns the status that receivers in the sender's mode report if the start bit is not lost.
     [[nodiscard]] ByteStatus status() const { return status_of(arrives, format); }
   };
 
@@ -71,7 +71,7 @@ class FrameWatch final : public BusObserver {
   [[nodiscard]] VirtualTime next() const;
   /// Passes on the frames that are due at `now`.
   void run(VirtualTime now);
-  /// Passes on all unfinished frames at the end of the run.
+  /// Passes on all unfinished frames. Call this when no more bytes follow.
   void finish() { run(kNever); }
 
   // --- BusObserver ---

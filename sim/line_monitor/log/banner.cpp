@@ -35,7 +35,8 @@ const FormatOptions& options_of(LineFormat format) {
   return kInTheOrderOfLineFormat[static_cast<std::size_t>(format)];
 }
 
-/// Returns commands for mbpoll, which counts addresses from 1. `options` are those for `port`.
+/// Returns commands for mbpoll, which counts coils, inputs and registers from 1. `port` is the path of a
+/// pseudo-terminal or a host, and `options` are mbpoll's options for this connection.
 std::string mbpoll(const ModuleSummary& module, const std::string& options, const std::string& port) {
   const std::string common = "    mbpoll " + options + " -a " + std::to_string(module.address);
   const auto read = [&](const char* type, unsigned count, const char* what) {

@@ -17,7 +17,7 @@ struct ModuleSummary {
   std::uint8_t address = 0;
   bool speaks_ascii = false;
   hal::SerialMode mode;
-  std::string remark;  ///< about its settings; empty: none
+  std::string remark;  ///< about the module's settings; empty: none
 };
 
 struct LineSummary {

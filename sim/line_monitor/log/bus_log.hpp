@@ -1,4 +1,4 @@
-// The log of a line: one line of text for each frame and for each note.
+// The log of an RS-485 line. It contains one entry, a line of text, for each frame and for each note.
 #pragma once
 
 #include <functional>
@@ -40,19 +40,20 @@ class BusLog {
   virtual void note(VirtualTime now, const std::string& text) = 0;
 };
 
-/// Returns the log for people. The line of a frame contains its time, direction, sender, bytes, errors and
-/// meaning.
+/// Returns the log for people. The entry of a frame contains the time, direction, sender and bytes of the
+/// frame, and its errors and its meaning if they are known.
 std::unique_ptr<BusLog> text_log(StationNames names, BusLog::Print print);
 
-/// Returns the log for programs: one JSON object (RFC 8259) per line. Members of the object of a frame:
-///   time      start of its first start bit, in seconds of the line's time
+/// Returns the log for programs: each entry is one line with one JSON object (RFC 8259). Members of
+/// the object of a frame:
+///   time      line time in seconds at the start of the first start bit
 ///   line      name of the line
-///   from      name of the station that sent it, or `unknown sender`
+///   from      name of the station that sent the frame, or `unknown sender`
 ///   bytes     in hex, without blanks
 ///   text      the bytes as text; present if they have the form of a DCON frame
 ///   meaning   see `meaning`; present if it is known, the station has a name, and there was no collision
 ///   error     see `errors`, but only `line_error` if the station has no name; present if there is an error
-///   collided  whether a byte collided, see BusObserver::byte
+///   collided  whether at least one byte collided, see BusObserver::byte
 /// Members of the object of a note: time, line, note.
 std::unique_ptr<BusLog> json_log(std::string line, StationNames names, BusLog::Print print);
 

@@ -1,4 +1,4 @@
-// The state of a module that viewers show: its LEDs, its switches, and its internal state.
+// The part of a module's state that viewers show: LEDs, switches, and internal state.
 #pragma once
 
 #include <array>
@@ -35,7 +35,7 @@ struct Plate {
   Protocol protocol = Protocol::Ascii;
   bool checksum = false;
   Led led = Led::Off;
-  std::uint16_t outputs = 0;  ///< driven outputs; bit n is channel n
+  std::uint16_t outputs = 0;  ///< outputs that are on; bit n is channel n
   std::uint16_t inputs = 0;   ///< levels at the terminals; bit n is channel n
   /// The remaining time of each timed output, in units of 0.1 s, rounded up; 0: the timer does not run.
   std::array<std::uint16_t, kMaxOutputs> timers{};
@@ -56,15 +56,16 @@ struct InputRecords {
 /// The state of the host watchdog, and the reset status; valid only while the module listens.
 struct HostWatchdogState {
   bool enabled = false;
-  bool timed_out = false;              ///< the timeout status
-  std::uint8_t timeout = 0;            ///< in units of 0.1 s
-  std::optional<VirtualTime> expires;  ///< line time of the expiry if not restarted; nullopt: not running
-  bool reset_status = false;           ///< the reset status that `$AA5` would report
+  bool timed_out = false;    ///< the timeout status
+  std::uint8_t timeout = 0;  ///< in units of 0.1 s
+  /// Line time at which the host watchdog expires if no request restarts it; nullopt: it does not run.
+  std::optional<VirtualTime> expires;
+  bool reset_status = false;  ///< the reset status that `$AA5` would report
 
   friend bool operator==(const HostWatchdogState& a, const HostWatchdogState& b);
 };
 
-/// The content of the memory, whether the module is powered or not.
+/// The content of the memory. It is also valid while the module has no power.
 struct Stored {
   struct Copy {
     std::vector<std::uint8_t> bytes;        ///< the whole copy; if it is invalid, the first page of its place
@@ -75,13 +76,13 @@ struct Stored {
 
   std::vector<Copy> copies;            ///< in the order of kPlaces
   std::optional<std::size_t> current;  ///< index of the copy that a reset would load; nullopt: none is valid
-  bool blank = false;                  ///< nothing has been stored: a reset would load factory settings
-  Settings settings;                   ///< the settings in `current`, or the factory settings
+  bool blank = false;                  ///< all copies are blank, so a reset would load factory settings
+  Settings settings;                   ///< settings in copy `current`; factory settings if no copy is valid
 
   friend bool operator==(const Stored& a, const Stored& b);
 };
 
-/// The state of a module that viewers show, without the model, because the model does not change.
+/// The part of a module's state that viewers show. The model is not included, because it does not change.
 struct Face {
   Plate plate;
   InputRecords gathered;
@@ -89,8 +90,8 @@ struct Face {
   Stored stored;
 };
 
-/// Reads the state without changing the line or the module. `now` is the present time of the line, at least
-/// the time of the line's clock.
+/// Reads the state without changing the line or the module. `now` is the present line time. It may be later
+/// than the time of the line's clock, but not earlier.
 Face face_of(const SimulatedModule& module, VirtualTime now);
 
 /// Returns `off`, `on`, `flashing`, or `flashing: settings unreadable`.

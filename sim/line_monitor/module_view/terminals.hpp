@@ -17,7 +17,8 @@ inline std::string output_terminal(const Model& model, unsigned channel) {
 /// Returns the label of input `channel`, which counts from 0.
 inline std::string input_terminal(unsigned channel) { return "DI" + std::to_string(channel); }
 
-/// Returns whether the model has a terminal for INIT*. The other models have a switch at the rear.
+/// Returns whether the model has a terminal for INIT*. Models without this terminal have a switch at the
+/// rear.
 inline bool has_init_terminal(const Model& model) { return model.init_input == InitInput::Terminal; }
 
 }  // namespace ex9000::sim

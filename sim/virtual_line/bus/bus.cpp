@@ -31,8 +31,9 @@ Bus::Bus(VirtualClock& clock, std::uint32_t times_faster) : clock_(clock), times
 
 Bus::~Bus() = default;
 
-/// Returns the bit rate in virtual time: the nominal rate times `times_faster`, at most 500 Mbit/s. A sampler
-/// makes progress only if half a bit lasts at least 1 ns. No module reaches this limit.
+/// Returns the bit rate in virtual time: `baud` multiplied by `times_faster_`, at most 500 Mbit/s. At
+/// this limit half a bit lasts 1 ns; a sampler makes no progress if half a bit is shorter. No module reaches
+/// this limit.
 std::uint32_t Bus::bit_rate(std::uint32_t baud) const {
   constexpr std::uint64_t kFastest = 500'000'000;
   return static_cast<std::uint32_t>(std::min(std::uint64_t{baud} * times_faster_, kFastest));

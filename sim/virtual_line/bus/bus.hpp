@@ -61,9 +61,9 @@ class BusObserver {
   /// correct levels of the byte: the byte has wrong parity, or the disturbance has changed it.
   virtual void changed(std::size_t /*station*/, Levels /*arrives*/) {}
   /// Called at the end of the first stop bit of a byte that began at `start` and whose last stop bit ends at
-  /// `end`. A byte is not reported if the driver of `station` was disabled before its first stop bit was
-  /// over. `byte` is the byte that was sent. `collided`: at least two drivers were enabled, or another byte
-  /// was on the wires, during this byte.
+  /// `end`. Not called if the driver of `station` was disabled before the end of this stop bit. `byte` is the
+  /// byte that was sent. `collided`: during this byte, at least two drivers were enabled, or another byte was
+  /// on the wires.
   virtual void byte(std::size_t station, std::uint8_t byte, SerialMode mode, bool collided, VirtualTime start,
                     VirtualTime end) = 0;
 
@@ -71,7 +71,7 @@ class BusObserver {
   ~BusObserver() = default;
 };
 
-/// Changes bytes on their way to the receivers, for example by noise.
+/// Changes the bytes that the receivers get, as noise does.
 class Disturbance {
  public:
   struct Sent {
@@ -115,11 +115,11 @@ class Bus {
   [[nodiscard]] VirtualTime next() const {
     return std::min(std::min(next_byte_end_, next_sample_), due_times_.next());
   }
-  /// Processes all events at the time `next`, which must not be kNever. Sets the clock to that time if the
-  /// clock is not later already.
+  /// Sets the clock to the time `next`, unless the clock is already later. Then processes all events that are
+  /// due. `next` must not be kNever.
   void run_next();
-  /// Processes all events up to and including `until`. Sets the clock to `until` if the clock is not later
-  /// already.
+  /// Processes all events up to and including the time `until`. Then sets the clock to `until`, unless the
+  /// clock is already later.
   void run_until(VirtualTime until);
   void run_for(VirtualTime duration) { run_until(clock_.virtual_now() + duration); }
 

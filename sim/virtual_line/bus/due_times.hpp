@@ -1,4 +1,4 @@
-// Stores the times at which stations have to run, and finds the earliest of them.
+// Stores the times at which stations have to run, and finds the earliest time.
 #pragma once
 
 #include <algorithm>
@@ -14,8 +14,7 @@ using hal::doubles::VirtualTime;
 
 /// Stores one due time for each station, and the earliest due time of each block of stations. After a change
 /// of due times, `next` searches only the blocks that have changed. Often all stations set their times
-/// between two calls of `next`, for example after they receive a byte, so a change of a due time must take
-/// little time.
+/// between two calls of `next`, for example after they receive a byte, so `set` must be fast.
 class DueTimes {
  public:
   /// Adds a station without a due time. Returns its number, counted from 0.
@@ -37,8 +36,9 @@ class DueTimes {
     return earliest_;
   }
   /// Calls `run` with the number of each station whose due time is not after `now`, until no station is due.
-  /// Of the stations that are due, the one with the lowest number is always the next. Removes its due time
-  /// before the call. `run` may set due times of all stations, but it must not call `run_due`.
+  /// The next station is always the due station with the lowest number. Removes the due time of a station
+  /// before the call for this station. `run` may set due times of all stations, but it must not call
+  /// `run_due`.
   template <class Run>
   void run_due(VirtualTime now, Run run) {
     running_ = now;
@@ -62,8 +62,8 @@ class DueTimes {
   void search() const;
 
   std::size_t stations_ = 0;
-  std::vector<VirtualTime> times_;                ///< whole blocks; kNever after the last station
-  VirtualTime running_ = kNotRunning;             ///< the argument of `run_due` while it runs
+  std::vector<VirtualTime> times_;                ///< whole blocks; the unused entries are kNever
+  VirtualTime running_ = kNotRunning;             ///< the `now` of `run_due` while `run_due` runs
   std::size_t next_to_run_ = 0;                   ///< no station before this one is due at `running_`
   mutable std::vector<VirtualTime> earliest_of_;  ///< the earliest due time of each block, or kUnknown
   mutable VirtualTime earliest_ = kNever;         ///< the earliest due time, or kUnknown

@@ -106,8 +106,8 @@ void SimulatedModule::pulse_input(unsigned channel, std::uint32_t count) {
   react();
 }
 
-/// Makes the device process INIT* and the edges. On a real board, the main loop does this at least once a
-/// tick.
+/// Makes the device process INIT* and the edges. On a real board, the main loop does this at least
+/// after each tick.
 void SimulatedModule::react() {
   if (powered()) {
     work();

@@ -1,5 +1,5 @@
 // A simulated module: a Device (hal/device.hpp) whose peripherals are the test doubles in hal/doubles. This
-// is the composition file of the simulated module.
+// file is the composition file of the simulated module.
 #pragma once
 
 #include <algorithm>
@@ -37,8 +37,8 @@ class SimulatedModule final : public Station {
   // --- actions from outside ---
 
   /// Switches the supply on or off. Switching off interrupts a memory write that is in progress, and clears
-  /// the state of the firmware. Apart from this write, the memory, the input levels and INIT* keep their
-  /// state.
+  /// the state of the firmware. The memory keeps all bytes that this write does not change. The input levels
+  /// and INIT* stay the same.
   void power(bool on);
   /// Starts or ends a supply failure. A failure has the same effects as switching off, but does not change
   /// the switch of the supply.
@@ -59,8 +59,8 @@ class SimulatedModule final : public Station {
   void pulse_input(unsigned channel, std::uint32_t count);
   /// Stops the main loop until the next reset.
   void hang() { hung_ = true; }
-  /// Keeps the driver enabled for `by` longer after each reply. Resets and power cycles do not change this
-  /// setting.
+  /// Makes the driver stay enabled longer after each reply. `by`: the additional time. Resets and power
+  /// cycles do not change this setting.
   void release_driver_late(VirtualTime by);
   /// Makes the module receive and send at `baud` regardless of its settings; 0: its settings apply. A reply
   /// that has begun keeps its rate.
@@ -90,8 +90,9 @@ class SimulatedModule final : public Station {
   [[nodiscard]] const hal::doubles::Memory& memory() const { return memory_; }
   hal::doubles::Outputs& output_pins() { return outputs_; }
   hal::doubles::StatusLed& led() { return led_; }
-  /// Returns whether the module starts up, waits for the end of a silence or of a turn-around time, processes
-  /// a request, accesses its memory or sends a reply, or whether a late reply waits or is on the wires.
+  /// Returns true if the module is starting up, waits for the end of a silence or of a turn-around time,
+  /// processes a request, accesses its memory, or sends a reply. Also returns true if a late reply waits or
+  /// is on the wires.
   [[nodiscard]] bool pending() const;
   /// Returns how often the hardware watchdog has reset the module since this object was constructed.
   [[nodiscard]] std::uint64_t watchdog_resets() const { return watchdog_resets_; }
@@ -175,8 +176,8 @@ class SimulatedModule final : public Station {
   bool hung_ = false;
   std::uint64_t watchdog_resets_ = 0;
   SerialMode listens_in_;  ///< the mode that the last call of `BusEnd::listen` has set
-  // `receive` uses the members from here on. They are next to each other, so that they occupy few cache
-  // lines, because many modules may receive each byte.
+  // `receive` uses the members from here on. Many modules may receive each byte, so these members are next
+  // to each other and occupy few cache lines.
   ModuleWire wire_;
   VirtualTime next_without_silence_ = kNever;
   VirtualTime runs_at_ = kNever;  ///< when the bus calls `run`

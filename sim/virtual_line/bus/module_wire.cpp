@@ -74,12 +74,12 @@ void ModuleWire::run() {
 }
 
 void ModuleWire::end_delays(std::optional<std::size_t> fault) {
-  VirtualTime free = clock_.virtual_now();  // when the replies before the next one have ended
-  std::optional<VirtualTime> delay;         // of the last reply so far; nullopt: it has begun on the wires
+  VirtualTime free = clock_.virtual_now();  // the time from which the next reply can be on the wires
+  std::optional<VirtualTime> delay;  // the delay of the previous reply; nullopt: no previous reply waits
   for (Event& late : late_) {
     if (late.what == What::On) {
       if (fault.value_or(late.fate.delayed_by) == late.fate.delayed_by) {
-        // Keeps the time between this reply and the one before.
+        // With the delay of the previous reply, the time between the two is the same as at the UART.
         late.fate.late_by = delay.value_or(VirtualTime(0));
       }
       delay = std::max(late.fate.late_by, free - late.sent);
@@ -89,7 +89,7 @@ void ModuleWire::end_delays(std::optional<std::size_t> fault) {
     }
     free = std::max(free, late.when);
   }
-  delay_ = delay.value_or(delay_);  // has an effect if the UART still sends the last of these replies
+  delay_ = delay.value_or(delay_);  // has an effect only if the UART still sends the last reply
 }
 
 void ModuleWire::abort() {

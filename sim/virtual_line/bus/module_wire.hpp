@@ -35,9 +35,9 @@ class ModuleWire final : public Wire {
   using Begins = std::function<ReplyFate(std::uint64_t reply)>;
   /// Called when the UART disables the driver, even if the reply is lost or is not on the wires yet.
   using Ends = std::function<void()>;
-  /// Called with `on` true before the driver is enabled on the wires for a reply. Called with false after the
-  /// driver is disabled, when `abort` drops the reply, or after Begins if the reply is lost. `reply` is the
-  /// same number as for Begins.
+  /// Called with `on` true before the driver is enabled on the wires for a reply. Called with `on` false in
+  /// three cases: after the driver is disabled on the wires, when `abort` drops the reply, and after Begins
+  /// if the reply is lost. `reply` is the same number as for Begins.
   using OnTheWires = std::function<void(std::uint64_t reply, bool on)>;
   void watch(Begins begins, Ends ends, OnTheWires on_the_wires);
   /// Makes the UART run at `baud` regardless of the firmware's setting; 0: the firmware's setting applies.
@@ -49,10 +49,11 @@ class ModuleWire final : public Wire {
   [[nodiscard]] bool sends_late() const { return driving_late_; }
   [[nodiscard]] VirtualTime next() const { return late_.empty() ? kNever : late_.front().when; }
   void run();
-  /// Ends the delay of all replies that `fault` (ReplyFate::delayed_by) makes late, or of all replies if
-  /// `fault` is nullopt. If another reply waits before such a reply, the time between the two stays as the
-  /// UART has sent them. If no other reply waits before it, such a reply begins now, or at the end of the
-  /// late reply that is on the wires. A reply that has begun on the wires keeps its delay.
+  /// Ends the delay of each waiting reply that `fault` (ReplyFate::delayed_by) makes late. If `fault` is
+  /// nullopt, ends the delay of each waiting reply. If the previous reply also waits, the time between the
+  /// two replies becomes the same as at the UART. If the previous reply does not wait, the reply begins now
+  /// or, if a late reply is on the wires, at the end of that late reply. A reply that has begun on the wires
+  /// keeps its delay.
   void end_delays(std::optional<std::size_t> fault);
   /// Drops all bytes that are not on the wires yet, and disables the driver if a late reply is on the wires.
   /// Call this when the module loses its supply or is reset.

@@ -15,8 +15,8 @@ bool level_of(const Waves& waves, VirtualTime at) {
   return std::all_of(waves.begin(), waves.end(), [at](const Wave& wave) { return wave.level(at); });
 }
 
-/// Returns the first time from `from` on and before `until` at which the line has `level`; nullopt if there
-/// is none. `from` must be before `until`.
+/// Returns the first time t with `from` <= t < `until` at which the line has `level`; nullopt if there is no
+/// such time. `from` must be before `until`.
 std::optional<VirtualTime> find_level(const Waves& waves, bool level, VirtualTime from, VirtualTime until) {
   std::vector<VirtualTime> boundaries{from};
   for (const Wave& wave : waves) {

@@ -39,10 +39,10 @@ constexpr bool has_odd_number_of_ones(std::uint8_t byte) {
   return odd;
 }
 
-/// The parity bit, if the format has one.
+/// The mask of the parity bit in Levels, if the format has a parity bit.
 constexpr unsigned kParityBit = 1U << 9U;
 
-/// Returns the bit of the first stop bit.
+/// Returns the mask of the first stop bit in Levels.
 constexpr unsigned stop_bit(LineFormat format) { return 1U << (bits_received(format) - 1U); }
 
 constexpr Levels levels_of(std::uint8_t byte, LineFormat format = LineFormat::k8N1) {
@@ -86,7 +86,7 @@ struct Wave {
   SerialMode mode;
   Levels levels;
   VirtualTime end;  ///< the end of the first stop bit
-  /// Time at which the driver was disabled during the byte; kNever: it was not.
+  /// Time at which the driver was disabled during the byte; kNever: the driver was not disabled.
   VirtualTime cut_off = hal::doubles::kNever;
   std::size_t station = 0;
   SerialMode nominal;  ///< the nominal rate and the format in which the station sends
@@ -96,8 +96,8 @@ struct Wave {
   bool collided = false;
   bool over = false;  ///< the byte has ended; samplers may still read it
 
-  /// Returns whether a receiver gets the byte unchanged if it has the same mode and has listened since the
-  /// start of the byte.
+  /// Returns whether the byte arrives unchanged at a receiver that has the same mode and has listened since
+  /// the start of the byte.
   [[nodiscard]] bool arrives_whole() const { return !collided && !disturbed; }
 };
 
@@ -111,9 +111,10 @@ class UartSampler {
     ByteStatus status;
   };
 
-  /// Samples the wires up to `until`, or up to the end of the next byte. Returns a byte if its first stop bit
-  /// is over by then, otherwise nullopt. If the result is a byte, the caller must call this function again
-  /// with the same `until`. `mode` has the bit rate on the wires, and must be the same in all calls.
+  /// Samples the wires up to `until`, or up to the end of the next byte. Returns this byte if its first stop
+  /// bit ends at `until` or earlier, otherwise nullopt. If the result is a byte, the caller must call this
+  /// function again with the same `until`. `mode` has the bit rate on the wires, and must be the same in all
+  /// calls.
   std::optional<Received> advance(const Waves& waves, SerialMode mode, VirtualTime until);
 
   /// Returns whether the sampler is in the middle of a byte or waits for the line to become idle.

@@ -51,17 +51,17 @@ constexpr std::array<Row, 13> kRows{{
     {"lost-bytes", "P", "0.01", Trouble::LostBytes, false, take_probability,
      "drops each byte with this probability"},
     {"inserted-bytes", "P", "0.01", Trouble::InsertedBytes, false, take_probability,
-     "adds a random byte after a byte with this probability"},
+     "after each byte, adds a random byte with this probability"},
     {"stray-zeros", "P", "0.01", Trouble::StrayZeros, false, take_probability,
-     "adds 00 after a byte with this probability, as may happen at the turn-around of a line"},
+     "after each byte, adds the byte 00 with this probability"},
     {"echo", "TIME", "5ms", Trouble::Echo, false, take_silence,
      "sends received bytes again after a pause of this length"},
     {"foreign-traffic", "HEX", "0501000000083C48 every 1s", Trouble::ForeignTraffic, false, take_bytes,
-     "sends these bytes, as another device would"},
+     "makes a foreign sender send these bytes"},
     {"lost-reply", "", "every 3rd reply", Trouble::LostReply, true, nullptr, "drops the reply"},
-    {"late-reply", "TIME", "50ms", Trouble::LateReply, true, take_time, "delays the reply"},
+    {"late-reply", "TIME", "50ms", Trouble::LateReply, true, take_time, "delays the reply by this time"},
     {"late-driver", "TIME", "2ms", Trouble::LateDriver, true, take_time,
-     "disables the driver later by this time"},
+     "keeps the driver enabled for this time after the reply"},
     {"wrong-rate", "RATE", "19200", Trouble::WrongRate, true, take_rate,
      "makes the module receive and send at this rate"},
     {"gone", "", "", Trouble::Gone, true, nullptr, "switches the supply off until the fault ends"},
@@ -110,7 +110,7 @@ class ScheduleReader {
         schedule_.lasts = parse_time(next("a duration after 'for'"));
       } else {
         if (schedule_.when != Schedule::When::Always) {
-          fail("'" + word + "': there is a schedule already; leave out one of them");
+          fail("'" + word + "': the fault already has a schedule; leave out one schedule");
         }
         read_when(word);
       }
@@ -191,13 +191,13 @@ void check(const Fault& fault) {
     fail("has no end; add 'for TIME'");
   }
   if (is_periodic && schedule.lasts && *schedule.lasts >= schedule.time) {
-    fail("'for' is not shorter than the period; shorten it");
+    fail("the time after 'for' is not shorter than the period; expected a shorter time");
   }
   if (is_periodic && !schedule.lasts && is_a_power_cut && schedule.time <= kPowerCutLasts) {
     fail("the power cut lasts 1s, which is not shorter than the period; add 'for TIME'");
   }
   if (schedule.lasts && is_a_moment) {
-    fail("'for': this fault has no duration; leave it out");
+    fail("'for': this fault has no duration; leave out 'for'");
   }
 }
 
@@ -221,7 +221,7 @@ Fault parse_fault(const std::string& text) {
     std::size_t used = 1;
     if (row.take != nullptr) {
       if (words.size() == 1) {
-        fail("has no value; add " + std::string(row.value) + " after it");
+        fail("has no value; add " + std::string(row.value) + " after '" + words[0] + "'");
       }
       row.take(fault, words[used++]);
     }

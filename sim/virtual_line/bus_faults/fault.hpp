@@ -1,4 +1,4 @@
-// A fault in the notation of the user: the kind of fault, then its value and its schedule, if it has them.
+// A fault in the notation of the user: the kind of fault, then a value and a schedule, if the fault has them.
 //
 //   bit-errors 1e-4                     probability for each bit on the line
 //   lost-reply every 10th reply
@@ -39,12 +39,12 @@ struct Schedule {
   enum class When { Always, At, EveryTime, EveryReply, Probably, AfterWrites };
 
   When when = When::Always;
-  VirtualTime time{0};      ///< At: from the start of the line's time; EveryTime: the period
+  VirtualTime time{0};      ///< At: the scheduled time, in the line's time; EveryTime: the period
   std::uint64_t count = 1;  ///< EveryReply: 10 means every 10th reply; AfterWrites: number of EEPROM writes
   double probability = 0;   ///< Probably: the probability for each reply
-  /// How long the fault lasts after it begins. A hang and foreign traffic have no duration. For the others,
-  /// nullopt means: a fault that depends on replies lasts until the end of the reply, and any other fault is
-  /// permanent. A power cut always has a duration.
+  /// How long the fault lasts after it begins. A hang and foreign traffic have no duration, so `lasts` is
+  /// nullopt. A power cut always has a duration. For the other kinds of faults, nullopt means: a fault that a
+  /// reply triggers lasts until the end of this reply, and a fault with any other schedule is permanent.
   std::optional<VirtualTime> lasts;
 
   [[nodiscard]] bool of_replies() const { return when == When::EveryReply || when == When::Probably; }

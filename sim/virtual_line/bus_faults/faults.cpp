@@ -17,8 +17,8 @@ constexpr std::size_t kMostForeign = 1024;
 
 bool is_of(const Fault& fault, std::size_t module) { return !fault.module || *fault.module == module; }
 
-/// Returns whether a fault of this kind is noise: it changes, drops or adds bytes, regardless of their
-/// sender.
+/// Returns whether a fault of this kind is noise. Noise changes or drops bytes of any station, or adds bytes
+/// after them.
 bool is_noise(Trouble trouble) {
   return trouble == Trouble::BitErrors || trouble == Trouble::LostBytes ||
          trouble == Trouble::InsertedBytes || trouble == Trouble::StrayZeros;
@@ -44,7 +44,7 @@ Faults::Faults(Bus& bus, Master& master, Modules& modules, std::uint64_t seed, N
 std::size_t Faults::add(const Fault& fault) {
   if (fault.module && *fault.module >= modules_.size()) {
     throw std::invalid_argument(fault.text + ": no module " + std::to_string(*fault.module + 1) +
-                                "; this line has 1 to " + std::to_string(modules_.size()));
+                                "; expected a position from 1 to " + std::to_string(modules_.size()));
   }
   const VirtualTime now = bus_.clock().virtual_now();
   const Schedule& schedule = fault.schedule;
@@ -160,9 +160,9 @@ void Faults::change() {
   end_.run_at(bus_.clock().virtual_now());
 }
 
-/// Begins an occurrence. `reply` of the module `reply_of` has triggered it; nullopt: no reply has. A module
-/// may cause this call in the middle of an action. This function therefore does not change any module; `run`
-/// changes the modules later.
+/// Begins an occurrence. If a reply has triggered the occurrence, `reply_of` is the module that replies, and
+/// `reply` is the number of the reply. Otherwise, `reply_of` is nullopt. A module may cause this call in the
+/// middle of an action. This function therefore does not change any module; `run` changes the modules later.
 void Faults::begin(Armed& armed, std::optional<std::size_t> reply_of, std::uint64_t reply) {
   const Fault& fault = armed.fault;
   ++armed.occurrences_so_far;
@@ -257,9 +257,9 @@ void Faults::reply_ends(std::size_t module) {
   }
 }
 
-/// `on` is true when the reply begins on the wires, which may be late. The function then begins the noise
-/// that this reply has triggered. `on` is false when the reply has ended or is dropped. The function then
-/// ends the noise that this reply has triggered, if the noise has no duration or still waits for the reply.
+/// If `on` is true, the reply begins on the wires. The function then begins the noise that this reply has
+/// triggered. If `on` is false, the reply has ended or is dropped. The function then ends the noise that this
+/// reply has triggered, if the noise has no duration or still waits for the reply.
 void Faults::reply_on_the_wires(std::size_t module, std::uint64_t reply, bool on) {
   for (Armed& armed : armed_) {
     if (!is_noise(armed.fault.trouble)) {

@@ -39,9 +39,9 @@ class Faults final : public Station {
   /// Throws std::invalid_argument if the line does not have the fault's module, or if the scheduled time has
   /// passed.
   std::size_t add(const Fault& fault);
-  /// Removes a fault and ends its effects. A hang does not end, a reply that has begun may stay lost, late or
-  /// at the wrong rate, and bytes that the fault has already queued are still sent. Returns false if no fault
-  /// has this number.
+  /// Removes a fault and ends its effects, with three exceptions: a hang does not end, a reply that has begun
+  /// may stay lost, late or at the wrong rate, and bytes that the fault has already queued are still sent.
+  /// Returns false if no fault has this number.
   bool remove(std::size_t number);
   void remove_all();
 

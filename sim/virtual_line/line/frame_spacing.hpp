@@ -17,18 +17,19 @@ class FrameSpacing final : private BusObserver {
   /// Observes the bus of `line`. Use this object only while `line` exists.
   explicit FrameSpacing(Line& line);
 
-  /// Returns the end of the last complete byte on the wires, including a second stop bit; 0 if there was
-  /// none.
+  /// Returns the end of the last complete byte on the wires, including a second stop bit; 0 if no byte is
+  /// complete yet.
   [[nodiscard]] VirtualTime last_byte() const { return last_byte_; }
-  /// Returns whether the master has sent the last complete byte. Also returns true if there was none.
+  /// Returns whether the master has sent the last complete byte. Also returns true if no byte is
+  /// complete yet.
   [[nodiscard]] bool master_was_last() const { return last_speaker_ == 0; }
 
-  /// Returns the time from which the master may begin a frame, so that the modules that the frame is for
-  /// treat it as a separate frame. `address` is the first byte of the frame. The returned time may be in the
-  /// past. Call this only if `master_was_last()` is false.
+  /// Returns the earliest time at which the master may begin a frame. If the frame begins earlier, the
+  /// addressed modules may join it to the previous frame. `address` is the first byte of the frame. The
+  /// returned time may be in the past. Call this only if `master_was_last()` is false.
   [[nodiscard]] VirtualTime after_others(std::uint8_t address) const;
-  /// Returns the time from which the master may begin a frame, so that modules do not join it to the previous
-  /// frame of the master. Call this only if `master_was_last()` is true.
+  /// Returns the earliest time at which the master may begin a frame. If the frame begins earlier, modules
+  /// may join it to the previous frame of the master. Call this only if `master_was_last()` is true.
   [[nodiscard]] VirtualTime after_own() const;
 
  private:

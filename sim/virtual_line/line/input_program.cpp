@@ -66,7 +66,7 @@ void read_square(std::istringstream& words, InputProgram& program) {
   Times times(words);
   program.high = times.take("for").value_or(program.time / 2);
   program.bounce = times.take("bounce").value_or(VirtualTime(0));
-  times.reject_unknown("'for TIME' for how long the input is on, or 'bounce TIME'");
+  times.reject_unknown("'for TIME' (how long the input is on) or 'bounce TIME'");
 }
 
 void read_key(std::istringstream& words, InputProgram& program) {
@@ -80,8 +80,7 @@ void read_key(std::istringstream& words, InputProgram& program) {
     fail("'at' and 'every' cannot be combined; leave out one of them");
   }
   if ((!at && !every) || !high) {
-    fail(
-        "a key is incomplete; expected 'at TIME' or 'every TIME', and 'for TIME' for how long it is pressed");
+    fail("a key is incomplete; expected 'at TIME' or 'every TIME', and 'for TIME' (how long it is pressed)");
   }
   program.kind = at ? InputProgram::Kind::KeyOnce : InputProgram::Kind::KeyAgain;
   program.time = at ? *at : *every;
@@ -98,7 +97,8 @@ void check(const InputProgram& program) {
   }
   const bool periodic = program.kind != InputProgram::Kind::KeyOnce;
   if (periodic && program.time < program.high + program.bounce + kShortest) {
-    fail("the period is too short; the input must be off again before the next period");
+    fail("the period is too short; the input must stay off for at least " + time_text(kShortest) +
+         " longer than it bounces");
   }
 }
 

@@ -1,8 +1,8 @@
 // Programs that change the level of a module's input: square waves and key presses.
 //
-//   0 square 100ms                       on for one half of the period, off for the other half
-//   3 key at 2s for 300ms                pressed once
-//   3 key every 10s for 300ms bounce 5ms contacts that bounce when they close and when they open
+//   0 square 100ms                          on for one half of the period, off for the other half
+//   3 key at 2s for 300ms                   pressed once
+//   3 key every 10s for 300ms bounce 5ms    pressed every 10 s; the contacts bounce for 5 ms
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@ struct InputProgram {
 
   unsigned channel = 0;
   Kind kind = Kind::Square;
-  VirtualTime time{0};    ///< Square, KeyAgain: the period; KeyOnce: the line's time of the key press
+  VirtualTime time{0};    ///< Square, KeyAgain: the period; KeyOnce: the line time of the key press
   VirtualTime high{0};    ///< how long the input is on
   VirtualTime bounce{0};  ///< how long the contacts bounce after each change
 };

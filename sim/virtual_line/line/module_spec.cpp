@@ -53,7 +53,7 @@ void apply_setting(ModuleSpec& spec, const std::string& key, const std::string& 
 void check(const ModuleSpec& spec) {
   if (spec.settings.protocol == Protocol::ModbusRtu && !is_modbus_address(spec.settings.address)) {
     fail("address " + hex_byte_text(spec.settings.address) +
-         ": a Modbus address is 01 to F7; choose one of these, or the protocol ascii");
+         ": is not a Modbus address; expected hex 01 to F7, or the protocol ascii");
   }
 }
 

@@ -16,7 +16,7 @@ struct ModuleSpec {
   Settings settings;            ///< stored before power-on; an existing EEPROM file replaces them
   bool settings_given = false;  ///< at least one setting was given explicitly
   bool init_asserted = false;
-  std::string eeprom;  ///< path of the EEPROM file; empty: settings are lost when the program ends
+  std::string eeprom;  ///< path of the EEPROM file; empty: settings are lost when the simulator ends
   std::string eeprom_place = "eeprom=";  ///< prefix of messages about the EEPROM file
   std::vector<InputProgram> inputs;      ///< programs that change inputs
 };
@@ -31,8 +31,8 @@ ModuleSpec parse_module_spec(const std::string& text);
 ModuleSpec factory_fresh(const Model& model);
 /// Sets the address. `text` is one or two hex digits.
 void set_address(ModuleSpec& spec, const std::string& text);
-/// Applies KEY=VALUE of a module on the command line, or one of these keys of a module in a bus file:
-/// protocol, baud, format, checksum, edge, name, init or eeprom.
+/// Applies `value` of one of these keys: protocol, baud, format, checksum, edge, name, init or eeprom. The
+/// command line and bus files use the same names for these keys.
 void apply_setting(ModuleSpec& spec, const std::string& key, const std::string& value);
 /// Checks that the address is a Modbus address if the protocol is Modbus RTU.
 void check(const ModuleSpec& spec);

@@ -9,7 +9,7 @@
 
 namespace ex9000::sim {
 
-/// Sets the setting that `key` names: protocol, baud, format, checksum, edge or name. Returns false and
+/// Sets one setting. `key` is its name: protocol, baud, format, checksum, edge or name. Returns false and
 /// changes nothing for any other key. Throws std::invalid_argument with a one-line message if the value is
 /// not valid for this setting of this model.
 bool set_by_name(Settings& settings, const Model& model, const std::string& key, const std::string& value);

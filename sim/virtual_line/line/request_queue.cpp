@@ -52,7 +52,7 @@ void RequestQueue::send() {
     enter(State::WaitsForLine, now + kBetweenLooks);
     return;
   }
-  if (master.sending()) {  // the request would wait behind all these bytes
+  if (master.sending()) {  // the request would wait for all bytes that the master still has to send
     Reply none;
     none.sent = false;
     finish(none);

@@ -15,14 +15,14 @@ class Line;
 
 /// Sends requests through the master of the line, one at a time. After each request, waits for its reply or
 /// for the turn-around time, as a serial device server does. Keeps the order of the requests, and leaves the
-/// silence that modules require between frames. No function blocks. All times are in the virtual time of the
-/// line.
+/// silence that modules require between frames. None of the functions blocks. All times are in the virtual
+/// time of the line.
 ///
 /// Other programs can use the line at the same time: they send through the same master, but not through this
 /// queue. A request first waits while the master sends or a byte is on the wires. If there has been a byte on
 /// the wires, and the last one did not belong to a reply to this queue, the request also waits until the line
-/// has settled (Line::unsettled). The request waits for at most kReplyTimeout. The other programs do not wait
-/// for this queue. If one of them sends while a request is in progress, the request gets no reply.
+/// has settled (Line::unsettled). These two waits together take at most kReplyTimeout. The other programs do
+/// not wait for this queue. If one of them sends while a request is in progress, the request gets no reply.
 class RequestQueue final : private Station {
  public:
   /// The maximum time from the end of a request to the end of the first byte of its reply. This is more than
@@ -34,7 +34,7 @@ class RequestQueue final : private Station {
 
   struct Reply {
     std::vector<std::uint8_t> bytes;  ///< at most 256; empty: not sent, no reply in time, or none expected
-    bool sent = true;                 ///< false: the request was not sent, because others used the line
+    bool sent = true;                 ///< false: not sent, because the master still had other bytes to send
     bool damaged = false;             ///< a byte had a line error, or more than 256 bytes arrived
     VirtualTime delay{0};             ///< from the end of the request to the end of the first byte of `bytes`
   };
@@ -46,7 +46,7 @@ class RequestQueue final : private Station {
     /// function returns false. If this function is empty, the first frame is the reply, even a damaged one.
     std::function<bool(Bytes frame)> is_reply;
     /// The queue calls this function exactly once, unless the owner is destroyed before the queue sends the
-    /// request, or the queue is destroyed first.
+    /// request, or the queue is destroyed before the call.
     std::function<void(const Reply& reply)> done;
     std::weak_ptr<void> owner;  ///< the client; must not be empty
   };

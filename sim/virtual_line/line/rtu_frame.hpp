@@ -30,10 +30,11 @@ inline std::vector<std::uint8_t> rtu_frame(std::uint8_t address, const std::vect
 inline Bytes pdu_of(Bytes frame) { return frame.first(frame.size - 2).from(1); }
 
 /// Returns whether `frame` is a valid reply, perhaps an exception, to `request`. Both begin with the address
-/// and end with the CRC. Checks the CRC, the address, the function code, and the length of an exception. Of
-/// other replies to functions 01 to 06, 0F and 10, also checks the length, and the byte count or the repeated
-/// part of the request (MODBUS Application Protocol V1.1b3, section 6). These checks reject nearly all echoes
-/// of requests that read, and most late replies to other requests.
+/// and end with the CRC. Checks the CRC, the address, the function code, and the length of an exception. If
+/// the reply is not an exception, and the function is 01 to 06, 0F or 10 (hex), also checks the length, and
+/// the byte count or the repeated part of the request (MODBUS Application Protocol V1.1b3, section 6). These
+/// checks reject nearly all echoes of requests with functions 01 to 04, and most late replies to earlier
+/// requests.
 inline bool is_rtu_reply(Bytes request, Bytes frame) {
   constexpr std::size_t kException = 5;        // size of an exception; no reply is shorter
   constexpr std::size_t kAddressAndCount = 8;  // minimum size of a request that reads or writes

@@ -26,7 +26,7 @@ class Found:
         self.received_byte = 0
         self.sent_byte = 0
         self.interrupts = {}
-        self.edges = {}  # number of edges that one interrupt serves -> its instructions
+        self.edges = {}  # number of edges that one interrupt serves -> instructions of this interrupt
 
     def add(self, counter):
         """Replaces each count if the count of `counter`, a counter.Counter, is higher."""
@@ -69,14 +69,15 @@ def capacity(found):
     return "\n".join(
         [
             f"computed, not measured, for a TM4C123 at {HERTZ // 1_000_000} MHz with {CYCLES_AN_INSTRUCTION} cycles "
-            f"per instruction and {CYCLES_AROUND_AN_INTERRUPT} for the entry and exit of an interrupt:",
-            f"  eight edges at once take {sum(ports) / HERTZ * 1e6:.1f} us, a received byte {byte / HERTZ * 1e6:.1f} "
-            f"us of the {BITS_A_CHARACTER / BAUD * 1e6:.1f} us that it takes on the line at {BAUD} baud",
-            f"  all eight inputs at the same time, both edges of each pulse served, the line saturated at {BAUD} baud, "
-            f"{LEFT_TO_THE_MAIN_LOOP:.0%} left to the main loop: {math.floor(pulses / 100) * 100} pulses a second "
-            "on each input",
-            f"  an edge is served within {math.ceil(wait * 1e6)} us, even if all other interrupts are pending: each "
-            "edge of a pulse of that length is detected; a shorter pulse is still counted if the pulse and the "
-            "following gap together have that length",
+            f"per instruction and {CYCLES_AROUND_AN_INTERRUPT} cycles for the entry and exit of an interrupt:",
+            f"  the processor serves eight edges at once in {sum(ports) / HERTZ * 1e6:.1f} us, and a received byte in "
+            f"{byte / HERTZ * 1e6:.1f} us; the byte takes {BITS_A_CHARACTER / BAUD * 1e6:.1f} us on the line at {BAUD} "
+            "baud",
+            f"  if the line carries bytes without a pause at {BAUD} baud, and {LEFT_TO_THE_MAIN_LOOP:.0%} of the time "
+            f"is left to the main loop, the module counts {math.floor(pulses / 100) * 100} pulses a second on each of "
+            "eight inputs at the same time, with both edges of each pulse served",
+            f"  an edge is served within {math.ceil(wait * 1e6)} us, even if all other interrupts are pending: both "
+            "edges of a pulse of at least this length are detected; a shorter pulse is still counted if the pulse and "
+            "the following gap together have at least this length",
         ]
     )

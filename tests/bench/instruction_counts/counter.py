@@ -79,7 +79,7 @@ class Counter:
         self._pass = None  # addresses of the current pass; None between passes
         self.answered = False  # the driver enable has been switched off since `begin`
         self.nothing_happens = False  # set by the caller while it sends no request and changes no input
-        # The main loop has gone to sleep, and no interrupt except ticks and alarms of this tool has occurred since.
+        # The main loop has gone to sleep. Since then, only the tick and the alarm of this tool have interrupted it.
         self.at_rest = False
         self.requests = {}
         self.edges_at_once = 0
@@ -122,7 +122,7 @@ class Counter:
             self.at_rest = False
 
     def left(self, span, _main):
-        if span.addresses[:1] == [self._first.get(span.exception)]:  # the log contains its first instruction
+        if span.addresses[:1] == [self._first.get(span.exception)]:  # the interrupt is logged from its start
             self._note_interrupt(span)
         if self._pass is not None and span.exception != execution.TICK:
             self._pass += span.addresses

@@ -51,7 +51,7 @@ def alarm_code():
 
 
 def die_with_parent():
-    """Makes the kernel end the calling child process when its parent ends, for whatever reason. Linux only."""
+    """Makes the kernel end the calling process when the parent of this process ends. Works only on Linux."""
     set_parent_death_signal = 1
     ctypes.CDLL(None).prctl(set_parent_death_signal, signal.SIGKILL)
 
@@ -60,10 +60,10 @@ class Emulator:
     """The emulated processor runs only during `run_for`. `log` is a stream of lines, which a thread must read
     continuously.
 
-    The emulated time is independent of real time: each instruction takes 8 ns of emulated time, however long logging
-    takes. The emulated time stops between calls of `run_for`: the interrupt of an alarm, which this class sets, makes
-    the processor wait at a gate (tests/qemu/gate.cpp). execution.follow excludes that interrupt. The option -singlestep
-    makes QEMU execute one instruction at a time, so that QEMU logs each one.
+    The emulated time is independent of real time, for example of the time that logging takes: each instruction takes
+    8 ns of emulated time. The emulated time stops between calls of `run_for`: this class sets an alarm, and the
+    interrupt of the alarm makes the processor wait at a gate (tests/qemu/gate.cpp). execution.follow excludes that
+    interrupt. The option -singlestep makes QEMU execute one instruction at a time, so that QEMU logs each one.
     """
 
     def __init__(self, image, gate):
@@ -171,11 +171,13 @@ class Emulator:
             return b""
 
     def mark(self):
-        """Writes to the log a line that no image causes. See execution.py."""
+        """Writes a line to the log. For execution.follow, this line marks the start of instruction logging. No image
+        causes such a line."""
         self._ask_bus(f"readl {UART_IDENTIFICATION:#x}")
 
     def write_sync_line(self):
-        """Writes a different line to the log. execution.follow reports when it reaches that line."""
+        """Writes a line to the log. execution.follow calls `seen` of its listener when it reads this line. No image
+        causes such a line."""
         self._ask_bus(f"readl {UART_IDENTIFICATION_2:#x}")
 
     def log_instructions(self, on):

@@ -32,7 +32,8 @@ class Span:
 def follow(log, sleeps, listener):
     """Reads the log to its end. `sleeps` are the addresses of WFI instructions. Calls these methods of `listener`:
 
-    - entered(span, main), left(span, main): an interrupt other than ALARM has started, or has returned
+    - entered(span, main): an interrupt other than ALARM has started
+    - left(span, main): an interrupt other than ALARM has returned
     - slept(main): a turn has ended; follow calls this function only when the main loop has woken up again
     - seen(): the log has been read up to the call of Emulator.write_sync_line
     """

@@ -44,7 +44,8 @@ class Image:
         return hex(address)
 
     def inlined(self, addresses):
-        """Returns the names of the source functions that contain each address, innermost first, by address."""
+        """Returns a dictionary. Its keys are the addresses. Each value is a list of the names of the source functions
+        that contain the address. The innermost function is first."""
         unknown = sorted(set(addresses) - set(self._chains))
         text = "\n".join(map(hex, unknown)).encode()
         chain = []

@@ -19,8 +19,8 @@ INPUTS = Model("EX9052D-M", 8, 0, True)
 BOTH = Model("EX9055D", 8, 8, False)
 
 # For each session: the model, whether the session uses ASCII, and whether it also sends the requests that are the same
-# for all models. Without --all, only one session of each protocol sends those requests. The model of this session has
-# inputs, because these requests require the most instructions on a model with inputs.
+# for all models. Without --all, only one session of each protocol sends those requests. The models of these sessions
+# have inputs, because those requests require the most instructions on a model with inputs.
 SESSIONS = [
     (INPUTS, False, True),
     (BOTH, True, True),
@@ -32,8 +32,9 @@ SESSIONS = [
 EDGE_PASSES = 20  # for each input and for each group of inputs
 GROWTH = 1.05  # a count above this multiple of the recorded count is an error
 
-# A line of the result. `passes`: a counter.Highest, Median or Sum. Its count is for `served` events or milliseconds, so
-# the count is divided by that number. `until`: how the request ends (requests.py); empty if the line is for no request.
+# A row of the result. `passes`: a counter.Highest, counter.Median or counter.Sum. `served`: the number of edges or
+# milliseconds to which the count of `passes` belongs; 1 in all other rows. The tool divides the count by `served`.
+# `until`: how the request ends (requests.py); empty if the row is not for a request.
 Row = collections.namedtuple("Row", "name passes served until")
 
 
@@ -118,15 +119,17 @@ def profile(image, row):
 def main(arguments):
     parser = argparse.ArgumentParser(
         prog="instructions",
-        description="Counts the instructions that firmware images execute in an emulator for whole transactions, from "
-        "the first received byte until the driver enable is off and the main loop sleeps. It counts all interrupts "
-        "and the main loop without the tick, and prints the median of the passes (see --passes). For single "
-        "interrupts it prints the highest count. It also prints the difference from the record. Without --record, the "
-        "exit status is 1 if a count has grown by more than 5 % since it was recorded.",
+        description="Counts the instructions that firmware images execute in an emulator for whole transactions. A "
+        "transaction starts at the first received byte. It ends when the main loop sleeps and, after a reply, the "
+        "driver enable is off. The count includes all interrupts and the main loop, but not the tick. The result is "
+        "the median of the passes (see --passes). The tool also counts the instructions of single interrupts, of the "
+        "tick's turn of the main loop, and of a millisecond at rest. For interrupts and for that turn, the result is "
+        "the highest count. The tool also prints the difference from the record. Without --record, the exit status is "
+        "1 if a count has grown by more than 5 % since it was recorded.",
     )
     parser.add_argument("folder", help="folder with the images, as ELF files")
     parser.add_argument(
-        "--board", choices=BOARDS, help="the board of the images (default: the last part of the folder's name)"
+        "--board", choices=BOARDS, help="the board of the images (default: the name of the folder, without its path)"
     )
     parser.add_argument(
         "--only", default="", metavar="TEXT", help="count only requests whose names contain TEXT"
@@ -135,18 +138,21 @@ def main(arguments):
         "--profile", default="", metavar="TEXT",
         help="for results whose names contain TEXT, print how many instructions each function executes"
     )
-    parser.add_argument("--passes", type=int, default=100, help="maximum number of passes of each request (100)")
+    parser.add_argument(
+        "--passes", type=int, default=100, help="maximum number of passes of each request (default: 100)"
+    )
     parser.add_argument(
         "--gate",
         default=os.path.join(ROOT, "build/host-debug/tests/qemu/libex9000_gate.so"),
         metavar="FILE",
-        help="the plugin tests/qemu/gate.cpp, built by a preset for the host (default: host-debug)",
+        help="the plugin that a preset for the host builds from tests/qemu/gate.cpp (default preset: host-debug)",
     )
     parser.add_argument(
         "--all", action="store_true", help="count every request on each of the tool's models that supports it"
     )
     parser.add_argument(
-        "--jobs", type=int, default=os.cpu_count() or 1, help="number of concurrent sessions"
+        "--jobs", type=int, default=os.cpu_count() or 1,
+        help="number of concurrent sessions (default: number of processors)"
     )
     parser.add_argument("--record", action="store_true", help="write the counts to the record")
     options = parser.parse_args(arguments)

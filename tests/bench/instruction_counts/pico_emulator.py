@@ -7,7 +7,7 @@ import subprocess
 
 from instruction_counts.emulator import ROOT, die_with_parent
 
-# Lines of the log that the image cannot cause: see execution.py.
+# execution.follow recognizes these lines of the log. The image cannot cause such lines.
 MARK = "pl011_read addr 0x00000fe0 value 0x00000000"
 SYNC_LINE = "pl011_read addr 0x00000fe4 value 0x00000000"
 
@@ -60,11 +60,13 @@ class PicoEmulator:
         return bytes.fromhex(self._ask("heard"))
 
     def mark(self):
-        """Writes to the log a line that the image cannot cause. See execution.py."""
+        """Writes a line to the log. For execution.follow, this line marks the start of instruction logging. The image
+        cannot cause such a line."""
         self._ask(f"note {MARK}")
 
     def write_sync_line(self):
-        """Writes a different line to the log. execution.follow reports when it reaches that line."""
+        """Writes a line to the log. execution.follow calls `seen` of its listener when it reads this line. The image
+        cannot cause such a line."""
         self._ask(f"note {SYNC_LINE}")
 
     def log_instructions(self, on):

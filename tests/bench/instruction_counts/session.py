@@ -8,7 +8,7 @@ from instruction_counts.emulator import HANG
 from instruction_counts.image import Image
 from instruction_counts.requests import DONE, IGNORED, ascii_requests, crc16, dcon, modbus_requests, rtu
 
-# In seconds of emulated time.
+# All these times are in seconds of emulated time.
 DEBOUNCE = 0.03
 PATIENCE = 0.25  # maximum time until a reply is complete
 DRIVER_OFF = 0.0006  # maximum time from a reply until the driver enable is off, at 115200 baud
@@ -19,11 +19,12 @@ SLICE = 0.001
 PASS = 0.3  # maximum time from the end of a request to the end of its pass
 REST = 0.2
 
-QUIET = 0.004  # after the last byte of a request without a reply; then the module has processed the request
+QUIET = 0.004  # after this time, the module has processed a request that has no reply
 
 
 class Session:
-    """Sends requests to one image. ASCII sessions use checksums, because checksums require more instructions."""
+    """Sends requests to one image. ASCII sessions use checksums, because requests with checksums require more
+    instructions."""
 
     def __init__(self, board, image, gate, model, is_ascii):
         self._board = board  # a boards.Board
@@ -62,9 +63,10 @@ class Session:
                 self._set_init(False)
 
     def count_edges(self, passes):
-        """Counts the instructions of edges while the first channel has a filter, because each edge of any channel then
-        also reads the clock and wakes the main loop. Changes each input alone, then all inputs of each group together,
-        `passes` times each. The levels alternate between high and low."""
+        """Counts the instructions of edges. First sets a filter for the first channel, because with a filter, the
+        interrupt of an edge of any channel also reads the clock and wakes the main loop. Changes each input alone
+        `passes` times, then all inputs of each group together `passes` times. The levels alternate between high and
+        low."""
         self._set_filter(1)
         groups = self._board.groups
         for pins in [[pin] for group in groups for pin in group] + groups:
@@ -116,8 +118,8 @@ class Session:
         self._run(self._board.start_up)
 
     def _count(self, request, passes):
-        """Repeats a request. If the request has several frames, sends the last one at the end, so that the module has
-        the address and the line settings of the session, and checks that the module replies."""
+        """Repeats a request. If the request has several frames, then sends the last frame, so that the module has
+        the address and the line settings of the session. After that, checks that the module replies."""
         for attempt in range(passes):
             in_turn = len(request.before) == len(request.frames) > 1
             for frame in [request.before[attempt % len(request.before)]] if in_turn else request.before:
@@ -181,9 +183,9 @@ class Session:
         return self._hear() != b""
 
     def _hear(self, end=None):
-        """Waits for a reply and returns it. The reply is complete when it ends with `end`, or, if `end` is None, as the
-        protocol specifies. If the reply is not complete after PATIENCE, returns the bytes that have arrived,
-        possibly none."""
+        """Waits for a reply and returns it. The reply is complete when it ends with `end`. If `end` is None, the reply
+        is complete when it ends with a CR in ASCII, or with a correct CRC in Modbus. If the reply is not complete
+        after PATIENCE, returns the bytes that have arrived, possibly none."""
         reply = self._emulator.said()
         left = PATIENCE
         while not (reply.endswith(end) if end else self._is_whole(reply)) and left > 0:

@@ -1,8 +1,9 @@
 // A typical Modbus RTU server that uses libmodbus: unit 1 with 13 coils.
 //
-//     libmodbus_server        on a pseudo-terminal; prints its path and runs until it is terminated
+//     libmodbus_server        on a pseudo-terminal; prints the path of the terminal. A signal ends the
+//                             server
 //     libmodbus_server tcp    RTU frames over TCP; prints the port and ends when its only client disconnects
-//                            or sends an invalid request
+//                             or sends an invalid request
 #include <fcntl.h>
 #include <modbus/modbus.h>
 #include <netinet/in.h>
@@ -26,9 +27,8 @@ int open_terminal() {
   if (master < 0 || grantpt(master) != 0 || unlockpt(master) != 0) {
     return -1;
   }
-  // The open `other_end` prevents a hang-up between the time when one Modbus master disconnects and the time
-  // when the next one connects. Raw mode prevents an echo before the first Modbus master configures the
-  // terminal.
+  // The server keeps `other_end` open, so that no hang-up occurs while no Modbus master is connected. Raw
+  // mode prevents an echo before the first Modbus master configures the terminal.
   const int other_end = open(ptsname(master), O_RDWR | O_NOCTTY);
   termios settings{};
   tcgetattr(other_end, &settings);
@@ -68,7 +68,7 @@ int main(int argc, char** argv) {
     std::perror("libmodbus_server");
     return 1;
   }
-  // libmodbus does not open /dev/null, because modbus_set_socket passes `master` to it.
+  // libmodbus does not open /dev/null, because the server calls modbus_set_socket and not modbus_connect.
   modbus_t* const server = modbus_new_rtu("/dev/null", 115200, 'N', 8, 1);
   modbus_mapping_t* const map = modbus_mapping_new(13, 0, 0, 0);
   if (server == nullptr || map == nullptr || modbus_set_slave(server, 1) != 0 ||

@@ -1,15 +1,15 @@
-// Compares the processor time that the simulator uses for a transaction with that of servers that use
-// libmodbus and pymodbus on the same transport. Then measures the cost of many modules and of many lines, and
-// the memory of a module.
+// Compares the simulator with a libmodbus server and a pymodbus server on the same transport: the processor
+// time that each program uses for a transaction. Then measures the cost of many modules and of many lines,
+// and the memory of a module.
 //
-//     load [--without pymodbus] [MILLISECONDS]    duration of one round of a measurement; default 1000
+//     load [--without pymodbus] [MILLISECONDS]    how long to poll each server in each round; default: 1000
 //
 // Fails if a module requires too much memory, or if the simulator with one module uses more than 1.5 times
 // the processor time of the libmodbus server. The limit of the processor time applies to the best round,
 // because other programs on the processors disturb single rounds. If other programs disturb all rounds, the
-// program skips this limit. The cost of many modules is only printed, because other programs change it if
-// they use the caches. tests/bench/simulator_instructions limits the instructions that each further module
-// adds.
+// program skips this limit. The cost of many modules has no limit here, because other programs that use the
+// caches change this cost. tests/bench/simulator_instructions limits the instructions that each further
+// module adds.
 #include <sched.h>
 
 #include <array>
@@ -57,8 +57,9 @@ void judge(const std::string& what, double ratio, double target, double limit) {
 }
 
 /// Restricts the calling thread to one processor while this object exists. The servers that the thread starts
-/// during this time inherit the restriction. On two processors, waking another program sometimes takes ten
-/// times the processor time of a transaction, and sometimes none. This cost changes from round to round.
+/// during this time inherit the restriction. On two processors, the wake-up of another program sometimes
+/// requires ten times the processor time of a transaction, and sometimes no time. This cost changes from
+/// round to round.
 class OneProcessor {
  public:
   OneProcessor() {
@@ -201,7 +202,8 @@ double memory_of(int pid) {
 
 /// Measures eight lines in one process; each line has its own master. `threads`: the value of the option
 /// --threads. If it is "1", also judges the memory of a module. Returns the processor time that the process
-/// uses for a transaction, in microseconds. Throws std::runtime_error if the simulator does not start.
+/// uses for a transaction, in microseconds. Throws std::runtime_error if the simulator does not start, or if
+/// the system does not report the processor time of the simulator.
 double load(milliseconds time, const std::string& threads) {
   const Directory directory;
   ex9000::system::write_file(directory / "bus.json", bus_file());
@@ -248,12 +250,15 @@ int main(int argc, char** argv) {
   arguments.erase(arguments.begin(), arguments.begin() + (alone ? 2 : 0));
   const long number = arguments.empty() ? 1000 : std::atol(arguments[0].c_str());
   if (arguments.size() > 1 || number < 1) {
-    std::fprintf(stderr, "load: expected a number of milliseconds (default: 1000)\n");
+    std::fprintf(stderr,
+                 "load: wrong arguments; expected [--without pymodbus] [MILLISECONDS]; MILLISECONDS is a "
+                 "decimal number of at least 1\n");
     return 2;
   }
   try {
     const milliseconds time(number);
-    std::printf("FC01 x 13 back to back on an instant line, median of %zu rounds in turn\n", kRounds);
+    std::printf("reads of 13 coils with FC01 without a pause, on an instant line; medians of %zu rounds\n",
+                kRounds);
     {
       const OneProcessor one_processor;
       compare_one_module(time, !alone);
@@ -262,9 +267,9 @@ int main(int argc, char** argv) {
     std::printf("%u lines of %u modules in one process, with a master on each line:\n", kLines, kModules);
     const double one = load(time * kRounds, "1");
     const double two = load(time * kRounds, "2");
-    // The masters use the same processors, so the rates do not show what a second processor adds. Two threads
-    // that use two whole processors reach at least 1.7 times the rate of one thread if a transaction costs at
-    // most 2 / 1.7 times the processor time.
+    // The masters and the simulator use the same processors, so the rates do not show what a second processor
+    // adds. Two threads that use two whole processors reach at least 1.7 times the rate of one thread if a
+    // transaction requires at most 2 / 1.7 times the processor time that it requires with one thread.
     print("processor time for each transaction, two threads / one thread", two / one, 2 / 1.7);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "load: %s\n", error.what());

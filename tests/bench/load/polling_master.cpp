@@ -95,7 +95,7 @@ void PollingMaster::ask(const std::vector<std::uint8_t>& request, std::uint8_t u
     size += static_cast<std::size_t>(count);
   }
   if (reply[0] != unit || reply[1] != kReadCoils || reply[2] != 2) {
-    throw std::runtime_error("wrong reply");
+    throw std::runtime_error("wrong reply; expected the requested unit, function 01, and 2 bytes of coils");
   }
 }
 

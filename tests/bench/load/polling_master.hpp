@@ -22,10 +22,10 @@ class PollingMaster {
   PollingMaster& operator=(const PollingMaster&) = delete;
   ~PollingMaster();
 
-  /// Reads 13 coils from address 0 on with FC01, from units 1 to `units` in turn, until `end`. Returns the
-  /// number of transactions. Throws std::runtime_error if a transfer fails, if the server sends nothing for
-  /// 60 s before a reply is complete, or if the unit, the function or the size of a reply is wrong, because a
-  /// rate of wrong replies has no meaning.
+  /// Polls units 1 to `units` in turn until `end`. Each request reads coils 0 to 12 with FC01. Returns the
+  /// number of transactions. Throws std::runtime_error if a transfer fails, or if the server sends nothing
+  /// for 60 s before a reply is complete. A rate of wrong replies has no meaning. Therefore this function
+  /// also throws std::runtime_error if the unit, the function or the size in a reply is wrong.
   std::uint64_t poll_until(std::chrono::steady_clock::time_point end, unsigned units);
 
  private:

@@ -36,7 +36,7 @@ inline std::uint16_t port_of(system::ChildProcess& server) {
 }
 
 /// Returns the processor time that the process has used, in seconds. Throws std::runtime_error if the system
-/// cannot read it.
+/// does not report this time.
 inline double processor_seconds(int pid) {
   clockid_t clock{};
   timespec time{};
@@ -46,9 +46,9 @@ inline double processor_seconds(int pid) {
   return static_cast<double>(time.tv_sec) + static_cast<double>(time.tv_nsec) * 1e-9;
 }
 
-/// Returns the time that all processors together have been busy since the machine started, in seconds.
-/// This time includes all programs, interrupts, and the time that a hypervisor has given to other machines.
-/// Throws std::runtime_error if the system does not report the time.
+/// Returns the sum of the busy times of all processors since the machine started, in seconds. The busy time
+/// includes the time of all programs and of interrupts, and the time that a hypervisor has given to other
+/// machines. Throws std::runtime_error if the system does not report these times.
 inline double busy_seconds() {
   std::ifstream file("/proc/stat");
   std::string name;
@@ -92,10 +92,10 @@ class Server {
   [[nodiscard]] const std::string& name() const { return name_; }
   /// Returns the processor time of the server for a transaction, in microseconds: the median of all rounds.
   [[nodiscard]] double median() const { return median_of(microseconds_); }
-  /// Returns the smallest ratio of the processor time for a transaction to that of `other` in one round.
-  /// Ignores each round in which other programs disturbed the measurement of one of the two servers. Returns
-  /// nullopt if this applies to every round. Compares only results of the same round, because the speed of
-  /// the machine can change from round to round.
+  /// For each round, divides the processor time of this server for a transaction by that of `other`. Returns
+  /// the smallest of these ratios. Ignores each round in which other programs disturbed the measurement of at
+  /// least one of the two servers. Returns nullopt if other programs disturbed every round. Compares only
+  /// results of the same round, because the speed of the machine can change from round to round.
   [[nodiscard]] std::optional<double> least_ratio_to(const Server& other) const {
     std::optional<double> result;
     for (std::size_t round = 0; round < kRounds; ++round) {

@@ -1,6 +1,6 @@
-// A board whose numbers of pins come from the command line of the compiler. The board has too few pins for
-// the model from that command line, or EX9000_IMAGES, the number of images from the command line, is not the
-// number of models.
+// A board that the compiler must refuse. The command line of the compiler defines the model, the numbers of
+// pins of the board, and in one test EX9000_IMAGES, the number of images. Either the board has too few pins
+// for the model, or EX9000_IMAGES differs from the number of models.
 #include <array>
 
 namespace ex9000::board {

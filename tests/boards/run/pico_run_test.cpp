@@ -19,8 +19,8 @@ TEST(PicoRun, AnImageWithAnEepromStoresItsSettingsInTheEepromFile) {
   EXPECT_EQ(RunningImage::of_file(image).ask("$01M"), "!019043D");
 }
 
-/// The program has no option for the baud rate of the emulated master. In the second run, the master must use
-/// the new rate of the module.
+/// boards/pico/run has no option for the baud rate of the emulated master. In the second run, this master
+/// must use the new rate of the module.
 TEST(PicoRun, TheMasterUsesTheStoredBaudRateOfTheModule) {
   const Directory directory;
   const Arguments options{"--flash", directory / "flash"};

@@ -1,6 +1,6 @@
-// Tests the functions of boards/lm3s6965evb/run that run_test.cpp does not test: a master that never reads,
-// resets by a fault and by the watchdog, an image for the LaunchPad, the errors of QEMU, and the error if
-// QEMU is missing.
+// Tests boards/lm3s6965evb/run in the cases that run_test.cpp does not test: the master never reads, a fault
+// or the module watchdog resets the module, the image is for the LaunchPad, QEMU reports an error, or QEMU is
+// missing.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -31,7 +31,7 @@ TEST(QemuRun, AMasterThatNeverReadsDoesNotStopTheModule) {
 
 // --- resets ---
 
-/// A debugger, which stops the processor while it is connected.
+/// A debugger. The processor stops while the debugger is connected.
 class Debugger {
  public:
   explicit Debugger(std::uint16_t port) : client_(port) {
@@ -61,7 +61,7 @@ class Debugger {
     }
     client_.send("$" + command + "#" + hex_of(sum & 0xFFU).substr(6));
     std::string reply = packet();
-    while (!reply.empty() && reply[0] == 'T') {  // reports that the processor has stopped
+    while (!reply.empty() && reply[0] == 'T') {  // 'T' begins a report that the processor has stopped
       reply = packet();
     }
     return reply;
@@ -113,7 +113,8 @@ TEST(QemuRun, InitStaysReleasedWhenTheModuleResetsItself) {
     EXPECT_EQ(image.ask("$015"), "!010");
     EXPECT_EQ(image.ask("@010005"), ">");
     Debugger debugger(static_cast<std::uint16_t>(std::stoi(port)));
-    // The code is `cpsid i`, `b .`. Neither the data nor the stack of the image uses its address.
+    // The two instructions are `cpsid i` and `b .`. Neither the data nor the stack of the image uses the
+    // bytes at kDeafLoop.
     debugger.write_memory(kDeafLoop, "72b6fee7");
     debugger.send_processor_to(address);
     debugger.leave();

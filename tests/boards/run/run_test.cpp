@@ -105,7 +105,7 @@ void leave_reply_unread(const std::string& tty, const std::string& command, cons
     }
     EXPECT_EQ(there, reply.size() + 1);
     // If the observation began earlier, it could include the time when the program empties the terminal after
-    // the previous master.
+    // the previous master has disconnected.
     visits.emplace(tty);
     close(fd);
   }
@@ -131,13 +131,14 @@ TEST(Run, TheNextMasterDoesNotReceiveAnUnreadReply) {
 
 // --- persistence ---
 
-TEST(Run, SettingsPersistInTheFileOfTheMemory) {
+TEST(Run, SettingsPersistInTheMemoryFile) {
   const Directory directory;
   const Arguments options{kMemory, directory / "memory"};
   {
     RunningImage image("EX9042D-M", options);
     EXPECT_EQ(bytes_of_file(directory / "memory").size(), kMemorySize);
-    const Finished written = image.mbpoll({"-a", "1", "-t", "4", "-r", "485"}, {"7"});  // 0x01E4, the address
+    // Register 0x01E4, which is 485 for mbpoll, contains the module's address.
+    const Finished written = image.mbpoll({"-a", "1", "-t", "4", "-r", "485"}, {"7"});
     EXPECT_TRUE(has(written.output, "Written 1 references.")) << written.error;
     const int emulator = image.emulator();
     image.process().end(SIGKILL);
@@ -173,7 +174,7 @@ TEST(Run, EndsCleanlyOnASignalAndEndsTheEmulator) {
   }
 }
 
-TEST(Run, TheEmulatorEndsAndTheNextRunReplacesTheLinkWhenTheProgramIsKilled) {
+TEST(Run, IfTheProgramIsKilledTheEmulatorEndsAndTheNextRunReplacesTheLink) {
   const Directory directory;
   const Arguments options{"--link", directory / "tty"};
   std::optional<Terminal> master;
@@ -185,7 +186,7 @@ TEST(Run, TheEmulatorEndsAndTheNextRunReplacesTheLinkWhenTheProgramIsKilled) {
     image.process().end(SIGKILL);
     EXPECT_TRUE(ends(emulator));
   }
-  const RunningImage next("EX9042D", options);  // takes over the link
+  const RunningImage next("EX9042D", options);  // replaces the link
   EXPECT_EQ(fs::read_symlink(directory / "tty"), next.tty());
 }
 
@@ -215,7 +216,7 @@ TEST(Run, RefusesAFileThatIsNotAnImageForThisBoard) {
                  {"EX9042D.elf: the image is for another board", EX9000_PRESET});
 }
 
-TEST(Run, RefusesAFileOfTheMemoryThatItCannotUse) {
+TEST(Run, RefusesAMemoryFileThatItCannotUse) {
   const Directory directory;
   const std::string image = image_of("EX9042D");
   write_file(directory / "short", std::string(kMemorySize - 1, '\xFF'));

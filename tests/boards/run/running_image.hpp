@@ -44,8 +44,8 @@ class RunningImage {
     return {File{image}, options};
   }
 
-  /// Ends the program with SIGTERM. The program then waits for the end of its emulator, which holds the lock
-  /// of a memory file too, so that the next run can use this file.
+  /// Ends the program with SIGTERM. The program ends only after its emulator has ended. Both lock a memory
+  /// file, so the next run can then use this file.
   ~RunningImage() {
     if (process_.pid() > 0) {
       process_.end(SIGTERM);
@@ -109,7 +109,8 @@ class RunningImage {
   ChildProcess process_;
 };
 
-/// Returns whether the process has ended, even if its parent has not read its exit status yet.
+/// Returns whether the process has ended. A process has also ended if it is a zombie, which waits until its
+/// parent reads the exit status.
 inline bool has_ended(int pid) {
   std::ifstream status("/proc/" + std::to_string(pid) + "/stat");
   std::string number;

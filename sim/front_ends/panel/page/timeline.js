@@ -1,5 +1,5 @@
-// Stores, pauses and searches the traffic of the lines, and shows it as a strip on a time scale and as a list of frames
-// and notes.
+// Stores and searches the traffic of the lines, and shows it as a strip on a time scale and as a list of frames and
+// notes. A pause stops the strip and the list, but not the traffic.
 
 import {setAttribute, setText} from "/element.js";
 import {FrameList} from "/frame_list.js";
@@ -17,8 +17,8 @@ const waitingTrimmedFrom = 1200;
 /// would cause a drawing at each repaint.
 const slowest = 30;
 
-/// `framesIn` returns the number of frames in `entries`, and `rowsIn` returns the number of frames and notes. For
-/// entries that were left out, the number of frames may not be known; then `framesIn` counts notes too.
+/// `framesIn` returns the number of frames in `entries`, and `rowsIn` returns the number of frames and notes. The
+/// number of frames among entries that did not arrive is not known. `framesIn` counts all these entries as frames.
 const framesIn = (entries) =>
   entries.reduce((count, entry) => count + (entry.frames ?? entry.missed ?? (entry.note ? 0 : 1)), 0);
 const rowsIn = (entries) => entries.reduce((count, entry) => count + (entry.missed ?? 1), 0);
@@ -96,8 +96,8 @@ export class Timeline {
     }
   }
 
-  /// Adds entries during a pause. If too many entries wait, replaces the oldest ones by one entry for each of their
-  /// lines. Each new entry states how many frames and notes of its line were left out.
+  /// Adds entries during a pause. If too many entries wait, replaces the oldest ones by one entry for each line to
+  /// which they belong. This entry states how many frames and notes of the line were left out.
   addWhilePaused(fresh) {
     this.pending.push(...fresh);
     if (this.pending.length > waitingTrimmedFrom) {

@@ -305,9 +305,8 @@ TEST(WrongModuleOfABusFile, IsRefusedWithFileLineKeyAndRemedy) {
 
 TEST(WrongModuleOfABusFile, AnAddressInvalidForTheProtocolIsRefused) {
   EXPECT_EQ(why_not(module_with("\"address\": \"00\"")),
-            "bus.json:1: lines[0].modules[0]: address 00: a Modbus address is 01 to F7; choose one of these, "
-            "or the "
-            "protocol ascii");
+            "bus.json:1: lines[0].modules[0]: address 00: is not a Modbus address; expected hex 01 to F7, "
+            "or the protocol ascii");
 }
 
 TEST(WrongLineOfABusFile, InvalidOrConflictingKeysAreRefusedWithTheirPlace) {

@@ -53,7 +53,7 @@ TEST(FaultsOfAllModules, AffectEveryModuleAtAGivenTime) {
 
 TEST(FaultsOfAModule, AreRefusedIfTheLineHasNoSuchModule) {
   FaultBench bench(two());
-  EXPECT_EQ(refusal([&] { bench.add("gone", 3); }), "gone: no module 3; this line has 1 to 2");
+  EXPECT_EQ(refusal([&] { bench.add("gone", 3); }), "gone: no module 3; expected a position from 1 to 2");
   EXPECT_TRUE(bench.faults().list().empty());
 }
 

@@ -159,15 +159,16 @@ TEST_P(WrongFault, IsRefusedInOneLineThatNamesTheErrorAndTheRemedy) {
   EXPECT_EQ(why.find('\n'), std::string::npos) << why;
 }
 
-INSTANTIATE_TEST_SUITE_P(Troubles, WrongFault,
-                         testing::Values(Wrong{"", "empty", "bit-errors"}, Wrong{"  ", "empty", "lost-reply"},
-                                         Wrong{"lost", "'lost' is not a fault", "expected one of bit-errors"},
-                                         Wrong{"Gone", "'Gone'", "gone"},
-                                         Wrong{"bit-errors", "bit-errors: has no value", "add P after it"},
-                                         Wrong{"late-reply", "late-reply: has no value", "add TIME after it"},
-                                         Wrong{"wrong-rate", "wrong-rate: has no value", "add RATE after it"},
-                                         Wrong{"foreign-traffic", "foreign-traffic: has no value",
-                                               "add HEX after it"}));
+INSTANTIATE_TEST_SUITE_P(
+    Troubles, WrongFault,
+    testing::Values(Wrong{"", "empty", "bit-errors"}, Wrong{"  ", "empty", "lost-reply"},
+                    Wrong{"lost", "'lost' is not a fault", "expected one of bit-errors"},
+                    Wrong{"Gone", "'Gone'", "gone"},
+                    Wrong{"bit-errors", "bit-errors: has no value", "add P after 'bit-errors'"},
+                    Wrong{"late-reply", "late-reply: has no value", "add TIME after 'late-reply'"},
+                    Wrong{"wrong-rate", "wrong-rate: has no value", "add RATE after 'wrong-rate'"},
+                    Wrong{"foreign-traffic", "foreign-traffic: has no value",
+                          "add HEX after 'foreign-traffic'"}));
 
 INSTANTIATE_TEST_SUITE_P(
     Values, WrongFault,
@@ -211,20 +212,21 @@ INSTANTIATE_TEST_SUITE_P(
 
 INSTANTIATE_TEST_SUITE_P(
     Meaningless, WrongFault,
-    testing::Values(Wrong{"gone at 1s at 2s", "'at': there is a schedule already", "leave out one of them"},
-                    Wrong{"gone at 1s every reply", "'every': there is a schedule already",
-                          "leave out one of them"},
-                    Wrong{"gone for 1s for 2s", "'for' is given twice", "leave out one of them"},
-                    Wrong{"gone every 5s", "has no end", "add 'for TIME'"},
-                    Wrong{"bit-errors 0.1 every 5s", "has no end", "add 'for TIME'"},
-                    Wrong{"gone every 5s for 5s", "'for' is not shorter than the period", "shorten it"},
-                    Wrong{"power-cut every 1s", "lasts 1s, which is not shorter", "add 'for TIME'"},
-                    Wrong{"gone every 10th reply", "has no end", "add 'for TIME'"},
-                    Wrong{"wrong-rate 1200 with probability 0.5", "has no end", "add 'for TIME'"},
-                    Wrong{"hang for 1s", "'for': this fault has no duration", "leave it out"},
-                    Wrong{"foreign-traffic 00 for 1s", "'for': this fault has no duration", "leave it out"},
-                    Wrong{"hang every 0s", "'every 0s'", "a period of at least 1ms"},
-                    Wrong{"hang every 999us", "'every 999us': expected", "a period of at least 1ms"}));
+    testing::Values(
+        Wrong{"gone at 1s at 2s", "'at': the fault already has a schedule", "leave out one schedule"},
+        Wrong{"gone at 1s every reply", "'every': the fault already has a schedule",
+              "leave out one schedule"},
+        Wrong{"gone for 1s for 2s", "'for' is given twice", "leave out one of them"},
+        Wrong{"gone every 5s", "has no end", "add 'for TIME'"},
+        Wrong{"bit-errors 0.1 every 5s", "has no end", "add 'for TIME'"},
+        Wrong{"gone every 5s for 5s", "'for' is not shorter than the period", "a shorter time"},
+        Wrong{"power-cut every 1s", "lasts 1s, which is not shorter", "add 'for TIME'"},
+        Wrong{"gone every 10th reply", "has no end", "add 'for TIME'"},
+        Wrong{"wrong-rate 1200 with probability 0.5", "has no end", "add 'for TIME'"},
+        Wrong{"hang for 1s", "'for': this fault has no duration", "leave out 'for'"},
+        Wrong{"foreign-traffic 00 for 1s", "'for': this fault has no duration", "leave out 'for'"},
+        Wrong{"hang every 0s", "'every 0s'", "a period of at least 1ms"},
+        Wrong{"hang every 999us", "'every 999us': expected", "a period of at least 1ms"}));
 
 }  // namespace
 }  // namespace ex9000::sim

@@ -104,8 +104,8 @@ TEST(InputProgram, AnInvalidProgramIsRefusedWithTheErrorAndTheCorrection) {
            {"0 square 1s for", "expected a duration", "after 'for'"},
            {"0 square 1s for 1ms for 1ms", "'for' is given twice", "leave out one of them"},
            {"0 square 10us", "expected the input to be on", "at least 10us"},
-           {"0 square 1s for 1s", "the period is too short", "the input must be off again"},
-           {"0 square 1s for 999.991ms", "the period is too short", "the input must be off again"},
+           {"0 square 1s for 1s", "the period is too short", "at least 10us longer than it bounces"},
+           {"0 square 1s for 999.991ms", "the period is too short", "at least 10us longer than it bounces"},
            {"0 square 1s bounce 600ms", "expected the input to be on", "at least as long as the bounce"},
            {"0 square 1s bounce 5us", "expected a bounce", "at least 10us"},
            {"0 key", "a key is incomplete", "'at TIME'"},
@@ -113,7 +113,7 @@ TEST(InputProgram, AnInvalidProgramIsRefusedWithTheErrorAndTheCorrection) {
            {"0 key for 1s", "a key is incomplete", "'every TIME'"},
            {"0 key at 1s every 2s for 1ms", "'at' and 'every' cannot be combined", "leave out one of them"},
            {"0 key at 1s for 1ms loud 1s", "'loud': expected 'at TIME'", "'bounce TIME'"},
-           {"0 key every 1s for 1s", "the period is too short", "the input must be off again"},
+           {"0 key every 1s for 1s", "the period is too short", "at least 10us longer than it bounces"},
        }) {
     const std::string why = refusal([&] { parsed(wrong.text); });
     EXPECT_EQ(why.rfind(wrong.text, 0), 0U) << why;
