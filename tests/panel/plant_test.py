@@ -59,7 +59,7 @@ class Plant(Panel):
         master = Master(self.simulator.lines[2])
         self.addCleanup(master.close)
         master.ask("01050000FF00", 8)
-        self.browser.until("document.querySelectorAll('#filler .row').length === 2")
+        self.browser.until("document.querySelectorAll('#filler .row:not([data-kind=note])').length === 2")
         self.browser.click(".line:nth-child(3) > summary")
         self.browser.until("document.querySelector('[aria-label=\"21 EX9042D-M\"] .output')?.dataset.on === 'true'")
 
