@@ -1,5 +1,6 @@
-// Tests the SysTick driver and the I2C driver, which share a counter with their interrupts, with an interrupt
-// at each point between two accesses. Tests the input driver with an edge at each such point.
+// Tests drivers with an event at each point before or after an access to a register or a shared value. For
+// the SysTick driver and the I2C driver, the event is the interrupt with which the driver shares a counter.
+// For the input driver, the event is an edge.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -23,9 +24,9 @@ namespace bus = hal::bus;
 constexpr unsigned kMegahertz = 50;
 constexpr unsigned kPeriod = 10'000 * kMegahertz;
 
-/// Simulates SysTick. Each read takes `cycles_an_access` cycles. When the counter has restarted, the
-/// interrupt runs in the next call of `pass`, or `accesses_late` calls later. Calls while `held` is true do
-/// not count.
+/// Simulates SysTick. Each read takes `cycles_an_access` cycles. After the counter has restarted, the
+/// interrupt waits for `accesses_late` calls of `pass` and runs in the next call. Calls while `held` is true
+/// do not count.
 class SysTick final : public bus::Peripherals {
  public:
   SysTick(unsigned cycles, unsigned cycles_an_access, unsigned accesses_late)
@@ -82,7 +83,7 @@ TEST(SystemTimer, ReturnsTheCorrectTimeIfATickOccursAtAnyPoint) {
       }
     }
   }
-  std::printf("readings of the clock checked: %u\n", asked);
+  std::printf("checked readings of the clock: %u\n", asked);
 }
 
 // --- I2C ---
@@ -106,9 +107,9 @@ class I2cController final : public bus::Peripherals {
   static constexpr std::uint32_t kControl = 0x4002'0004;
 };
 
-/// Begins to send a byte, waits until its timeout has expired, and completes the byte at point `completes` of
-/// the next call of `poll`. If the driver has aborted the transfer, checks that it does not use this
-/// completion for the next transfer. Returns the number of points of that call.
+/// Begins a transfer, waits until the timeout of its first byte has expired, and completes this byte at point
+/// `completes` of the next call of `poll`. If the driver has aborted the transfer, checks that the driver
+/// does not use this completion for the next transfer. Returns the number of points of this call of `poll`.
 unsigned give_up_a_byte_that_completes(unsigned completes) {
   I2cController controller;
   hal::stellaris::I2c<hal::stellaris::Family::Lm3s, 50'000'000> i2c;
@@ -183,9 +184,9 @@ TEST(I2c, AByteFalselyReportedAsCompleteFailsAfterATimeout) {
 using hal::stellaris::PinGroup;
 using hal::stellaris::Port;
 
-/// Simulates ports of input pins. LM3S6965 data sheet, 8.3.2 and 8.5: a change to which the pin is sensitive
-/// sets its raw flag, which stays set until it is cleared. The pin is sensitive to both edges if GPIOIBE is
-/// set, otherwise to the falling edge. A flag that is enabled in GPIOIM causes an interrupt.
+/// Simulates ports of input pins. Source: LM3S6965 data sheet, 8.3.2 and 8.5. Each pin has a raw flag. A
+/// falling edge sets the flag. A rising edge sets the flag only if the bit of the pin in GPIOIBE is set. The
+/// flag stays set until the driver clears it. A set flag causes an interrupt if its bit in GPIOIM is set.
 class InputPorts final : public bus::Peripherals {
  public:
   InputPorts() { bus::peripherals = this; }
@@ -267,6 +268,7 @@ class InputBench {
   }
 
   void start() {
+    Pins::make_inputs();
     baseline_ = Pins::start();
     edges_.begin(baseline_);
   }
@@ -366,7 +368,7 @@ TYPED_TEST(Inputs, AnEdgeAtAnyPointOfTheInterruptIsCountedInAdditionToTheServedE
   }
 }
 
-TYPED_TEST(Inputs, TheComputedLevelIsTheLastOneIfUpToTwoMoreEdgesOccurAtAnyPoints) {
+TYPED_TEST(Inputs, TheComputedLevelIsThePresentLevelIfUpToTwoMoreEdgesOccurAtAnyPoints) {
   for (const unsigned levels : {0U, 1U}) {
     unsigned points = 1;
     for (unsigned first = 0; first < points; ++first) {

@@ -1,5 +1,5 @@
-// Tests outputs, inputs, INIT* and the LED on pins. Tests outputs and inputs in both polarities, even if no
-// board uses one of them.
+// Tests outputs, inputs, INIT* and the LED on pins. Tests outputs and inputs in both polarities, because a
+// board can use either polarity.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -109,6 +109,10 @@ struct InputKind {
 template <class Kind>
 class Inputs : public testing::Test {
  protected:
+  static std::uint16_t start() {
+    Kind::Pins::make_inputs();
+    return Kind::Pins::start();
+  }
   void wire(unsigned channel, bool level) {
     const Place place = kPlaces.at(channel);
     bench.pins.at(place.port, place.pin)
@@ -131,7 +135,7 @@ using InputKinds = testing::Types<InputKind<true>, InputKind<false>>;
 TYPED_TEST_SUITE(Inputs, InputKinds);
 
 TYPED_TEST(Inputs, AnOpenPinIsInactive) {
-  EXPECT_EQ(TypeParam::Pins::start(), 0U);
+  EXPECT_EQ(this->start(), 0U);
   EXPECT_TRUE(this->told().empty());
 }
 
@@ -140,7 +144,7 @@ TYPED_TEST(Inputs, StartReturnsThePresentLevels) {
     for (unsigned channel = 0; channel < kChannels; ++channel) {
       this->wire(channel, (levels >> channel & 1U) != 0);
     }
-    ASSERT_EQ(TypeParam::Pins::start(), levels);
+    ASSERT_EQ(this->start(), levels);
     EXPECT_TRUE(this->told().empty());
   }
 }
@@ -148,12 +152,12 @@ TYPED_TEST(Inputs, StartReturnsThePresentLevels) {
 TYPED_TEST(Inputs, APinWithoutAChannelIsNotInTheLevelsAtStart) {
   this->bench.pins.at(kBeyond.port, kBeyond.pin)
       .drive(End::Board, TypeParam::kActiveHigh ? Drive::High : Drive::Low);
-  EXPECT_EQ(TypeParam::Pins::start(), 0U);
+  EXPECT_EQ(this->start(), 0U);
 }
 
 TYPED_TEST(Inputs, EachEdgeIsReportedOnceWithItsChannelAndLevel) {
-  this->bench.mcu.core.hold(true);  // the test calls the driver, so no interrupt must call it
-  TypeParam::Pins::start();
+  this->bench.mcu.core.hold(true);  // the test calls the driver, so interrupts must not call it
+  this->start();
   for (unsigned channel = 0; channel < kChannels; ++channel) {
     for (const bool level : {true, false}) {
       this->wire(channel, level);
@@ -169,7 +173,7 @@ TYPED_TEST(Inputs, EachRisingOrFallingEdgeIsReportedOnceInAnInterrupt) {
   const auto count = [&] { served += static_cast<unsigned>(this->told().size()); };
   this->bench.serve(1, count);  // port B
   this->bench.serve(3, count);  // port D
-  TypeParam::Pins::start();
+  this->start();
   unsigned edges = 0;
   for (unsigned channel = 0; channel < kChannels; ++channel) {
     for (const bool level : {true, false, true}) {
