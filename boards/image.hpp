@@ -11,10 +11,9 @@
 namespace ex9000::board {
 
 #ifdef EX9000_IMAGES
-static_assert(
-    kModels.size() == EX9000_IMAGES,
-    "a row of the model table has no image; begin the line of the row with four spaces and {\"EX9 "
-    "(boards/CMakeLists.txt finds rows by this pattern)");
+static_assert(kModels.size() == EX9000_IMAGES,
+              "a row of the model table has no image; begin the line of the row with four spaces and {\"EX9 "
+              "(boards/CMakeLists.txt finds rows by this pattern)");
 #endif
 
 #ifdef EX9000_PRESET

@@ -1,6 +1,6 @@
-// Tests the module watchdog of an image (wire.md section 6). It must reset the module during any activity if
-// the image hangs, if the tick stops, or if an interrupt occurs continuously. Also tests that a stuck EEPROM
-// bus causes no reset.
+// Tests the module watchdog of an image (wire.md section 6). The watchdog must reset the module during any
+// activity if the image hangs, if the tick stops, or if an interrupt occurs continuously. Also tests that a
+// stuck EEPROM bus causes no reset.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -49,8 +49,8 @@ class FaultOnBoard : public WatchedImage {
                                                              : kPowerOnValue;
         EXPECT_EQ(bench.outputs(), after);
         for (const WatchedModule::Change& change : module.changes) {
-          // A reset switches all outputs off. Then the module sets them to their value after a reset, one pin
-          // after the other.
+          // A reset switches all outputs off. Then the module drives the outputs to the power-on value or to
+          // the safe value, one pin after the other.
           EXPECT_EQ(change.at <= bench.began ? change.outputs & ~before : change.outputs & ~after, 0);
         }
         EXPECT_TRUE(module.was_reset());
@@ -102,7 +102,8 @@ TEST_P(FaultOnBoard, AnInterruptStormCausesAReset) {
   ASSERT_NE(enabled, 0U);
   for (unsigned interrupt = 0; interrupt < 32; ++interrupt) {
     if ((enabled >> interrupt & 1U) != 0) {
-      expect_reset("interrupt " + std::to_string(interrupt) + " storms", [interrupt](BoardBench& stormy) {
+      const std::string what = "interrupt " + std::to_string(interrupt) + " occurs continuously";
+      expect_reset(what, [interrupt](BoardBench& stormy) {
         stormy.mcu->core.stick(interrupt);
         stormy.mcu->set_clocks_an_access(1000);  // a storm would otherwise take millions of accesses
       });
@@ -113,8 +114,8 @@ TEST_P(FaultOnBoard, AnInterruptStormCausesAReset) {
 TEST_P(FaultOnBoard, AStuckEepromBusCausesRefusedStoresButNoReset) {
   for (const unsigned line : {I2cBlock::kClockPin, I2cBlock::kDataPin}) {
     for (const Doing doing : kEverything) {
-      SCOPED_TRACE(std::string(line == I2cBlock::kClockPin ? "the clock" : "the data line") +
-                   " stuck while " + name_of(doing));
+      SCOPED_TRACE(std::string(line == I2cBlock::kClockPin ? "the clock line" : "the data line") +
+                   " is stuck while " + name_of(doing));
       WatchedModule module(image(), set_up(*find_model(image().model), protocol()));
       BoardBench& bench = module.bench;
       if (bench.image.outputs != 0) {
@@ -134,7 +135,7 @@ TEST_P(FaultOnBoard, AStuckEepromBusCausesRefusedStoresButNoReset) {
         EXPECT_TRUE(module.ascii() ? bench.line.heard[0].byte == '?' : bench.line.heard[1].byte == 0x86U);
       }
       if (doing == Doing::Receiving) {
-        module.ask("", {});  // ends the incomplete request, whatever the module replies
+        module.ask("", {});  // in ASCII, the CR of this request ends the incomplete request
       }
       EXPECT_FALSE(module.stores_a_timeout(0x40));
       if (bench.image.outputs != 0) {

@@ -58,20 +58,20 @@ Settings settings_before(const Model& model, const StoringCommand& command) {
   return settings;
 }
 
-/// The time limit for all register stores of one command. The limit includes the wait for a timeout of the
-/// host watchdog, and 2 ms for each store at which the module stops.
+/// The time limit for all writes of one command to the registers of the I2C master. The limit includes the
+/// wait for a timeout of the host watchdog, and 2 ms for each write before which the module stops.
 constexpr milliseconds kStoresWithin{3000};
 
-/// A module whose emulator is killed at a selected store to the registers of the I2C master.
+/// A module whose emulator is killed before a selected write to the registers of the I2C master.
 class CutModule {
  public:
   CutModule(const Model& model, const StoringCommand& command)
       : command_(command), before_(settings_before(model, command)), module_(model) {}
 
-  /// Starts the module, and sends the command or waits for the timeout of the host watchdog. Makes the power
-  /// fail immediately before store number `stores` (from 1) to the registers of the I2C master. If `stores`
-  /// is 0, the power fails when the command has been sent, or before the wait. Returns false if fewer stores
-  /// occurred within kStoresWithin.
+  /// Starts the module, and sends the command or waits for the timeout of the host watchdog. The power fails
+  /// immediately before write number `stores` (counted from 1) to the registers of the I2C master. If
+  /// `stores` is 0, the power fails when the command has been sent, or before the wait. If fewer writes occur
+  /// within kStoresWithin, the power fails after this time, and the function returns false.
   bool cut_behind(unsigned stores) {
     constexpr std::uint32_t kI2c = 0x4002'0000;
     constexpr std::uint32_t kRegisters = 0x24;
@@ -107,7 +107,8 @@ class CutModule {
   }
 
   /// Checks that the module starts with the old or the new settings, and with the matching outputs. The
-  /// settings must be the new ones if `must_be_done` is true or if the module had begun to reply.
+  /// settings must be the new ones if `must_be_done` is true, or if the module began to reply before the
+  /// power failed.
   void expect_wholly_done_or_not_at_all(bool must_be_done) {
     module_.set_init(false);
     power_up(false);
@@ -143,8 +144,8 @@ class CutModule {
     module_.run_for(milliseconds(60));
     ASSERT_NE(module_.mode().baud, 0U) << "the module does not start";
   }
-  /// Returns whether the module uses the line format of a baud rate code, and a baud rate within 5 % of that
-  /// of the code.
+  /// Returns whether the module uses the line format of `code`, and a baud rate within 5 % of the baud rate
+  /// of `code`.
   bool is_used(std::uint8_t code) {
     const std::uint32_t rate = baud_rate(code);
     const hal::SerialMode mode = module_.mode();

@@ -1,8 +1,8 @@
-// Tests that the hardware watchdog resets an image if it hangs, if the tick stops, or during an interrupt
-// storm. Also tests that an unexpected interrupt resets the image, and that a blocked EEPROM bus and bytes
-// without a gap do not reset it. The image itself is not changed. If a fault requires code, this code is in
-// RAM that the image does not use, and a copy of the vector table in RAM points to it. After a reset, the
-// copy points to the image's own handlers again.
+// Tests that the hardware watchdog resets an image if the image hangs, if the tick stops, or during an
+// interrupt storm. Also tests that the image resets itself on an unexpected interrupt, and that a blocked
+// EEPROM bus and bytes without a gap cause no reset. The image itself is not changed. If a fault requires
+// code, this code is in RAM that the image does not use, and a copy of the vector table in RAM points to this
+// code. After a reset, the copy points to the image's own handlers again.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -96,8 +96,9 @@ class FaultyImage : public testing::TestWithParam<Protocol>, protected EitherPro
         ASSERT_TRUE(level_of(bus(), board::kDriverEnable));
         break;
       case Doing::Storing:
-        // The emulated EEPROM stores immediately. Therefore the test disables the I2C interrupt until the
-        // image has received the request and waits for the end of a byte.
+        // The emulated EEPROM stores immediately. Therefore the test disables the I2C interrupt. It enables
+        // the interrupt again when the image has received the request and is waiting for the end of a byte on
+        // the bus of the EEPROM.
         module_.send(framed("~01OPUMP", {1, 0x06, 0x01, 0xE8, 0, 0x41}), module_.mode());
         bus().write(kClearEnable, 1U << kI2c0);
         module_.run_for(std::chrono::microseconds(ascii() ? 2500 : 5500));
@@ -109,8 +110,8 @@ class FaultyImage : public testing::TestWithParam<Protocol>, protected EitherPro
  public:
   // --- faults ---
 
-  /// `make_interrupt_run` makes code the handler of an interrupt. In the code, it replaces kEntry with the
-  /// address of the interrupt's entry in the vector table, and kOwn with the address of the image's own
+  /// `make_interrupt_run` installs `code` as the handler of an interrupt. In `code`, it replaces kEntry with
+  /// the address of the interrupt's entry in the vector table, and kOwn with the address of the image's own
   /// handler.
   static constexpr std::uint32_t kEntry = 0xE1E1'E1E1;
   static constexpr std::uint32_t kOwn = 0xE2E2'E2E2;
@@ -226,10 +227,10 @@ TEST_P(FaultyImage, IsResetIfItHangsInAnInterrupt) {
 TEST_P(FaultyImage, IsResetIfTheTickStops) { expect_resets("the tick stops", &FaultyImage::stop_tick); }
 
 TEST_P(FaultyImage, IsResetDuringAnInterruptStorm) {
-  expect_resets("an interrupt storms", &FaultyImage::storm);
+  expect_resets("an interrupt occurs continuously", &FaultyImage::storm);
 }
 
-TEST_P(FaultyImage, RunsWithABlockedEepromBusAndStoresWhenItIsFree) {
+TEST_P(FaultyImage, RunsWhileTheEepromBusIsBlockedAndStoresWhenTheBusIsFreeAgain) {
   for (const Doing doing : kEverything) {
     SCOPED_TRACE(static_cast<int>(doing));
     begin(false);
@@ -278,7 +279,8 @@ class HungImage : public testing::Test {
 
   QtestClient& bus() { return module_.emulator().bus(); }
 
-  /// The limit is much shorter than the period of the watchdog, so that the image must reset itself.
+  /// The limit of 10 ms is much shorter than the period of the watchdog. Therefore only the image itself can
+  /// cause this reset.
   void expect_reset_by_the_image() {
     module_.run_to_reset("SHUTDOWN", milliseconds(10));
     module_.reset();

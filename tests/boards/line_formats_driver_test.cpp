@@ -62,7 +62,7 @@ class ImageInFormat : public testing::TestWithParam<ImageAndFormat> {
   BoardBench bench{image_of(std::get<0>(GetParam()).board, std::get<0>(GetParam()).model)};
 };
 
-TEST_P(ImageInFormat, RepliesToAMasterInTheSameFormat) {
+TEST_P(ImageInFormat, RepliesToAMasterThatUsesTheSameFormat) {
   for (int i = 0; i < 20; ++i) {
     bench.run_for(milliseconds(5));
     bench.line.heard.clear();
@@ -74,8 +74,8 @@ TEST_P(ImageInFormat, RepliesToAMasterInTheSameFormat) {
   EXPECT_EQ(damaged_bytes(), 0U);
 }
 
-/// firmware/extensions.md, "Line format": the turn-around time is one character time of the format in ASCII.
-/// In Modbus it is T3.5, with characters of 11 bits.
+/// firmware/extensions.md, "Line format": in ASCII, the turn-around time is one character time of the line
+/// format. In Modbus, it is T3.5 with characters of 11 bits.
 TEST_P(ImageInFormat, RepliesImmediatelyAfterTheTurnAroundTimeOfTheFormat) {
   constexpr microseconds kAtOnce{100};
   const int character = format() == LineFormat::k8N1 ? 10 : 11;
@@ -109,7 +109,7 @@ TEST_P(ImageInFormat, IgnoresFramesWithAnotherParityAndCountsDamagedBytes) {
     EXPECT_TRUE(its_reply.empty());
     bench.run_for(milliseconds(20));
     if (protocol() == Protocol::Ascii) {
-      bench.ask("");  // sends a CR, because a frame with a damaged CR is still open
+      bench.ask("");  // sends a CR, because the module still waits for the CR of a frame whose CR was damaged
     }
     EXPECT_GT(damaged_bytes(), before);
   }

@@ -41,7 +41,7 @@ TEST(MemoryFunctions, MemcpyCopiesExactlyTheRequestedBytesAtAnyAlignment) {
         Memory expected = destination;
         std::copy_n(source.begin() + from, size, expected.begin() + to);
         EXPECT_EQ(memcpy_of_the_image(&destination.at(to), &source.at(from), size), &destination.at(to));
-        ASSERT_EQ(destination, expected) << size << " from " << from << " to " << to;
+        ASSERT_EQ(destination, expected) << size << " bytes from offset " << from << " to offset " << to;
       }
     }
   }
@@ -54,7 +54,7 @@ TEST(MemoryFunctions, MemsetSetsExactlyTheRequestedBytesToTheLowByteOfTheValue) 
       Memory expected = bytes;
       std::fill_n(expected.begin() + at, size, 0xA5);
       EXPECT_EQ(memset_of_the_image(&bytes.at(at), 0x7FA5, size), &bytes.at(at));
-      ASSERT_EQ(bytes, expected) << size << " at " << at;
+      ASSERT_EQ(bytes, expected) << size << " bytes at offset " << at;
     }
   }
 }

@@ -8,7 +8,7 @@
 
 namespace ex9000 {
 
-/// An EX9042D-M at address 01 that has started.
+/// An EX9042D-M with address 01. The constructor returns when the module has started.
 class EmulatedModule {
  public:
   EmulatedModule() {

@@ -1,4 +1,4 @@
-// Tests the images for the Pico that store the settings in an external EEPROM, in the emulator.
+// Tests images for the Pico in the emulator. These images store the settings in an external EEPROM.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -57,7 +57,7 @@ TEST_F(PicoWithEeprom, AnEepromThatBlocksTheBusDoesNotStopTheModule) {
   EXPECT_EQ(bench_.counts().at("timeouts"), 0);
 }
 
-TEST_F(PicoWithEeprom, AModuleThatStartsFreesABusThatTheEepromHolds) {
+TEST_F(PicoWithEeprom, DuringAStartTheModuleFreesABusThatTheEepromHolds) {
   const unsigned data = board::kI2cPins.first_pin;
   begin();
   bench_.power(false);

@@ -1,5 +1,6 @@
-// Tests the flash driver in the emulator: a program runs from RAM, erases and programs the flash, and
-// receives bytes by interrupt at the same time. Also tests that the program finds the reason of each reset.
+// Tests the flash driver in the emulator. A test program runs from RAM. It erases the flash and writes to the
+// flash, while its interrupt handler receives bytes. Also tests that this program finds the reason of each
+// reset.
 #include <gtest/gtest.h>
 
 #include <string>

@@ -17,12 +17,13 @@ using std::chrono::milliseconds;
 using std::chrono::nanoseconds;
 
 constexpr milliseconds kComingUp{100};  ///< wire.md section 2
-/// The longest period of the module's watchdog: wire.md 6.
+/// The longest period of the module's watchdog: wire.md section 6.
 constexpr milliseconds kWatchdogPeriod{1600};
 
 inline play::Bytes text(const std::string& characters) { return {characters.begin(), characters.end()}; }
 
-/// Returns the time from the end of a request to the start bit of the reply.
+/// Sends `request`, and returns the time from its end to the start bit of the reply. `bit` is the duration of
+/// a bit. The first byte of the reply must arrive within 20 ms.
 inline nanoseconds turn_around(PicoBench& bench, const play::Bytes& request, nanoseconds bit) {
   bench.send(request);
   const nanoseconds end = bench.now();

@@ -37,7 +37,7 @@ inline std::map<std::string, std::string> names_of_peripherals() {
 }
 
 /// The power supply of the Pico (Raspberry Pi Pico data sheet, 2.1) or the radio of the Pico W uses these
-/// pins. The radio also uses GP25, which is not in this list because it is the status LED of the Pico.
+/// pins. The radio also uses GP25, which is not in this list because the status LED of the Pico is at GP25.
 inline const std::array<std::string, 3> kReservedPins{"GP23", "GP24", "GP29"};
 
 /// The GPIO at each position of a Pico, from position 1 on (Raspberry Pi Pico data sheet, 2.1). An empty text

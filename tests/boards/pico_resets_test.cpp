@@ -1,6 +1,6 @@
 // Tests the resets of the images for the Pico in the emulator: by the watchdog, by a fault, and for other
-// reasons. To make an image hang, a test changes its code in RAM. After the reset, the second stage copies
-// the image from the flash again.
+// reasons. To make an image hang, a test changes the code of the image in RAM. After the reset, the second
+// stage copies the image from the flash again.
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -116,14 +116,14 @@ TEST_P(HangingPicoImage, IsResetByTheWatchdogIfTheTickHandlerReturnsImmediately)
   expect_reset("timeouts", kTimeout, kWatchdogPeriod);
 }
 
-TEST_P(HangingPicoImage, IsResetImmediatelyIfItFaults) {
+TEST_P(HangingPicoImage, IsResetImmediatelyIfAFaultOccurs) {
   begin();
   make_it_busy();
   replace_handler(kSystemTick, kUndefined);
   expect_reset("requests", kRequest, milliseconds(11));
 }
 
-TEST_P(HangingPicoImage, IsResetByTheWatchdogIfAFaultHandlerFaults) {
+TEST_P(HangingPicoImage, IsResetByTheWatchdogIfAFaultOccursInTheFaultHandler) {
   begin();
   make_it_busy();
   constexpr unsigned kHardFault = 3;

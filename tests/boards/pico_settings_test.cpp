@@ -1,6 +1,7 @@
-// Tests the images for the Pico that store their settings in the flash: requests and pulses while the flash
-// programs and erases, the time of a store, power failures, a reset during an erase, and the time of a start.
-// Also tests an update of the firmware, with the settings in the flash and with the settings in the EEPROM.
+// Tests the images for the Pico that store their settings in the flash: requests and pulses during the
+// programming and the erasing of the flash, the duration of a store, power failures, a reset during an erase,
+// and the duration of a start. Also tests an update of the firmware, with the settings in the flash and with
+// the settings in the EEPROM.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -111,7 +112,7 @@ std::vector<unsigned> counters_in(const Bytes& reply) {
   return counters;
 }
 
-TEST_F(PicoSettings, ContinuousStoresLoseNoRequestAndNoPulse) {
+TEST_F(PicoSettings, NoRequestAndNoPulseIsLostDuringContinuousStores) {
   begin();
   constexpr unsigned kRequests = 10'000;
   constexpr unsigned kPulses = 32'000;
@@ -158,7 +159,7 @@ TEST_F(PicoSettings, TheModuleRepliesInTimeToStoresHalfASecondApartWithTheSlowes
   bench_.forget_erased_sectors();
   bench_.execute("flash-times 400000000 3000000");
   start();
-  constexpr int kStores = 170;  // more than two sectors hold
+  constexpr int kStores = 170;  // two sectors have room for only 158 entries
   nanoseconds longest{};
   for (int i = 0; i < kStores; ++i) {
     // The pauses differ, so that the stores begin at different times during an erase.
@@ -220,8 +221,8 @@ TEST_F(PicoSettings, PowerFailuresAtAnyTimeLoseNoValueThatWasStored) {
   for (int i = 0; i < 100; ++i) {
     start();
     const unsigned found = stored_timeout();
-    ASSERT_TRUE(found == stored || found == next)
-        << "power failure " << i << ": " << found << " instead of " << stored << " or " << next;
+    ASSERT_TRUE(found == stored || found == next) << "power failure " << i << ": the module has stored "
+                                                  << found << "; expected " << stored << " or " << next;
     stored = found;
     for (std::uint64_t stores = random() % 40; stores != 0; --stores) {
       stored = 1 + stored % 250;
@@ -236,7 +237,7 @@ TEST_F(PicoSettings, PowerFailuresAtAnyTimeLoseNoValueThatWasStored) {
   EXPECT_GT(erases(), 14);
 }
 
-TEST_F(PicoSettings, AModuleThatIsResetDuringAnEraseStartsAfterTheErase) {
+TEST_F(PicoSettings, AfterAResetDuringAnEraseTheModuleStartsWhenTheEraseHasEnded) {
   constexpr const char* kUndefined = " 56832";
   constexpr milliseconds kErase{400};
   prepare();

@@ -55,8 +55,8 @@ class StartUp : public testing::TestWithParam<ImageName> {
     }
     return writes;
   }
-  /// Returns the index, among all accesses, of the first write to `address` of a value with a bit of `bits`.
-  /// Returns the number of accesses if there is no such write.
+  /// Returns the index, among all accesses, of the first write to `address` whose value contains at least one
+  /// bit of `bits`. Returns the number of accesses if there is no such write.
   [[nodiscard]] std::size_t first_setting(std::uint32_t address, std::uint32_t bits) const {
     const auto& all = bench.mcu->recorded();
     return static_cast<std::size_t>(std::find_if(all.begin(), all.end(),
@@ -99,12 +99,12 @@ TEST_P(StartUp, IsResetByTheWatchdogIfThePllNeverLocks) {
   EXPECT_TRUE(uart().enabled());
 }
 
-TEST_P(StartUp, EnablesTheClocksOfTheUsedPeripheralsOnly) {
+TEST_P(StartUp, EnablesOnlyTheClocksOfTheUsedPeripherals) {
   come_up();
   const auto gates = [this](unsigned index) { return bench.mcu->system_control.read(0x100 + 4 * index); };
   EXPECT_EQ(gates(0), 1U << 3U);
   EXPECT_EQ(gates(1), (image.tm4c ? 1U << 1U : 1U << 0U) | 1U << 12U | 1U << 16U | 1U << 17U | 1U << 18U);
-  // Ports A to F on the TM4C123; ports A to D, F and G on the LM3S6965.
+  // The TM4C123 uses the ports A to F. The LM3S6965 uses the ports A to D, F and G.
   EXPECT_EQ(gates(2), image.tm4c ? 0x3FU : 0x6FU);
 }
 
@@ -156,7 +156,7 @@ TEST_P(StartUp, ConfiguresInputPinsWithAPullToTheInactiveLevel) {
   EXPECT_TRUE(bench.net(init).level());
 }
 
-TEST_P(StartUp, GivesThePullsOfTheInputsAMillisecondBeforeTheFirstReadOfTheLevels) {
+TEST_P(StartUp, EnablesThePullsOfTheInputsAtLeastAMillisecondBeforeTheFirstReadOfTheLevels) {
   come_up();
   for (unsigned channel = 0; channel < image.inputs; ++channel) {
     const PinPlace pin = image.input_pins.at(channel);
@@ -302,7 +302,7 @@ TEST_P(StartUp, StartsTheWatchdogBeforeItConfiguresTheClock) {
   Writes writes = writes_to(WatchdogTimer::kBase);
   writes.resize(3);
   // 37,500,000 clock cycles at 50 MHz are 750 ms. The watchdog resets the microcontroller after two such
-  // periods. After a reset the watchdog is not locked, so no write unlocks it first.
+  // periods. After a reset the watchdog is not locked, so the image need not unlock it.
   EXPECT_EQ(writes, (Writes{{0x000, 37'500'000}, {0x008, 3}, {0xC00, 0}}));
   EXPECT_TRUE(bench.mcu->watchdog.locked());
   EXPECT_LT(first_setting(WatchdogTimer::kBase + WatchdogTimer::kControl, 1),

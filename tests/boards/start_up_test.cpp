@@ -17,8 +17,9 @@ namespace {
 
 constexpr std::size_t kCopied = 3;
 constexpr std::size_t kCleared = 16;
-/// The number of words in the copied section and in the cleared section, and of the three words before,
-/// between and after these sections. The extra words show whether the code writes outside the sections.
+/// The number of words in the copied section, in the cleared section, and outside: one extra word before the
+/// sections, one between them, and one after them. The extra words show whether the code writes outside the
+/// sections.
 constexpr std::size_t kWords = 1 + kCopied + 1 + kCleared + 1;
 
 }  // namespace

@@ -106,8 +106,8 @@ class WatchedModule : public EitherProtocol {
     }
     return bench.line.sent() + over_behind_its_last_bit();
   }
-  /// Waits for the moment to send a host OK: if the test sends it immediately after this call, the module has
-  /// received it `phase` after a tick.
+  /// Waits until it is time to send a host OK. If the test sends the host OK immediately after this call, the
+  /// module has received the host OK at the time `phase` after a tick.
   void wait_until_a_host_ok_is_over_behind_a_tick(Instant phase) {
     constexpr unsigned kAscii = 4;
     constexpr unsigned kModbus = 8;

@@ -56,12 +56,13 @@ std::vector<Table> tables_in(const char* readme) {
   return result;
 }
 
-/// Returns the only table in a README whose first column has this header, or an empty table.
+/// Returns the table whose first column has the header `head`. Returns an empty table if `readme` contains no
+/// such table.
 Table table_in(const char* readme, const std::string& head) {
   Table found;
   for (const Table& table : tables_in(readme)) {
     if (table[0][0] == head) {
-      EXPECT_TRUE(found.empty()) << "two tables of " << head;
+      EXPECT_TRUE(found.empty()) << "two tables have the header " << head;
       found = table;
     }
   }
@@ -78,7 +79,7 @@ Table table_of(const std::string& head) {
     const auto same = std::find_if(found.begin(), found.end(),
                                    [&row](const Row& other) { return other.at(0) == row.at(0); });
     if (same == found.end()) {
-      ADD_FAILURE() << row.at(0) << " is not in the table of the other board";
+      ADD_FAILURE() << row.at(0) << " has no row in " << EX9000_BASE_README;
     } else {
       *same = row;
     }
@@ -86,7 +87,7 @@ Table table_of(const std::string& head) {
 #else
   Table found = table_in(EX9000_BOARD_README, head);
 #endif
-  EXPECT_FALSE(found.empty()) << "no table of " << head;
+  EXPECT_FALSE(found.empty()) << "no table has the header " << head;
   return found;
 }
 
@@ -97,7 +98,7 @@ std::string output_label(const Model& model, unsigned channel) {
   return is_relay ? "RL" + std::to_string(channel + 1) : "DO" + std::to_string(channel);
 }
 
-/// Returns the terminal of the model at each pin that the model uses, by pin.
+/// Returns the names of the terminals for the model's outputs and inputs, by pin.
 std::map<std::string, std::string> terminals_of(const Model& model) {
   std::map<std::string, std::string> terminals;
   const std::vector<std::string> outputs = names_of(kOutputs);
@@ -181,8 +182,8 @@ TEST(Wiring, NoTableListsAReservedPin) {
 }
 
 #ifdef EX9000_BOARD_HAS_HEADERS
-/// The LaunchPad's headers according to its user's guide (SPMU296, "Headers and BoosterPacks"), from
-/// position 1 on.
+/// The pins at positions 1 to 10 of each header of the EK-TM4C123GXL (user's guide SPMU296, "Headers and
+/// BoosterPacks").
 const std::map<std::string, std::array<std::string, 10>> kHeaders{
     {"J1", {"3.3V", "PB5", "PB0", "PB1", "PE4", "PE5", "PB4", "PA5", "PA6", "PA7"}},
     {"J2", {"GND", "PB2", "PE0", "PF0", "RESET", "PB7", "PB6", "PA4", "PA3", "PA2"}},

@@ -1,5 +1,5 @@
-// Tests the timing of a module: its reset, INIT*, its replies, its driver, and its clock when it wraps and
-// after long pauses.
+// Tests the timing of a module: of its reset, of INIT*, of its replies and of its driver. Also tests the
+// timing when the clock wraps, and after long pauses.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -37,7 +37,7 @@ TEST(Reset, OutputsGoFromDeEnergisedToThePowerOnValueWithoutAGlitch) {
   EXPECT_LT(changes[1].at - changes[0].at, milliseconds(100));
 }
 
-TEST(Reset, ABouncingInitSwitchIsReadAsItsStableLevel) {
+TEST(Reset, AfterTheInitSwitchStopsBouncingItsStableLevelCounts) {
   ModuleBench bench("EX9042D");
   for (int i = 0; i < 20; ++i) {
     bench.module().set_init(i % 2 == 0);
@@ -98,7 +98,7 @@ TEST(Timing, ACharacterHasTenBitsIn8N1AndElevenInTheOtherFormats) {
   }
 }
 
-TEST(Timing, AnAsciiReplyStartsAfterOneCharacterAndWithin20msOr200msIfStored) {
+TEST(Timing, AnAsciiReplyStartsAfterOneCharacterAndWithin20msOr200msIfASettingIsStored) {
   for (const LineMode& mode : all_line_modes()) {
     ModuleBench bench(mode.of("EX9055D"));
     for (const auto& [command, most] :
@@ -118,7 +118,7 @@ TEST(Timing, AnAsciiReplyStartsAfterOneCharacterAndWithin20msOr200msIfStored) {
   }
 }
 
-TEST(Timing, AModbusReplyStartsAfterT35AndWithin20msOr200msIfStored) {
+TEST(Timing, AModbusReplyStartsAfterT35AndWithin20msOr200msIfASettingIsStored) {
   for (const LineMode& mode : all_line_modes()) {
     ModuleBench bench(mode.of("EX9042D-M"));
     const std::uint32_t baud = mode.baud;
@@ -175,7 +175,7 @@ TEST(Driver, IsOnBeforeTheFirstStartBitAndOffWithinACharacterAfterTheLastStopBit
     bench.ask("$01M");
     const auto& drivers = bench.recorder().drivers;
     const auto& bytes = bench.recorder().bytes;
-    ASSERT_EQ(drivers.size(), 4U);  // the master's driver on and off, then the module's
+    ASSERT_EQ(drivers.size(), 4U);  // on and off: first the master's driver, then the module's driver
     ASSERT_EQ(drivers[2].station, 1U);
     EXPECT_LT(drivers[2].at, bytes[5].start);
     EXPECT_GE(drivers[3].at, bytes.back().end);
@@ -242,7 +242,7 @@ TEST(Time, ARequestIsAnsweredAfterAPauseOf36To71Minutes) {
   }
 }
 
-TEST(Time, StoresInitSwitchAndHostWatchdogAreOnTimeAfterAPauseOf36To71Minutes) {
+TEST(Time, InitSwitchHostWatchdogAndStoresAreOnTimeAfterAPauseOf36To71Minutes) {
   ModuleBench bench("EX9042D");
   unsigned number = 0;
   for (const auto pause : kPauses) {
@@ -259,7 +259,8 @@ TEST(Time, StoresInitSwitchAndHostWatchdogAreOnTimeAfterAPauseOf36To71Minutes) {
     bench.run(milliseconds(20));
     EXPECT_EQ(bench.ask("%0101400700"), "?01") << pause.count();
     bench.run(pause);
-    EXPECT_EQ(bench.ask("~013104"), "!01") << pause.count();  // timeout 0.4 s; an `ask` takes over 0.25 s
+    // The timeout is 0.4 s. Each `ask` takes more than 0.25 s.
+    EXPECT_EQ(bench.ask("~013104"), "!01") << pause.count();
     EXPECT_EQ(bench.ask("~010"), "!0180");
     EXPECT_EQ(bench.ask("~010"), "!0184");
     EXPECT_EQ(bench.ask("~011"), "!01");

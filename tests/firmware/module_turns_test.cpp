@@ -1,5 +1,5 @@
-// Tests passes of the main loop (turns) in which the panel is not polled, as on a board between two ticks.
-// Also tests when the module requests that another turn follows immediately, and the command `~**`.
+// Tests turns (passes of the main loop) in which the panel is not polled. Also tests when the module requests
+// that another turn follows immediately, when the module is at rest, and the command `~**`.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -156,8 +156,8 @@ TEST_F(ModuleTurns, ATimeoutRequestsATurnForTheLedAndAnotherWhenItIsStored) {
   EXPECT_FALSE(requests_another_turn());
 }
 
-// If the store of the timeout made more attempts, and if a record takes several pages, the reply to the
-// command could begin later than 200 ms after the command.
+// wire.md D15. With more attempts to store the timeout, the reply to the command could begin later than 200
+// ms after the command if a record has several pages.
 TEST_F(ModuleTurns, ACommandAfterATimeoutThatCannotBeStoredWaitsForOnlyOneAttempt) {
   put("~013101");
   module_.step(now_);
@@ -207,10 +207,9 @@ TEST_F(ModuleTurns, AHostOkReceivedAfterATurnRequestsAnotherTurn) {
 }
 
 // wire.md section 6: a host OK restarts the host watchdog from the time of its reception, even if the main
-// loop processes it later. Here one turn follows three host OKs. The first host OK arrives before the
-// watchdog expires. The other two arrive after the time at which the watchdog would have expired without the
-// first.
-TEST_F(ModuleTurns, TheFirstAndTheLastOfSeveralHostOksBetweenTwoTurnsCount) {
+// loop processes it later. Here one turn follows three host OKs. The first host OK arrives before the time
+// at which the watchdog would expire without a host OK. The second and the third arrive after this time.
+TEST_F(ModuleTurns, IfSeveralHostOksArriveBetweenTwoTurnsTheFirstAndTheLastTakeEffect) {
   put("~013101");
   module_.step(now_);
   while (module_.needs_memory()) {

@@ -37,7 +37,7 @@ TEST(HostWatchdog, HostOksAtIntervalsShorterThanTheTimeoutPreventExpiryAtAnyBaud
   }
 }
 
-TEST(HostWatchdog, ATimeoutWhileAClearCommandIsStoredIsNotCleared) {
+TEST(HostWatchdog, TheCommandThatClearsTheTimeoutStatusDoesNotClearATimeoutDuringItsStore) {
   ModuleBench bench("EX9043D,baud=115200");
   ASSERT_EQ(bench.ask("~013101"), "!01");  // the watchdog has expired when `ask` returns
   bench.send("~013101\r");                 // enables the watchdog again
@@ -121,8 +121,8 @@ TEST(HostWatchdog, ExpiryDrivesTheSafeValueImmediatelyEvenWhileACommandIsBeingSt
   const VirtualTime restarted = bench.now() + microseconds(1750);  // the silence that ends the frame
   std::vector<OutputChange> changes;
   bench.watch_outputs(changes);
-  // The command below stores a power-on value, which takes about 10 ms, and would then drive all outputs. The
-  // timeout occurs during the store.
+  // The command below stores a power-on value. The store takes about 10 ms, and the timeout occurs during the
+  // store. Without the timeout, the module would drive all outputs after the store.
   bench.run(milliseconds(493));
   bench.forget_heard();
   bench.send(with_crc({1, 0x0F, 0x00, 0xA0, 0x00, 0x10, 0x02, 0xFF, 0xFF}));
@@ -155,7 +155,7 @@ TEST(HostWatchdog, ATimeoutThatCannotBeStoredTakesEffectAndIsStoredLater) {
   EXPECT_EQ(bench.ask("~012"), "!01005");
 }
 
-TEST(HostWatchdog, AStatusClearedDuringItsStoreIsStoredAsCleared) {
+TEST(HostWatchdog, ATimeoutStatusThatIsClearedDuringItsStoreIsClearAfterAPowerCycle) {
   ModuleBench bench("EX9043D,baud=115200");
   ASSERT_EQ(bench.ask("~013103"), "!01");
   ASSERT_TRUE(bench.runs_until([&bench] { return bench.module().module().state().settings.timeout_status; }));

@@ -20,12 +20,13 @@ TEST(OneModel, ADeviceIsInitialisedAtCompileTime) {
   EXPECT_EQ(&untouched_device.module().state().model(), &kOnlyModel);
 }
 
-// A program for all models must read the settings that an image stores, and an image must read those of such
-// a program. tests/firmware/settings/record_test.cpp checks the same bytes in a program for all models.
+// A program for all models must be able to read the settings that an image stores. An image must be able to
+// read the settings that a program for all models stores. tests/firmware/settings/record_test.cpp checks the
+// same bytes in a program for all models.
 TEST(OneModel, ItsRecordIsTheSameAsInAProgramForAllModels) {
   const std::vector<std::uint8_t> from_the_factory{
       3,    19,   1,    0,                    // layout, length, sequence
-      1,    6,    0,    1,    0xFF, 0, 0,     // address to timeout status
+      1,    6,    0,    1,    0xFF, 0, 0,     // from the address to the timeout status
       '9',  '0',  '4',  '2',  'M',  0, 0, 5,  // name
       0,    0,    0,    0,                    // power-on value, safe value
       0x4C, 0x60, 0x29, 0x33,                 // check

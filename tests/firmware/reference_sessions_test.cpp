@@ -1,8 +1,8 @@
 // Plays random sessions on the firmware and on the reference, an independent model of a module. Also replays
-// the transcripts of sessions. The environment variables apply only to the first two tests:
-//   EX9000_TRANSACTIONS  least number of requests; default 200000, or 50000 without extensions; tests/long
+// the transcripts of sessions. These environment variables apply only to the first two tests:
+//   EX9000_TRANSACTIONS  minimum number of requests; default 200000, or 50000 without extensions; tests/long
 //                        uses 10000000
-//   EX9000_SEED          seed of the first session, default 9042; each further session has the next number
+//   EX9000_SEED          seed of the first session, default 9042; each further session adds 1 to the seed
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -24,8 +24,8 @@ namespace {
 /// large so that one step can influence many later steps.
 constexpr unsigned kSteps = 300;
 
-/// Returns each model with one protocol once, and each model with two protocols three times. Without
-/// extensions, leaves out the additional models (ModelRow::extension).
+/// Returns the rows of the models: once if a model has one protocol, three times if it has two protocols.
+/// Without extensions, omits the additional models (ModelRow::extension).
 std::vector<const ModelRow*> rows_of(Extensions extensions) {
   std::vector<const ModelRow*> rows;
   for (const ModelRow& row : kModelRows) {
@@ -36,7 +36,8 @@ std::vector<const ModelRow*> rows_of(Extensions extensions) {
   return rows;
 }
 
-/// Returns the model for a seed. Consecutive seeds give each row of `rows_of` in turn.
+/// Returns the model for a seed. Consecutive seeds give consecutive rows of `rows_of`; the first row follows
+/// the last row.
 const ModelRow& row_of(std::uint64_t seed, Extensions extensions) {
   const std::vector<const ModelRow*> rows = rows_of(extensions);
   return *rows[seed % rows.size()];

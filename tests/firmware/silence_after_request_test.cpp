@@ -16,7 +16,7 @@ using std::chrono::microseconds;
 using std::chrono::milliseconds;
 using Bytes = ModuleBench::Bytes;
 
-/// Shorter than both silences at 9600 baud. The shorter one is the turn-around of one character.
+/// Less than both silences. At 9600 baud, the turn-around is 1.04 ms and T3.5 is 4.01 ms.
 constexpr microseconds kWithinAnySilence{300};
 constexpr milliseconds kLong{50};
 
@@ -63,7 +63,7 @@ TEST(SilenceAfterRequest, AnInputChangeDuringTheTurnAroundIsInTheAsciiReply) {
   EXPECT_EQ(answer(bench, "#012", [&] { bench.module().pulse_input(2, 7); }), "!0100007\r");
 }
 
-TEST(SilenceAfterRequest, AnOutputCommandIsRefusedIfTheHostWatchdogExpiresDuringItsSilence) {
+TEST(SilenceAfterRequest, AnOutputCommandIsRefusedIfTheHostWatchdogExpiresDuringTheSilence) {
   constexpr milliseconds kTimeout{100};
   constexpr microseconds kCommand{8 * 10'000'000 / 9600};
   constexpr microseconds kBeforeTheTimeout{500};
@@ -157,7 +157,7 @@ TEST(SilenceAfterRequest, TheBusMessageCountIncludesTheRequestThatReadsIt) {
   EXPECT_EQ(bench.ask(kBusMessages), (Bytes{0x01, 0x08, 0x00, 0x0B, 0x00, 0x03}));
 }
 
-TEST(SilenceAfterRequest, AChangeIsStoredOnceAlthoughAnInputChangesInTheSilence) {
+TEST(SilenceAfterRequest, ASettingIsStoredOnlyOnceEvenIfAnInputChangesDuringTheSilence) {
   ModuleBench bench("EX9052D");
   EXPECT_EQ(answer(bench, "~01ONEW", [&] { bench.module().pulse_input(0, 1); }), "!01\r");
   EXPECT_EQ(bench.module().memory().writes(), 1U);

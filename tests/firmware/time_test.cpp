@@ -49,7 +49,7 @@ TEST(Time, GivesTheDurationAcrossTheWrap) {
   EXPECT_EQ(Time(200).since(kShortlyBeforeTheWrap).microseconds(), 300U);
 }
 
-TEST(Time, TheLongestDurationIsOneMicrosecondShortOfTheWholeRange) {
+TEST(Time, TheLongestDurationIsOneMicrosecondShorterThanTheRangeOfTheClock) {
   EXPECT_EQ(Time(4999).since(Time(5000)).microseconds(), kLast);
 }
 

@@ -20,9 +20,9 @@ constexpr double kCycles = 1'000'000;
 constexpr double kMinutesAYear = 525'600;
 constexpr double kDaysAYear = 365;
 
-/// Calls `use` a hundred times and returns the average number of writes per call. `use` must cause at least
-/// one write. Sets `pages` to the number of pages that have been written. Checks that no page has more writes
-/// than the average of these pages plus one.
+/// Calls `use` a hundred times and returns the average number of writes per call. At least one call must
+/// cause a write. Sets `pages` to the number of pages that have been written. Checks that the number of
+/// writes of each page exceeds the average of these pages by at most one.
 double writes_of(ModuleBench& bench, const std::function<void(unsigned round)>& use, unsigned& pages) {
   constexpr unsigned kRounds = 100;
   PageWrites writes{};
@@ -47,7 +47,7 @@ double writes_of(ModuleBench& bench, const std::function<void(unsigned round)>& 
 
 double years(double writes_a_year, unsigned pages) { return kCycles * pages / writes_a_year; }
 
-TEST(Wear, EnablingAndExpiryOfTheHostWatchdogAndClearingItsStatusCauseThreeWrites) {
+TEST(Wear, IfTheHostWatchdogIsEnabledAndExpiresAndItsStatusIsClearedTheModuleWritesThreeTimes) {
   ModuleBench bench("EX9042D-M@01,protocol=ascii");
   unsigned pages = 0;
   const double writes = writes_of(
@@ -62,8 +62,8 @@ TEST(Wear, EnablingAndExpiryOfTheHostWatchdogAndClearingItsStatusCauseThreeWrite
   EXPECT_EQ(writes, 3);
   EXPECT_EQ(pages, 2U);
   const double a_year = writes * kMinutesAYear;
-  std::printf("host watchdog expiring every minute: %.0f writes a year, %.1f years\n", a_year,
-              years(a_year, pages));
+  std::printf("expiry of the host watchdog every minute: %.0f writes a year, guaranteed for %.1f years\n",
+              a_year, years(a_year, pages));
   EXPECT_GT(years(a_year, pages), 1);
 }
 
@@ -79,7 +79,8 @@ TEST(Wear, APowerOnValueCanBeStoredDailyFor1000Years) {
       pages);
   EXPECT_EQ(writes, 1);
   const double a_year = writes * kDaysAYear;
-  std::printf("power-on value stored daily: %.0f writes a year, %.0f years\n", a_year, years(a_year, pages));
+  std::printf("power-on value stored daily: %.0f writes a year, guaranteed for %.0f years\n", a_year,
+              years(a_year, pages));
   EXPECT_GT(years(a_year, pages), 1000);
 }
 

@@ -1,6 +1,6 @@
 // Lets four clients of Modbus TCP send any bytes to one line, split and joined in any way. The target finds
 // the requests in the bytes of each client without the simulator's code. Each request except a broadcast must
-// get exactly one reply, unless its client leaves first, and nothing else may arrive.
+// get exactly one reply, unless its client leaves first. The simulator must send nothing else to the clients.
 //
 // The input is a sequence of events:
 //
@@ -56,8 +56,8 @@ class Client {
     std::uint8_t function;
   };
 
-  /// Finds the complete frames in the sent bytes by the definition of the header: transaction, protocol 0,
-  /// length 2 to 254, unit.
+  /// Takes the complete frames from `sent_`. The header of a frame contains the transaction, protocol 0, a
+  /// length of 2 to 254, and the unit. Any other protocol or length breaks the stream.
   void find_requests() {
     while (!broken_ && sent_.size() >= kHeader - 1) {
       const unsigned length = word(sent_, 4);

@@ -26,8 +26,8 @@ using judges::dcon_sum;
 using judges::upper_hex;
 
 /// Aborts if the witness reports an error. Also aborts if the outputs do not start with the power-on value,
-/// or with the safe value after a timeout. Without a check, the witness takes only two things from the
-/// module: the settings in force after a reset, and the values with which the module starts.
+/// or with the safe value after a timeout. The witness takes only two things from the module without a
+/// check: the settings in force after a reset, and the values with which the module starts.
 class Session final : public ModuleObserver {
  public:
   Session(const Model& model, bool strict_gaps)
@@ -39,7 +39,7 @@ class Session final : public ModuleObserver {
 
   LeanModule& module() { return module_; }
   Surroundings& around() { return module_.around(); }
-  /// Returns whether the module uses Modbus from the last reset to the next one.
+  /// Returns whether the module uses Modbus. The protocol changes only at a reset.
   [[nodiscard]] bool speaks_modbus() const { return witness_.hears_modbus(); }
   [[nodiscard]] const InForce& in_force() const { return state().in_force; }
   /// Returns T3.5 in microseconds. In ASCII the function returns a value too, but T3.5 has no meaning there.
@@ -90,9 +90,9 @@ class Session final : public ModuleObserver {
     } while (module_.sending());
   }
 
-  /// Adds to a request the CRC, or in ASCII the checksum (if it is enabled) and the CR, and sends it. Returns
-  /// the reply without these additions, or no bytes if there is no reply. The line must be quiet. The result
-  /// is valid until the next reply begins.
+  /// Sends `request`. In Modbus, adds the CRC. In ASCII, adds the checksum if it is enabled, and then the
+  /// CR. Returns the reply without these additions, or no bytes if there is no reply. Call this only while
+  /// the line is quiet. The result is valid until the next reply begins.
   Bytes ask(Bytes request) {
     reply_size_ = 0;
     for (const std::uint8_t each : request) {

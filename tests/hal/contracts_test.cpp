@@ -13,7 +13,7 @@ namespace {
 
 // Each type below whose assertion begins with `!` has at least one missing or wrong member.
 
-struct ClockWithoutItsSecond {
+struct ClockWithoutNowInInterrupt {
   [[nodiscard]] static Time now();
 };
 struct ClockThatCannotBeConst {
@@ -25,7 +25,7 @@ struct ClockOfPlainNumbers {
   [[nodiscard]] static std::uint32_t now_in_interrupt();
 };
 static_assert(kIsClock<RightClock>);
-static_assert(!kIsClock<ClockWithoutItsSecond>);
+static_assert(!kIsClock<ClockWithoutNowInInterrupt>);
 static_assert(!kIsClock<ClockThatCannotBeConst>);
 static_assert(!kIsClock<ClockOfPlainNumbers>);
 
@@ -88,15 +88,15 @@ static_assert(kIsOutputs<RightOutputs>);
 static_assert(!kIsOutputs<OutputsOfAByte>);
 static_assert(!kIsOutputs<OutputsOfAWord>);
 
-struct MemoryThatIsNotPolled : RightMemory {
+struct MemoryWhosePollReturnsNothing : RightMemory {
   static void poll(Time now);
 };
-struct MemoryWithItsArgumentsTheOtherWayRound : RightMemory {
+struct MemoryWithExchangedParameters : RightMemory {
   static void start_write(Bytes source, std::uint16_t address, Time now);
 };
 static_assert(kIsMemory<RightMemory>);
-static_assert(!kIsMemory<MemoryThatIsNotPolled>);
-static_assert(!kIsMemory<MemoryWithItsArgumentsTheOtherWayRound>);
+static_assert(!kIsMemory<MemoryWhosePollReturnsNothing>);
+static_assert(!kIsMemory<MemoryWithExchangedParameters>);
 
 struct SwitchOfANumber {
   [[nodiscard]] static int asserted();
@@ -123,11 +123,11 @@ struct RightMaster {
   [[nodiscard]] static bool busy();
   [[nodiscard]] static I2cResult result();
 };
-struct MasterWithoutAResult : RightMaster {
+struct MasterWithABooleanResult : RightMaster {
   [[nodiscard]] static bool result();
 };
 static_assert(kIsI2cMaster<RightMaster>);
-static_assert(!kIsI2cMaster<MasterWithoutAResult>);
+static_assert(!kIsI2cMaster<MasterWithABooleanResult>);
 
 struct RightFlash {
   static void start_erase(std::uint32_t address);

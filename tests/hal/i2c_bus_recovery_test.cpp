@@ -11,9 +11,9 @@ namespace {
 
 Time now;
 
-/// Records the levels of the wires after each call of `take` and `pull`: `C` and `D` if the clock and the
-/// data line are high, `c` and `d` if they are low. A device on the bus holds the data line low until the
-/// clock has risen `held_for` more times.
+/// Records the levels of the wires after each call of `take` and `pull`. `C` is a high clock line, and `c` is
+/// a low clock line. `D` is a high data line, and `d` is a low data line. A device on the bus holds the data
+/// line low until the clock line has risen `held_for` more times.
 struct RecordedWires {
   static inline std::string levels;
   static inline int held_for = 0;
@@ -23,7 +23,7 @@ struct RecordedWires {
 
   static void take() { set(false, false); }
   static void pull(bool clock, bool data) {
-    constexpr Duration kShortest(5);  // the standard requires 4.7 us at low and 4.0 us at high level
+    constexpr Duration kShortest(5);  // the standard requires at least 4.7 us low and 4.0 us high
     EXPECT_FALSE(now.since(changed) < kShortest && levels.size() > 3) << levels;
     changed = now;
     set(clock, data);
@@ -43,7 +43,7 @@ struct RecordedWires {
 };
 
 /// Returns the levels of the wires during a recovery. The device releases the data line at the rising edge of
-/// clock number `clock`. If `clock` is 0, the device does not hold the data line.
+/// clock pulse number `clock`, from 1. If `clock` is 0, the device does not hold the data line.
 std::string levels_of_recovery(int clock) {
   RecordedWires::levels.clear();
   RecordedWires::held_for = clock;

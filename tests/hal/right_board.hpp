@@ -1,5 +1,5 @@
-// A board that has exactly the members that hal/board.hpp requires. Its functions are only declared, because
-// tests only compile it.
+// A board that has exactly the members that hal/board.hpp requires. The functions of the members are declared
+// but not defined, because no test calls them.
 #pragma once
 
 #include <cstdint>

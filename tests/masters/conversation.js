@@ -9,9 +9,9 @@ const FIRST_RATE_CODE = 3;
 
 const TIMEOUT = 10000; // long enough for a busy machine; in milliseconds, like all times in this file
 // The time that a master waits after a broadcast, which has no reply: slightly more than the duration of the longest
-// broadcast on the line, plus 5 s. The line runs in real time: even on a busy machine, the simulator must read the
-// broadcast within this time. A gateway for Modbus TCP itself separates the requests, so with Modbus TCP the time only
-// has to be long enough to detect a wrong reply.
+// broadcast on the line, plus 5 s. The line runs in real time, so the simulator must read the broadcast during this
+// wait, even on a busy machine. With Modbus TCP, the gateway separates the requests. The wait then only has to be long
+// enough to detect a wrong reply.
 const turnaround = ({ modbusTcp, baud }) => (modbusTcp ? 250 : 5000 + 150000 / baud);
 
 const hex = (bytes) => Buffer.from(bytes).toString("hex").toUpperCase().replace(/..(?=.)/g, "$& ");
@@ -36,8 +36,8 @@ function written(frame, address, value) {
 }
 
 /**
- * Returns the lines of the conversation without its comments. Returns the lines for a gateway only with Modbus TCP, and
- * without the word "gateway".
+ * Returns the lines of the conversation without comments. Omits the lines that begin with "gateway", except with Modbus
+ * TCP. With Modbus TCP, removes this word from these lines.
  */
 function lines({ modbusTcp, baud }) {
   const text = fs.readFileSync(path.join(__dirname, "conversation.txt"), "utf8");
@@ -101,7 +101,7 @@ function options() {
   for (let i = 2; i < process.argv.length; i += 2) {
     const [option, value] = process.argv.slice(i);
     if (!["--tty", "--tcp", "--modbus-tcp", "--baud"].includes(option) || value === undefined) {
-      giveUp(`${option}: expected --tty PATH, --tcp HOST:PORT or --modbus-tcp HOST:PORT, and --baud RATE`);
+      giveUp(`${option}: expected --tty PATH, --tcp HOST:PORT, --modbus-tcp HOST:PORT or --baud RATE`);
     }
     given[option.slice(2)] = value;
   }
@@ -115,7 +115,7 @@ function portOptions() {
     giveUp(`--baud ${baud}: expected one of ${RATES.join(", ")}`);
   }
   if ([tty, tcp, modbusTcp].filter((port) => port !== undefined).length !== 1) {
-    giveUp("expected one of --tty PATH, --tcp HOST:PORT and --modbus-tcp HOST:PORT");
+    giveUp("expected exactly one of --tty PATH, --tcp HOST:PORT and --modbus-tcp HOST:PORT");
   }
   if (tty !== undefined) {
     return { tty, baud: Number(baud) };

@@ -112,7 +112,7 @@ TEST(ImpatientMaster, ARequestLessThanT35AfterAReplyIsLostIfGapsAreStrict) {
   control.ok("advance 10s after 8");
   EXPECT_EQ(client.receive(6), kInputs2Off);
   EXPECT_TRUE(client.hears_nothing_for(std::chrono::milliseconds(0)))
-      << "the first request to 02 was answered";
+      << "expected no reply to the first request to module 02";
 }
 
 }  // namespace

@@ -32,11 +32,11 @@ const ANSWERS = {
   0x10: (frame, body) => written(frame, body.start, body.quantity),
 };
 
-/** Returns whether the library rejects the request because it reads more than 2000 coils or inputs. */
+/** Returns whether the request reads more than 2000 coils or inputs. The library rejects such a request. */
 const refused = (frame) => frame[1] <= 0x02 && word(frame, 4) > 2000;
 
 /**
- * Returns whether the request writes "on" with function 05. The library treats the correct reply to it as "off".
+ * Returns whether the request writes "on" with function 05. The library treats the correct reply as "off".
  * Without Modbus TCP, the library then reports a CRC error, because it expects the CRC of "off".
  */
 const misread = (frame) => frame[1] === 0x05 && word(frame, 4) === 0xff00;

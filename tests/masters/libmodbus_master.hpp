@@ -24,8 +24,8 @@ class LibmodbusMaster {
   LibmodbusMaster(const LibmodbusMaster&) = delete;
   LibmodbusMaster& operator=(const LibmodbusMaster&) = delete;
 
-  /// Sets the time from a request within which its whole reply must arrive. Disables the timeout of libmodbus
-  /// between two bytes, 500 ms by default, because a busy machine can deliver a reply in pieces.
+  /// Sets the longest time from a request to the end of its reply. Disables the timeout of libmodbus for the
+  /// time between two bytes (500 ms by default), because a busy machine can deliver a reply in pieces.
   void wait_for_replies(unsigned milliseconds) {
     modbus_set_byte_timeout(context_.get(), 0, 0);
     modbus_set_response_timeout(context_.get(), milliseconds / 1000, milliseconds % 1000 * 1000);

@@ -21,10 +21,11 @@
 namespace ex9000::system {
 namespace {
 
-/// The bytes of a frame without its CRC. `received` and `heard` can also return other bytes.
+/// The bytes of a frame without its CRC. The result of `received` or `heard` can also contain a CRC, be
+/// incomplete, or be a header of Modbus TCP.
 using Frame = std::vector<std::uint8_t>;
 
-/// A timeout that only detects a program that hangs.
+/// A timeout that expires only if bytes of an expected reply do not arrive.
 constexpr std::chrono::seconds kHang{60};
 
 Frame frame_of(std::istringstream& hex) {
@@ -57,9 +58,10 @@ Frame received(LibmodbusMaster& master, std::size_t size, std::chrono::milliseco
 
 bool uses_modbus_tcp(LibmodbusMaster& master) { return modbus_get_header_length(master.at(1)) > 1; }
 
-/// Receives `size` bytes and a CRC, and returns them without the CRC if it is correct. With Modbus TCP, the
-/// header determines the number of bytes, and there is no CRC. Then this function returns the bytes after the
-/// header, or an incomplete header. libmodbus checks the header in the tests of libmodbus_test.cpp.
+/// Receives `size` bytes and a CRC. Removes the CRC if it is correct, and returns the bytes. With Modbus TCP,
+/// there is no CRC, and the header determines the number of bytes. In this case, the function returns the
+/// bytes after the header, or an incomplete header. libmodbus checks the header in the tests of
+/// libmodbus_test.cpp.
 Frame heard(LibmodbusMaster& master, std::size_t size, std::chrono::milliseconds patience) {
   constexpr std::size_t kHeader = 6;  // bytes before the unit
   constexpr std::size_t kLength = 5;  // the low byte of the number of bytes after the header

@@ -79,7 +79,7 @@ TEST_P(Libmodbus, GetsTheRepliesOfTwoModulesThatItPollsInTurn) {
   }
 }
 
-TEST_P(Libmodbus, ReadsBackTheValuesThatItHasWrittenAndReportsTheServerIds) {
+TEST_P(Libmodbus, ReadsBackTheValuesThatItHasWrittenAndReadsTheServerIds) {
   const Bits pattern{1, 0, 1, 1, 0, 0, 1, 0, 1, 1, 1, 0, 1};
   EXPECT_EQ(write_coils(kOutputs, 0, pattern), 13);
   EXPECT_EQ(input_registers(kInputs, 0, 8), Words(8, 0));
@@ -130,7 +130,8 @@ TEST_P(Libmodbus, BroadcastsAndHostOkHaveNoReply) {
   if (over_modbus_tcp()) {
     master_.wait_for_replies(LibmodbusMaster::kReplies);
   }
-  const int without_reply = over_modbus_tcp() ? EMBXGTAR : ETIMEDOUT;  // the gateway replies for the module
+  // With Modbus TCP, the gateway replies instead of the module.
+  const int without_reply = over_modbus_tcp() ? EMBXGTAR : ETIMEDOUT;
   std::uint16_t word = 0;
   EXPECT_TRUE(fails_with(without_reply, modbus_read_registers(master_.at(kOutputs), kHostOk, 1, &word),
                          "01 03 30 38 00 01"));
@@ -162,20 +163,22 @@ TEST_P(Libmodbus, RejectedRequestsGetTheirExceptionAndDoNotChangeTheTimeout) {
          return modbus_write_and_read_registers(m, kTimeout, 1, words.data(), kTimeout, 1, words.data());
        },
        kInputs},
-      {EMBXILADD, "01 beyond the row", [&](modbus_t* m) { return modbus_read_bits(m, 0, 14, bits.data()); }},
+      {EMBXILADD, "01 beyond the outputs",
+       [&](modbus_t* m) { return modbus_read_bits(m, 0, 14, bits.data()); }},
       {EMBXILADD, "01 without outputs", [&](modbus_t* m) { return modbus_read_bits(m, 0, 8, bits.data()); },
        kInputs},
-      {EMBXILADD, "02 beyond the row",
+      {EMBXILADD, "02 beyond the inputs",
        [&](modbus_t* m) { return modbus_read_input_bits(m, 7, 2, bits.data()); }, kInputs},
-      {EMBXILADD, "03 in a hole",
+      {EMBXILADD, "03 on an absent register",
        [&](modbus_t* m) { return modbus_read_registers(m, kAddress, 3, words.data()); }},
       {EMBXILADD, "04 on a register that only 03 reads",
        [&](modbus_t* m) { return modbus_read_input_registers(m, kAddress, 1, words.data()); }},
-      {EMBXILADD, "05 beyond the row", [](modbus_t* m) { return modbus_write_bit(m, 13, 1); }},
+      {EMBXILADD, "05 beyond the outputs", [](modbus_t* m) { return modbus_write_bit(m, 13, 1); }},
       {EMBXILADD, "05 on an input", [](modbus_t* m) { return modbus_write_bit(m, 0x0020, 1); }, kInputs},
       {EMBXILADD, "06 on the code", [](modbus_t* m) { return modbus_write_register(m, kCode, 0x0090); }},
       {EMBXILADD, "06 on a counter", [](modbus_t* m) { return modbus_write_register(m, 0, 0); }, kInputs},
-      {EMBXILADD, "0F beyond the row", [&](modbus_t* m) { return modbus_write_bits(m, 12, 2, bits.data()); }},
+      {EMBXILADD, "0F beyond the outputs",
+       [&](modbus_t* m) { return modbus_write_bits(m, 12, 2, bits.data()); }},
       {EMBXILADD, "10 on the code",
        [&](modbus_t* m) { return modbus_write_registers(m, kCode + 1, 2, words.data()); }},
       {EMBXILVAL, "01 with quantity 0", [&](modbus_t* m) { return modbus_read_bits(m, 0, 0, bits.data()); }},
@@ -200,8 +203,9 @@ TEST_P(Libmodbus, RejectedRequestsGetTheirExceptionAndDoNotChangeTheTimeout) {
     EXPECT_EQ(refused.send(master_.at(refused.address)), -1) << refused.request;
     EXPECT_EQ(errno, refused.exception) << refused.request << ": " << modbus_strerror(errno);
   }
-  EXPECT_EQ(registers(kOutputs, kTimeout, 1), Words{0xFF}) << "no rejected request may change the timeout";
-  EXPECT_EQ(registers(kInputs, kTimeout, 1), inputs_timeout) << "no rejected request may change the timeout";
+  EXPECT_EQ(registers(kOutputs, kTimeout, 1), Words{0xFF}) << "rejected requests must not change the timeout";
+  EXPECT_EQ(registers(kInputs, kTimeout, 1), inputs_timeout)
+      << "rejected requests must not change the timeout";
 }
 
 TEST_P(Libmodbus, ATimeoutOfTheHostWatchdogBlocksTheOutputs) {

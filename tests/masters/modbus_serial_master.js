@@ -26,8 +26,8 @@ const REQUESTS = {
 const read = (frame, { buffer }) => [frame[0], frame[1], buffer.length, ...buffer];
 
 /**
- * Returns the frame of the reply to function 2B. The library returns only the conformity level of the reply's header.
- * The modules never set "more follows".
+ * Returns the frame of the reply to function 2B. The library delivers the objects of the reply, but only one field of
+ * its header: the conformity level. The modules never set "more follows".
  */
 function identification(frame, { data, conformityLevel }) {
   const objects = Object.entries(data).map(([id, text]) => [Number(id), text.length, ...Buffer.from(text)]);
@@ -44,7 +44,8 @@ const ANSWERS = {
   0x06: (frame, { address, value }) => written(frame, address, value),
   0x0f: (frame, { address, length }) => written(frame, address, length),
   0x10: (frame, { address, length }) => written(frame, address, length),
-  // The library uses the first byte as the whole id and the second as "running". The frame itself is correct.
+  // The library treats the first byte as the whole id and the second byte as "running". `responses` contains the frame
+  // that the library has received.
   0x11: (frame, { responses }) => Buffer.concat(responses).subarray(0, -2),
   0x2b: identification,
 };
@@ -73,7 +74,7 @@ function sends({ modbusTcp }, frame) {
 
 /**
  * Returns whether the library's own port delivers the reply when the reply is complete. Without Modbus TCP, the port
- * must calculate the length of the reply. It can do this for few functions, and not for reads of quantity 0. On a
+ * must calculate the length of the reply. It can do this only for some functions, and not for reads of quantity 0. On a
  * serial line, the port can deliver the reply to function 11 before the reply is complete. The header of Modbus TCP
  * contains the length.
  */
@@ -98,8 +99,8 @@ async function connectOwnPort(client, { tty, host, port, modbusTcp, baud }) {
 }
 
 /**
- * A custom port for the replies that the library's own port does not deliver. A reply is complete when its CRC is
- * correct.
+ * A custom port for the replies that the library's own port does not deliver or delivers too early. A reply is complete
+ * when its CRC is correct.
  */
 class FramePort extends events.EventEmitter {
   constructor(line) {

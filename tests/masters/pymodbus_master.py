@@ -52,16 +52,16 @@ def turnaround(arguments):
     """Returns how long a master waits after a broadcast, which has no reply, in seconds: slightly more than the
     duration of the longest broadcast on the line, plus 5 s.
 
-    The line runs in real time: even on a busy machine, the simulator must read the broadcast within this time. A
-    gateway for Modbus TCP itself separates the requests, so with Modbus TCP the time only has to be long enough to
-    detect a wrong reply.
+    The line runs in real time, so the simulator must read the broadcast during this wait, even on a busy machine. With
+    Modbus TCP, the gateway separates the requests. The wait then only has to be long enough to detect a wrong reply.
     """
     return 0.25 if arguments.modbus_tcp else 5 + 150 / arguments.baud
 
 
 class IdentificationRequest(ReadDeviceInformationRequest):
-    """A request of function 2B with the length of its reply. Without that length, the library waits after a reply that
-    is not an exception: for a pause on a serial line, and for its timeout with RTU frames over TCP."""
+    """A request of function 2B with the length of its reply. Without that length, the library knows the end of a reply
+    only if the reply is an exception or has the header of Modbus TCP. After another reply, the library waits until a
+    pause occurs (on a serial line) or until its timeout expires (with RTU frames over TCP)."""
 
     def __init__(self, data, reply_size):
         super().__init__(data[1], data[2])
@@ -173,7 +173,7 @@ ANSWERS = {
     0x08: lambda response: packed(response.sub_function_code, *response.message),
     0x0F: lambda response: packed(response.address, response.count),
     0x10: lambda response: packed(response.address, response.count),
-    # The library also uses the last byte of the reply as `status`, but here this byte is part of the name.
+    # The library also uses the last byte of the reply as `status`, but this byte is part of the module's name.
     0x11: lambda response: counted(response.identifier),
     0x2B: identification,
     0x46: lambda response: response.data,
@@ -214,8 +214,8 @@ def text_of(frame):
 
 
 def steps(arguments):
-    """Returns the lines of the conversation without its comments. Returns the lines for a gateway only with Modbus TCP,
-    and without the word "gateway"."""
+    """Returns the lines of the conversation without comments. Omits the lines that begin with "gateway", except with
+    Modbus TCP. With Modbus TCP, removes this word from these lines."""
     text = pathlib.Path(__file__).with_name("conversation.txt").read_text(encoding="utf-8")
     text = text.replace("{BAUD}", f"{3 + RATES.index(arguments.baud):02X}")
     lines = (line.split(";")[0].strip() for line in text.splitlines())

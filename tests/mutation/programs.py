@@ -306,10 +306,10 @@ PICO_IMAGES = (
 # Tests of PICO_SOURCES that together reach every driver of the area pico.
 PICO_TESTS = """
     PicoImage.NoOutputIsEnergisedBeforeTheSettingsAreRead
-    PicoImage.TheChipDrivesOnlyTheOutputsOfTheModelTheLineAndTheStatusLed
+    PicoImage.TheChipDrivesOnlyTheLineTheStatusLedAndTheOutputsOfTheModel
     PicoImage.OnlyTheFirstCoreRunsAndInterruptsDoNotNest
     PicoImage.TheDriverIsOnForAllBitsOfAReplyAndGoesOffWithinACharacter
-    PicoImage.TheModuleRepliesToEveryRequestOfAMasterWithoutPausesAt115200Baud
+    PicoImage.TheModuleRepliesToEveryRequestOfAMasterThatDoesNotPauseAt115200Baud
     PicoImage.AReplyBeginsOneCharacterAfterTheRequest
     PicoImage.AReplyToAStoreBeginsWithoutWaitingForTheTick
     PicoImage.TheModuleCountsEveryPulseOfEightInputsDuringContinuousRequests
@@ -320,7 +320,7 @@ PICO_TESTS = """
     PicoWithEeprom.AReplyToAStoreBeginsWithoutWaitingForThePollOfTheMemory
     PicoWithEeprom.APowerFailureDuringAStoreLeavesTheOldOrTheNewName
     PicoWithEeprom.AnEepromThatBlocksTheBusDoesNotStopTheModule
-    PicoWithEeprom.AModuleThatStartsFreesABusThatTheEepromHolds
+    PicoWithEeprom.DuringAStartTheModuleFreesABusThatTheEepromHolds
 """.split()
 
 

@@ -164,8 +164,7 @@ constexpr std::array<LineVerb, 6> kLineVerbs{{
     {"sent", "reads how many bytes the line has written to each of its ports"},
     {"fault FAULT", "adds a fault, see below; replies with its number. 'N fault FAULT': for module N"},
     {"fault off K|all", "removes the fault with this number, or all faults"},
-    {"faults",
-     "lists the faults: number, * if in progress, x and number of occurrences, module, text"},
+    {"faults", "lists the faults: number, * if in progress, x and number of occurrences, module, text"},
 }};
 
 std::string shape(const Verb& verb) {

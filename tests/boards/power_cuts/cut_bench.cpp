@@ -18,10 +18,10 @@ constexpr milliseconds kRepliesWithin{25 + kLongestResponseDelay};
 constexpr std::size_t kAroundSettings = 8;  // bytes of layout, length, sequence and check
 constexpr milliseconds kStoresWithin{600};  // includes the wait until the host watchdog expires
 constexpr milliseconds kFinishesAnUpdateWithin{200};
-constexpr std::uint16_t kDriven = 0xC35A;  // value of the outputs, set before the command that stores
+constexpr std::uint16_t kDriven = 0xC35A;  // the outputs before a command, if the timeout status is not set
 
-/// In bytes. A write of at least this size counts as a try to store. A write that invalidates a copy has 8
-/// bytes.
+/// The size in bytes of the smallest page write that Attempt::tries counts. A write that invalidates a copy
+/// has 8 bytes.
 constexpr unsigned kSmallestTry = 20;
 
 constexpr unsigned kWaysAByteIsLeft = 5;
@@ -34,9 +34,9 @@ std::uint8_t left(unsigned way, std::uint8_t old_byte, std::uint8_t new_byte) {
 
 }  // namespace
 
-/// Returns whether `contents` hold a good copy of layout 3 and a good copy of an older layout. This is the
-/// case if the power fails during the first store after an update, when the new copy is complete and the
-/// firmware has not yet invalidated all older copies.
+/// Returns whether `contents` contain a good copy of layout 3 and a good copy of an older layout. A power cut
+/// during the first store after an update leaves such contents if the new copy is complete and the firmware
+/// has not yet invalidated all copies of older layouts.
 bool CutBench::has_unfinished_update(const Contents& contents) const {
   const StoringModel storing = storing_model(model_);
   const auto good = [&](std::size_t place) { return StoredCopy(storing, contents.data(), place).is_good(); };
@@ -46,9 +46,9 @@ bool CutBench::has_unfinished_update(const Contents& contents) const {
 
 constexpr std::size_t pages_of(std::size_t bytes) { return (bytes + kStoredPage - 1) / kStoredPage; }
 
-/// Returns the number of page writes of the next store if it stores `settings`. Includes the writes that
-/// invalidate old copies (firmware/settings/store.hpp). If `contents` contain an unfinished update, the
-/// result is for the store after the module has finished this update.
+/// Returns the number of page writes when a module with `contents` stores `settings`. Includes the writes
+/// that invalidate old copies (firmware/settings/store.hpp). If `contents` contain an unfinished update, the
+/// result is for a store after the module has finished this update.
 std::size_t CutBench::pages_of_a_store(const Contents& contents, const Settings& settings) const {
   const StoringModel storing = storing_model(model_);
   const std::size_t place = place_that_counts(storing, contents.data());
@@ -163,12 +163,13 @@ Found CutBench::come_up(const Contents& contents, const std::vector<Settings>& g
   }
   EXPECT_EQ(shown_.changes, found.outputs.changes) << "reading has changed outputs";
   if (!has_unfinished_update(contents)) {
-    EXPECT_EQ(CutBench::contents(), contents) << "the start of the module has written to the EEPROM";
+    EXPECT_EQ(CutBench::contents(), contents)
+        << "the module has written to the EEPROM without a command that stores";
   }
   return found;
 }
 
-/// Adds the contents that a cut at this time may leave to `cuts`. The EEPROM may program a page byte by byte
+/// Adds to `cuts` the contents that a cut at this time may leave. The EEPROM may program a page byte by byte
 /// from either end, and each byte is a separate point.
 void CutBench::note_cuts(Cuts& cuts) {
   const bool done = !bench_.line.drives.empty();
@@ -225,13 +226,13 @@ void CutBench::carry_out(const FrameFormat& frame_format, const StoringCommand& 
     bench_.run_for(milliseconds(1));
   }
   ASSERT_EQ(bench_.eeprom.programmed().size(), had_programmed + pages)
-      << "the command does not program the expected number of pages";
+      << "the module does not program the expected number of pages";
   if (command.answered) {
     const Bytes reply = hear();
     ASSERT_GE(reply.size(), 3U) << "no reply";
     EXPECT_TRUE(frame_format.protocol == Protocol::Ascii ? reply[0] == '!' : reply[1] < 0x80U) << "refused";
   }
-  bench_.run_for(milliseconds(10));  // without a reply, the last page may not be verified yet
+  bench_.run_for(milliseconds(10));  // if there is no reply, the last page is possibly not yet verified
 }
 
 std::uint16_t CutBench::outputs_before(const Settings& settings) const {
@@ -309,7 +310,7 @@ Cuts CutBench::cut_everywhere(const Contents& contents, const Settings& before,
 
 Attempt CutBench::attempt(const Contents& contents, const Settings& before, const StoringCommand& command,
                           std::uint16_t place, std::uint8_t bits, std::uint8_t stuck) {
-  constexpr milliseconds kTriedAgain{1300};  // longer than the second between two retries of wire.md D15
+  constexpr milliseconds kTriedAgain{1300};  // longer than the interval of the retries, 1 s (wire.md D15)
   Attempt attempt;
   const FrameFormat frame_format = get_ready(contents, before, command);
   EepromChip& eeprom = bench_.eeprom;

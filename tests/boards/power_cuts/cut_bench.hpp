@@ -1,6 +1,6 @@
-// Runs an image that stores settings, and collects the contents that a power cut at any time may leave in its
-// EEPROM. Also starts the image from such contents and reads its settings, resets its microcontroller during
-// a command, and runs commands on a worn-out EEPROM.
+// Runs an image that stores settings, and collects the contents that a power cut at any time may leave in the
+// EEPROM. Also starts the image from such contents and reads the settings of the module, resets the
+// microcontroller during a command, and sends commands to a module with a worn-out EEPROM.
 #pragma once
 
 #include <array>
@@ -30,8 +30,8 @@ struct Cuts {
   /// instead. The end of a command is also a point.
   std::size_t points = 0;
   std::size_t cuts = 0;  ///< each point counts once for each effect that a cut may have on the EEPROM
-  /// Each of the contents that the cuts left, once. The value is true if the command was certainly done at
-  /// one or more of the cuts that left these contents: the reply had begun, or the command had ended.
+  /// The keys are the different contents that the cuts left. The value is true if the command was certainly
+  /// done at one or more of the cuts that left these contents: the reply had begun, or the command had ended.
   std::map<Contents, bool> left;
   std::uint16_t outputs = 0;    ///< before the command
   std::vector<Instant> events;  ///< times of the EEPROM's events, from the beginning of the command
@@ -61,15 +61,19 @@ struct AfterReset {
 /// The results of a command, or of a timeout of the host watchdog, on a worn-out memory.
 struct Attempt {
   std::vector<std::uint8_t> reply;
-  /// The time from the end of the request until the driver is on, up to 0.1 ms too short. kNever if an
-  /// expected reply is missing; 0 for a command without a reply.
+  /// The time from the end of the request until the driver is on. The value can be up to 0.1 ms too small. It
+  /// is kNever if an expected reply is missing, and 0 if no reply is expected.
   Instant reply_after{0};
-  // The next two numbers are those of the first 600 ms after the request.
-  unsigned spoiled = 0;             ///< number of times that the worn-out byte did not take its new value
-  unsigned tries = 0;               ///< number of page writes of at least 20 bytes
-  std::vector<Contents> meanwhile;  ///< at each event before the reply; without a reply, at each event
-  std::vector<Contents>
-      behind;  ///< at each event from the reply until more than a second later, and at the end
+  // `spoiled` and `tries` count until 600 ms after the end of the request. For a timeout of the host
+  // watchdog, they count for 600 ms, during which the timeout occurs.
+  unsigned spoiled = 0;  ///< number of times that the worn-out byte did not take its new value
+  unsigned tries = 0;    ///< number of page writes of at least 20 bytes
+  /// The contents at each event of the EEPROM before the reply begins. If there is no reply, the contents at
+  /// each event.
+  std::vector<Contents> meanwhile;
+  /// The contents at each event of the EEPROM after the reply has begun, and the contents at the end. The end
+  /// is more than 1 s after the beginning of the reply.
+  std::vector<Contents> behind;
   std::uint16_t outputs_before = 0;
   std::uint16_t outputs = 0;  ///< at the end
 };
@@ -78,25 +82,25 @@ class CutBench {
  public:
   CutBench(const Image& image, const Model& model);
 
-  /// Starts a module with `contents`, which store `before`, and executes the command. Returns the results of
-  /// power cuts at all points of the command. Also checks that the module accepts the command and changes the
-  /// outputs at the correct time.
+  /// Starts a module with `contents`. The settings of this module are then `before`. Sends the command, or
+  /// waits until the host watchdog expires. Returns the results of power cuts at all points of the command.
+  /// Also checks that the module accepts the command and changes the outputs at the correct time.
   Cuts cut_everywhere(const Contents& contents, const Settings& before, const StoringCommand& command);
 
-  /// Starts a module with `contents`, which store `before`, and sends the command, or waits until the host
-  /// watchdog expires. Resets the microcontroller at `time` after the beginning of the command, while the
-  /// EEPROM keeps its supply. Returns the state after the restart.
+  /// Starts a module with `contents`. The settings of this module are then `before`. Sends the command, or
+  /// waits until the host watchdog expires. Resets the microcontroller at `time` after the beginning of the
+  /// command, while the EEPROM keeps its supply. Returns the state after the restart.
   AfterReset reset_after(Instant time, const Contents& contents, const Settings& before,
                          const StoringCommand& command);
 
-  /// If a power cut has interrupted the first store after an update and left `contents`, starts a module with
-  /// `contents`, waits until it has finished the update, and returns the results of power cuts at all points
-  /// of that time. Returns no cuts if `contents` contain no unfinished update.
+  /// If `contents` contain an unfinished update (has_unfinished_update), starts a module with `contents` and
+  /// waits until the module has finished the update. Returns the results of power cuts at all points of this
+  /// time. Returns no cuts if `contents` contain no unfinished update.
   Cuts cut_while_finishing_update(const Contents& contents);
 
-  /// Starts a module with `contents`, which store `before`. Then wears out its memory: from the next write of
-  /// the byte at `place` on, the bits `bits` of this byte have the values that they have in `stuck`. Then
-  /// sends the command, or waits until the host watchdog expires.
+  /// Starts a module with `contents`. The settings of this module are then `before`. Then wears out a byte of
+  /// the memory: from the next write of the byte at `place` on, the bits `bits` of this byte have the values
+  /// that they have in `stuck`. Then sends the command, or waits until the host watchdog expires.
   Attempt attempt(const Contents& contents, const Settings& before, const StoringCommand& command,
                   std::uint16_t place, std::uint8_t bits, std::uint8_t stuck);
 
@@ -109,9 +113,9 @@ class CutBench {
   /// Starts the module with `contents` and reads all its settings. For that, uses the protocol, address,
   /// checksum, baud rate and line format of the first of `guesses` to which the module replies. No Modbus
   /// register contains the whole data format. If `thoroughly` is true, first starts the module in INIT mode
-  /// and reads the format there; otherwise takes the format of a Modbus module from the guess. Also checks
-  /// that reading changes no output, and that the module writes nothing to the EEPROM unless it has an update
-  /// to finish.
+  /// and reads the data format there; otherwise, if the module uses Modbus, takes the data format from the
+  /// guess. Also checks that reading changes no output, and that the module writes nothing to the EEPROM
+  /// unless it has an update to finish.
   Found come_up(const Contents& contents, const std::vector<Settings>& guesses, bool thoroughly);
 
  private:
@@ -135,7 +139,8 @@ class CutBench {
                  std::size_t pages);
 
   const Model& model_;
-  /// Its member `now` is not used. Declared before `bench_` because callbacks of `bench_` write to it.
+  /// The member `now` of this variable is not used. The variable is declared before `bench_` because
+  /// callbacks of `bench_` write to it.
   Outputs shown_;
   BoardBench bench_;
 };

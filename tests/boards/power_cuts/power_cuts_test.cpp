@@ -5,7 +5,7 @@
 //
 // The image stores settings with its own drivers. StoredCopy, which has no code of the firmware, reads the
 // settings from all contents that a cut may leave in the EEPROM. The image also starts from some of these
-// contents, which a seed selects, and the test reads all its settings. With EX9000_CUTS=all in the
+// contents, which a seed selects, and the test reads all settings of the module. With EX9000_CUTS=all in the
 // environment, the tests with one cut start the image from all of these contents.
 #include <gtest/gtest.h>
 
@@ -42,9 +42,9 @@ class PowerCutsOf : public testing::TestWithParam<ImageName> {
     ASSERT_EQ(outputs.changes, std::bitset<16>(outputs.now).count());
   }
 
-  /// Starts the image from `contents`, in which StoredCopy has found `settings`, and checks that the module
-  /// has these settings and drives the outputs that belong to them. `otherwise` are the settings that a
-  /// faulty module might have instead.
+  /// Starts the image from `contents`, in which StoredCopy has found `settings`. Checks that the module has
+  /// these settings and that its outputs have the values that these settings require. `otherwise` are the
+  /// settings that a faulty module might have instead.
   void come_up(const Contents& contents, const Settings& settings, const Settings& otherwise) {
     const Found found = bench_.come_up(contents, {settings, otherwise}, all_cases_requested());
     ASSERT_TRUE(found.settings) << "the module does not reply";
@@ -53,9 +53,9 @@ class PowerCutsOf : public testing::TestWithParam<ImageName> {
     ++booted_;
   }
 
-  /// Checks all contents that the cuts have left, and starts the image from up to `by_the_image` of them. If
-  /// `unfinished` is not null, the contents may also store these settings, which an earlier, interrupted
-  /// command would have stored; see the tests with two cuts.
+  /// Checks all contents that the cuts have left, and starts the image from at most `by_the_image` of these
+  /// contents. `unfinished` points to the settings that an earlier, interrupted command would have stored. If
+  /// it is not null, the contents may also contain these settings; see the tests with two cuts.
   void judge(const Cuts& cuts, const Settings& before, const Settings& done, std::size_t by_the_image,
              const Settings* unfinished = nullptr) {
     points_ += cuts.points;
@@ -90,7 +90,8 @@ class PowerCutsOf : public testing::TestWithParam<ImageName> {
   }
 
   /// Calls `what` for commands in the two states in which every store programs several pages. With
-  /// EX9000_CUTS=all, uses all commands that store something from the state; otherwise three random ones.
+  /// EX9000_CUTS=all, uses all commands that change the settings of the state. Otherwise, uses three random
+  /// commands of these for each state.
   template <class Do>
   void for_some_commands_of_several_pages(Do what) {
     constexpr std::size_t kSome = 3;
@@ -111,19 +112,19 @@ class PowerCutsOf : public testing::TestWithParam<ImageName> {
     }
   }
 
-  /// Returns whether the command changes the settings in `contents`. A copy of an old layout lacks the newer
-  /// settings, so a command that gives one of them its factory value changes nothing.
+  /// Returns whether the command changes the settings in `contents`. A copy of an old layout does not contain
+  /// the newer settings. Therefore a command that gives a newer setting its factory value changes nothing.
   [[nodiscard]] bool stores_from(const Contents& contents, const StoringCommand& command) const {
     const Settings settings = settings_in(model_, contents);
     return command.stores_from(settings, bench_.outputs_before(settings));
   }
 
-  /// Checks up to `pairs` pairs. A pair consists of contents that a cut during `first` may leave, and of a
-  /// second command, during which the test cuts the power at every point. If `first` is the first store after
-  /// an update and the cut has left the update unfinished, the module finishes it before the second command,
-  /// and the test also cuts the power at every point of that time. If `pairs` is SIZE_MAX, each of the
-  /// contents forms pairs with all commands that `storing_from` returns; otherwise it forms one pair, with a
-  /// random one of these commands.
+  /// Checks at most `pairs` pairs. A pair consists of contents that a cut during `first` may leave, and of a
+  /// second command. The test cuts the power at every point of the second command. If `first` is the first
+  /// store after an update, the cut during `first` may leave the update unfinished. The module then finishes
+  /// the update before the second command, and the test also cuts the power at every point of that time. If
+  /// `pairs` is SIZE_MAX, the test combines each of the contents with every command that `storing_from`
+  /// returns. Otherwise, it combines each of the contents with one of these commands, a random one.
   void cut_twice(const State& state, const StoringCommand& first, std::size_t pairs) {
     const Cuts cuts = bench_.cut_everywhere(state.contents, state.settings, first);
     const Settings unfinished = first.done_to(state.settings, cuts.outputs);
@@ -172,7 +173,7 @@ class PowerCutsOf : public testing::TestWithParam<ImageName> {
     std::printf(
         "%s: %zu cuts or resets at %zu points left %zu different contents; of these, %zu contain the old "
         "settings, and %zu contain the settings of an earlier, interrupted command; the image started from "
-        "%zu (seed %u)\n",
+        "%zu of the contents (seed %u)\n",
         bench_name().c_str(), cuts_, points_, distinct_, olds_, finished_late_, booted_, kSeed);
   }
   static std::string bench_name() {
@@ -208,8 +209,9 @@ TEST_P(PowerCutsOf, DuringAMultiPageStoreLeaveEachCommandCompletelyStoredOrNotAt
   });
 }
 
-/// Cuts the power at every point of a second command. With EX9000_CUTS=all, the second command starts from
-/// all contents that a cut during the first command may leave; otherwise from two of them.
+/// Starts the module with contents that a cut during a first command may leave, and cuts the power at every
+/// point of a second command. With EX9000_CUTS=all, uses all such contents; otherwise, uses two of these
+/// contents for each first command.
 ///
 /// After the second cut, the settings of the first command may be valid although they were not valid after
 /// the first cut. For example, the first cut left a single wrong byte in the copy, and the second store wrote

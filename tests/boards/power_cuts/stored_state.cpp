@@ -18,8 +18,9 @@ void put(const Model& model, const Settings& settings, std::uint16_t sequence, s
               contents.begin() + kPlaces[copy].address);
 }
 
-/// Returns settings that differ from the factory settings as far as the model and the command permit. Of the
-/// settings in firmware/extensions.md, only the line format and those that the command requires differ.
+/// Returns settings that differ from the factory settings as far as the model and the command permit. There
+/// is one exception: the settings in firmware/extensions.md have their factory values, except the line format
+/// and the settings that the command requires.
 Settings full_settings(const Model& model, const StoringCommand& command) {
   Settings settings = Settings::factory(model);
   settings.protocol = command.init == Init::SinceReset ? Protocol::Ascii : command.protocol;
@@ -38,7 +39,7 @@ Settings full_settings(const Model& model, const StoringCommand& command) {
   return settings;
 }
 
-/// Returns a state with factory settings, unless the command requires others.
+/// Returns a state with the factory settings, except the settings that the command requires.
 State factory_state(const Model& model, const StoringCommand& command) {
   State state;
   state.contents.fill(0xFF);

@@ -1,7 +1,7 @@
-// Tests a worn-out EEPROM: it acknowledges everything, but some bits of one byte keep a fixed value. The
-// firmware reads back every write, so wire.md section 8 still applies: "If a write fails, the module replies
-// `?AA` or exception 04, and nothing changes." As wire.md D15 requires, the firmware tries each store three
-// times before it refuses the command.
+// Tests a module with a worn-out EEPROM: the EEPROM acknowledges everything, but some bits of one byte keep a
+// fixed value. The firmware reads back each page of a new copy, so wire.md section 8 still applies: "If a
+// write fails, the module replies `?AA` or exception 04, and nothing changes." The firmware tries a store
+// three times before it refuses the command (wire.md D15).
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -84,8 +84,8 @@ TEST_P(WornPageOf, StoresEachCommandCompletelyOrRefusesIt) {
     for (const StoringCommand& command : storing_commands(model_)) {
       const State state = begin_at(beginning, model_, command);
       const bool second_counts = place_that_counts(storing, state.contents.data()) == kStoredPlaces[1];
-      // Wear of the place that the store does not use has no effect. Wear of the other place has no effect if
-      // the stuck bits have the values that the store writes.
+      // The worn-out byte has no effect if the store does not write to it, or if its stuck bits have the
+      // values that the store writes.
       for (const bool of_the_one_that_counts : {false, true}) {
         const Stuck& stuck = kStuck[number++ % std::size(kStuck)];
         const std::size_t page = kStoredPlaces[second_counts == of_the_one_that_counts ? 1 : 0];
@@ -125,7 +125,7 @@ TEST_P(WornPageOf, CausesARefusalInTimeWithTheLongestRecordAndTheSlowestPages) {
     const Attempt attempt = bench_.attempt(state.contents, state.settings, command,
                                            kStoredPlaces[0] + kInTheLastPage, 0xFF, 0x00);
     ASSERT_EQ(attempt.spoiled, kTries);
-    ASSERT_EQ(attempt.tries, 3 + kTries);  // the other three pages were programmed once
+    ASSERT_EQ(attempt.tries, 3 + kTries);  // the first three pages are programmed once each
     ASSERT_LT(attempt.reply_after, kInTime);
     judge(state, command, attempt, false);
     ASSERT_FALSE(HasFailure());

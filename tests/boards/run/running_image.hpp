@@ -44,8 +44,8 @@ class RunningImage {
     return {File{image}, options};
   }
 
-  /// Ends the program with SIGTERM. The program ends only after its emulator has ended. Both lock a memory
-  /// file, so the next run can then use this file.
+  /// Ends the program with SIGTERM. The program ends only after its emulator has ended. Both hold the lock
+  /// of a memory file, so the next run can then use this file.
   ~RunningImage() {
     if (process_.pid() > 0) {
       process_.end(SIGTERM);

@@ -351,7 +351,7 @@ TEST_F(InputsTest, EdgesOfChannelsThatNoModelHasAreIgnored) {
   EXPECT_EQ(inputs_.latched_high(), 0);
 }
 
-TEST_F(InputsTest, EdgesOfChannelsThatThisModelLacksSetNoLatchAndAreNotCounted) {
+TEST_F(InputsTest, EdgesOfChannelsThatThisModelDoesNotHaveAreNotLatchedAndNotCounted) {
   constexpr unsigned kFourInputs = 4;
   pulse(4, 3);
   pulse(7, 3);
@@ -365,7 +365,7 @@ TEST_F(InputsTest, EdgesOfChannelsThatThisModelLacksSetNoLatchAndAreNotCounted) 
 }
 
 // An edge interrupt may occur on a pin that the board has and the model does not use.
-TEST_F(InputsTest, ALevelOnAChannelThatThisModelLacksReads0) {
+TEST_F(InputsTest, TheLevelOfAChannelThatThisModelDoesNotHaveIs0) {
   constexpr unsigned kFourInputs = 4;
   rise(7);
   rise(0);

@@ -7,8 +7,8 @@ namespace ex9000 {
 namespace {
 
 constexpr Duration kLong = milliseconds(10'000);
-/// A timer runs this many microseconds longer than the requested time, because the main loop starts the timer
-/// before it switches the output on, in the same pass.
+/// A timer runs this many microseconds longer than the requested time, because a pass of the main loop first
+/// starts the timer and then switches the output on.
 constexpr std::uint32_t kLate = 300;
 
 class OutputTimersTest : public testing::Test {

@@ -1,5 +1,5 @@
-// Tests First and Second, the two data bytes of a reply. Sources: manuals 1.10; for models with more than
-// eight inputs, wire.md section 1.
+// Tests First and Second, the two data bytes of a reply. Sources: section 1.10 of the manuals; for models
+// with more than eight inputs, wire.md section 1.
 #include "firmware/dcon/writing.hpp"
 
 #include <gtest/gtest.h>
@@ -16,12 +16,12 @@ std::string data_of(std::uint8_t inputs, std::uint8_t outputs) {
   return {reply.bytes().begin(), reply.bytes().end()};
 }
 
-TEST(Data, MoreThanEightOutputsTakeBothBytesHighByteFirst) {
+TEST(Data, IfThereAreMoreThanEightOutputsTheyUseBothBytesAndTheHighByteIsFirst) {
   EXPECT_EQ(data_of(0, 9), "1234");
   EXPECT_EQ(data_of(0, 16), "1234");
 }
 
-TEST(Data, MoreThanEightInputsTakeBothBytesHighByteFirst) {
+TEST(Data, IfThereAreMoreThanEightInputsTheyUseBothBytesAndTheHighByteIsFirst) {
   EXPECT_EQ(data_of(9, 0), "5678");
   EXPECT_EQ(data_of(16, 0), "5678");
 }

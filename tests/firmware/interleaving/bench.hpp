@@ -212,8 +212,8 @@ class Bench {
       serve_pending();
     }
   }
-  /// Serves the pending interrupts of the UART, for example the transmit interrupt for the first byte of a
-  /// reply, which becomes pending during a turn.
+  /// Serves the pending interrupts of the UART. For example, the transmit interrupt for the first byte of a
+  /// reply becomes pending during a turn.
   void serve_pending() {
     interrupt([&] { serve_uart(); });
   }

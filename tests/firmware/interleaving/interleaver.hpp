@@ -44,8 +44,8 @@ class Interleaver {
     }
   }
 
-  /// For each point, first tries all steps at this point. If there are several steps, then tries the first
-  /// step at this point and each further step one point after the previous step.
+  /// For each point, tries all steps at this point. If there are several steps, also tries the first step at
+  /// this point and each further step one point after the previous step.
   void at_every_point() {
     for (int point = 0; point < static_cast<int>(points_); ++point) {
       check(Places(steps_, point));
@@ -60,8 +60,9 @@ class Interleaver {
     counted_.points += points_;
   }
 
-  /// Tries `samples` random pairs of points: the first steps at one point, the others at the same or a later
-  /// point. A step may also come before or after the turn. Tries nothing if there are fewer than two steps.
+  /// Tries `samples` random pairs of points: a random number of first steps at one point, the other steps at
+  /// the same or a later point. A step may also come before or after the turn. Tries nothing if there are
+  /// fewer than two steps.
   void at_pairs(std::mt19937& random, unsigned samples) {
     if (steps_ < 2) {
       return;

@@ -3,9 +3,9 @@
 // The core's own sources and hal/device.hpp run here with crossings, a clock and registers that report every
 // access of the main loop (tests/support/interleaving/). The points are before and after each access. At a
 // point, a test runs steps of a script. The steps cause interrupts. The class Interleaver tries many points.
-// It requires that each part of the outcome is one that also occurs if no step happens during the turn: the
-// first steps come before the turn, and the others after it. scenarios.cpp contains the scenarios of the
-// first two tests.
+// It requires that each part of the outcome also occurs in a run without steps during the turn. In such a
+// run, any number of first steps come before the turn, and the other steps come after it. scenarios.cpp
+// contains the scenarios of the first two tests.
 //
 // The interrupts and the main loop also share the following data, which is neither a WrittenByInterrupt nor a
 // WrittenByMainLoop:
@@ -15,7 +15,7 @@
 //    interrupts until the store to `ended_`;
 //  - the bytes of a reply, to which `rest_` refers: the main loop does not write them from the store to
 //    `begun_` until the store to `ended_`;
-//  - Uart::bit_ and character_: `open` writes them before the UART may interrupt;
+//  - Uart::bit_ and character_: `open` writes them before the UART can cause an interrupt;
 //  - Receiver::protocol_, DconAssembler::checksum_, RtuAssembler::timing_: `listen` writes them before
 //    `open`;
 //  - InputEdges::levels_: `begin` writes this value before interrupts are enabled;
@@ -70,10 +70,10 @@ TEST(Interleaving, TheEndOfTheTurnAroundOfAFrameDoesNotCauseAnEarlyReplyToTheNex
   EXPECT_GT(all.interleavings, 200U);
 }
 
-/// Sends a whole frame at each point of the turn that replies to an earlier frame. While the earlier frame
-/// waits in the queue, the new frame is lost. From the first point at which the new frame is not lost until
-/// the driver is switched on, the module must reply to the new frame at every point. While the driver is on,
-/// the module must ignore the new frame.
+/// Plays the turn that replies to an earlier frame, once for each point of the turn, and sends a new frame at
+/// this point. If the earlier frame still waits in the queue, the new frame is lost. At all later points
+/// before the reply to the earlier frame starts, the module must reply to the new frame too. After this reply
+/// has started, the module must ignore the new frame.
 void expect_one_more_is_kept(Scenario scenario, const std::string& request, const std::string& reply) {
   bool driving = false;
   std::size_t answered = 0;
@@ -100,7 +100,7 @@ void expect_one_more_is_kept(Scenario scenario, const std::string& request, cons
   EXPECT_GT(kept, 1) << scenario.name;
 }
 
-TEST(Interleaving, AfterAFrameIsJudgedTheNextOneIsKeptUntilTheDriverIsSwitchedOn) {
+TEST(Interleaving, AFrameIsKeptIfItArrivesAfterThePreviousFrameIsJudgedAndBeforeTheReplyStarts) {
   expect_one_more_is_kept(dcon("a frame after one that is answered", asked("$01F\r", "!01D01.00\r"), {},
                                {{"!01D01.00\r", "!019055\r"}, {"!01D01.00\r"}}, no_matter),
                           "$01M\r", "!019055\r");
@@ -112,7 +112,7 @@ TEST(Interleaving, AfterAFrameIsJudgedTheNextOneIsKeptUntilTheDriverIsSwitchedOn
                           kRtuRead, kRtuReadOnReply);
 }
 
-TEST(Interleaving, AFrameThatEndsWhileTheMainLoopTurnsIsNotAnsweredTooEarly) {
+TEST(Interleaving, AFrameThatEndsDuringATurnOfTheMainLoopIsNotAnsweredTooEarly) {
   const Scenario scenario =
       dcon("a CR that is newer than the time of the turn", nothing,
            {[](Bench& bench) { bench.asks("@0105\r", ">\r"); }, silence}, {{">\r"}}, outputs_and_name);
@@ -123,7 +123,7 @@ TEST(Interleaving, AFrameThatEndsWhileTheMainLoopTurnsIsNotAnsweredTooEarly) {
   }
 }
 
-TEST(Interleaving, ABusMessageCountRequestIsCountedOnceWheneverItsSilenceEnds) {
+TEST(Interleaving, ARequestForTheBusMessageCountIsCountedOnceIfItsSilenceEndsAtAnyPoint) {
   const std::string request = rtu({1, 0x08, 0, 0x0B, 0, 0});
   const std::string reply = rtu({1, 0x08, 0, 0x0B, 0, 1});
   const Scenario scenario = modbus(

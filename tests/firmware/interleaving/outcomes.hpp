@@ -59,7 +59,7 @@ inline Parts restarted(Bench& bench) {
   bench.pass_time_until(expires + 3);
   bench.whole_turn();
   require(timed_out(), "a host OK was counted twice, or too late");
-  bench.rest(milliseconds(10));  // during this time, the module stores the timeout
+  bench.rest(milliseconds(10));  // during this time, the module stores the timeout status
   return {};
 }
 

@@ -30,8 +30,8 @@ struct Scenario {
   bool restless = false;      ///< after the turn, the main loop is woken every 10 us for 5 ms
 };
 
-/// The point of the turn at which each step of a script happens. A step whose point is not reached happens
-/// after the turn.
+/// The point of the turn at which each step of a script happens. If the turn does not reach this point, the
+/// step happens after the turn.
 using Places = std::vector<int>;
 inline constexpr int kBeforeTheTurn = -1;
 inline constexpr int kAfterTheTurn = 1'000'000;
@@ -79,8 +79,8 @@ inline void require_distances(const Bench& bench, const Chip& hardware, const Sc
   }
 }
 
-/// Plays `scenario` with its steps at `places`. Throws std::logic_error if a condition fails that must hold
-/// for every order of events.
+/// Plays `scenario` with its steps at `places`. Checks the conditions that must hold for every order of
+/// events. Throws std::logic_error if one of these conditions does not hold.
 inline Run play(const Scenario& scenario, const Places& places) {
   Bench bench(scenario.model, scenario.settings);
   Chip& hardware = bench.hardware();

@@ -1,4 +1,4 @@
-// The scenarios that the tests play at many points.
+// The scenarios. The tests let the steps of each scenario happen at many points of a turn.
 #pragma once
 
 #include <functional>
@@ -10,11 +10,13 @@
 
 namespace ex9000::interleaving {
 
-/// Returns a scenario for the DCON module EX9055D with factory settings, but 115200 baud.
+/// Returns a scenario for the DCON module EX9055D. The baud rate is 115200. All other settings have their
+/// factory values.
 Scenario dcon(const char* name, Step before, std::vector<Step> script,
               std::vector<std::vector<std::string>> replies, std::function<Parts(Bench&)> comes_to);
 
-/// Returns a scenario for the Modbus module EX9042D-M with factory settings, but 115200 baud.
+/// Returns a scenario for the Modbus module EX9042D-M. The baud rate is 115200. All other settings have their
+/// factory values.
 Scenario modbus(const char* name, Step before, std::vector<Step> script,
                 std::vector<std::vector<std::string>> replies, std::function<Parts(Bench&)> comes_to);
 

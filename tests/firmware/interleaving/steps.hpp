@@ -61,7 +61,8 @@ inline Step storing(const std::string& request, const std::string& reply) {
   };
 }
 /// Prepares a turn that begins when the memory has finished `jobs` + 1 jobs of a store. The module has not
-/// processed the end of the last job yet. If the store has fewer jobs, it is complete before the turn.
+/// processed the end of the last of these jobs yet. If the store has fewer jobs, the store is complete before
+/// the turn.
 inline Step storing_until(unsigned jobs, const std::string& request, const std::string& reply) {
   return [=](Bench& bench) {
     storing(request, reply)(bench);
@@ -75,7 +76,7 @@ inline Step storing_until(unsigned jobs, const std::string& request, const std::
 /// Prepares a turn that begins while a reply is being sent. `request` must not change settings.
 inline Step replying(const std::string& request, const std::string& reply) { return storing(request, reply); }
 
-/// Prepares a turn that begins when the time until the host watchdog expires is `before`.
+/// Prepares a turn that begins when the remaining time of the host watchdog is `before`.
 inline Step until_expiry(Duration before) {
   return [=](Bench& bench) {
     const Duration remaining = bench.module().host_watchdog_expiry().remaining(Time(bench.hardware().now));

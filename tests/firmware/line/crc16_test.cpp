@@ -36,7 +36,7 @@ TEST(Crc16, TheCheckValueIs4B37) {
   EXPECT_EQ(crc.value(), 0x4B37);
 }
 
-TEST(Crc16, TheExampleOfTheSerialLineGuideIs1241) {
+TEST(Crc16, TheCrcOfTheExampleInTheSerialLineGuideIs1241) {
   const Crc16 crc = crc_of({0x02, 0x07});
   EXPECT_EQ(crc.value(), 0x1241);
   EXPECT_EQ(crc.low_byte(), 0x41);
@@ -47,7 +47,7 @@ TEST(Crc16, TheCrcOfSwitchingChannel0OnIs3A8C) {
   EXPECT_EQ(crc_of({0x01, 0x05, 0x00, 0x00, 0xFF, 0x00}).value(), 0x3A8C);
 }
 
-TEST(Crc16, IsSentLowByteFirstInEveryWorkedFrame) {
+TEST(Crc16, IsSentLowByteFirstInEveryExampleFrame) {
   for (const FrameBytes& frame : kWorkedFrames) {
     const Crc16 crc = crc16({frame.data(), frame.size() - 2});
     EXPECT_EQ(crc.low_byte(), frame[frame.size() - 2]) << "function " << int{frame[1]};
@@ -72,7 +72,7 @@ TEST(Crc16, IsZeroOverTheLongestFrameWithItsCrc) {
   EXPECT_EQ(crc_of(frame).value(), 0);
 }
 
-TEST(Crc16, IsNotZeroWithTheHighByteFirst) {
+TEST(Crc16, IsNotZeroOverAFrameWhoseCrcHasItsHighByteFirst) {
   EXPECT_NE(crc_of({0x01, 0x05, 0x00, 0x00, 0xFF, 0x00, 0x3A, 0x8C}).value(), 0);
 }
 

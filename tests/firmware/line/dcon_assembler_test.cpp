@@ -91,7 +91,7 @@ TEST_F(DconAssemblerTest, DelimitersAndLeadsAreContentWithinAFrame) {
   EXPECT_EQ(taken(), "~01O?>!");
 }
 
-TEST_F(DconAssemblerTest, AnyCharacterButCarriageReturnIsContentWithinAFrame) {
+TEST_F(DconAssemblerTest, EveryCharacterExceptCarriageReturnIsContentWithinAFrame) {
   for (int character = 0; character < 256; ++character) {
     if (character == '\r') {
       continue;
@@ -224,7 +224,7 @@ TEST_F(DconAssemblerTest, AFrameOf32CharactersIsAccepted) {
   EXPECT_EQ(taken(), frame_of(32));
 }
 
-TEST_F(DconAssemblerTest, AFrameLongerThan32CharactersIsDroppedAndTheNextOneAccepted) {
+TEST_F(DconAssemblerTest, AFrameLongerThan32CharactersIsDroppedAndTheNextFrameIsAccepted) {
   for (const std::size_t characters : {33U, 34U, 64U, 255U, 256U, 257U, 1000U}) {
     EXPECT_EQ(put(frame_of(characters) + "\r"), Verdict::TooLong) << characters;
     EXPECT_EQ(taken(), "nothing");
@@ -244,7 +244,7 @@ TEST_F(DconAssemblerTest, ALineErrorInCharacter32Or33SpoilsTheFrame) {
 
 // --- queue space ---
 
-TEST_F(DconAssemblerTest, AFrameIsAssembledWhileOneWaits) {
+TEST_F(DconAssemblerTest, AFrameIsAssembledWhileAnotherFrameWaits) {
   EXPECT_EQ(put("$01M\r"), Verdict::Accepted);
   EXPECT_EQ(put("$012"), Verdict::Open);
   EXPECT_EQ(taken(), "$01M");

@@ -1,4 +1,4 @@
-// Tests FrameQueue, which passes complete frames from interrupts to the main loop, and Frame.
+// Tests Frame and FrameQueue. A FrameQueue passes complete frames from interrupts to the main loop.
 #include "firmware/line/frame_queue.hpp"
 
 #include <gtest/gtest.h>
@@ -66,7 +66,7 @@ TEST(FrameQueue, HandsOverEveryFrameIfThePreviousOneIsDropped) {
   }
 }
 
-TEST(Frame, ItsBytesBeginAfterATurnAroundByte) {
+TEST(Frame, ItsBytesDoNotIncludeATurnAroundByte) {
   Frame frame;
   frame.storage[1] = 0x55;
   frame.offset = 1;

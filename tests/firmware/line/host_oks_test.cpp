@@ -22,7 +22,7 @@ TEST(HostOks, AHostOkWaitsUntilItIsTaken) {
   EXPECT_FALSE(host_oks.waiting());
 }
 
-TEST(HostOks, TheTimesOfTheFirstAndTheLastOfSeveralAreTaken) {
+TEST(HostOks, TheTimesOfTheFirstAndTheLastOfSeveralHostOksAreTaken) {
   HostOks host_oks;
   for (const std::uint32_t time : {5U, 6U, 7U}) {
     host_oks.add_in_interrupt(Time(time));
@@ -33,7 +33,7 @@ TEST(HostOks, TheTimesOfTheFirstAndTheLastOfSeveralAreTaken) {
   EXPECT_EQ(host_oks.received(), 3U);
 }
 
-TEST(HostOks, AHostOkAfterATakeIsBothTheFirstAndTheLast) {
+TEST(HostOks, IfOneHostOkArrivesAfterTheTimesWereTakenItIsBothTheFirstAndTheLast) {
   HostOks host_oks;
   host_oks.add_in_interrupt(Time(5));
   host_oks.take_in_main_loop();

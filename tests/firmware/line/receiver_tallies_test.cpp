@@ -10,7 +10,7 @@ TEST_F(ReceiverTest, CountsNothingBeforeAnythingIsReceived) {
   EXPECT_EQ(counts(), (Counts{0, 0, 0, 0, 0}));
 }
 
-TEST_F(ReceiverTest, AFrameForThisModuleIsABusAndAServerMessage) {
+TEST_F(ReceiverTest, AFrameForThisModuleIsABusMessageAndAServerMessage) {
   listen(Protocol::ModbusRtu);
   frame(kChannel0On);
   EXPECT_EQ(counts(), (Counts{1, 0, 1, 0, 0}));
@@ -59,7 +59,7 @@ TEST_F(ReceiverTest, AFrameWithFramingErrorsOrBreaksIsOneBusError) {
   }
 }
 
-TEST_F(ReceiverTest, AFrameLostToAnOverrunIsABusErrorAndAnOverrun) {
+TEST_F(ReceiverTest, AFrameThatIsLostBecauseOfAnOverrunIsABusErrorAndAnOverrun) {
   listen(Protocol::ModbusRtu);
   byte(0x01);
   byte(0x05, ByteStatus::Overrun);
@@ -68,7 +68,7 @@ TEST_F(ReceiverTest, AFrameLostToAnOverrunIsABusErrorAndAnOverrun) {
   EXPECT_EQ(counts(), (Counts{0, 1, 0, 0, 1}));
 }
 
-TEST_F(ReceiverTest, AFrameReceivedWhileTheQueueIsFullCountsAsAnOverrun) {
+TEST_F(ReceiverTest, AFrameThatArrivesWhileTheQueueIsFullIsCountedAsAnOverrun) {
   listen(Protocol::ModbusRtu);
   frame(kChannel0On);
   counts();
@@ -96,7 +96,7 @@ TEST_F(ReceiverTest, AnOpenFrameIsNotCounted) {
   EXPECT_EQ(counts(), (Counts{0, 0, 0, 0, 0}));
 }
 
-TEST_F(ReceiverTest, AFramingErrorAndABreakAreDamagedBytesInBothProtocolsButAnOverrunIsNot) {
+TEST_F(ReceiverTest, InBothProtocolsAFramingErrorOrABreakDamagesAByteButAnOverrunDoesNot) {
   for (const Protocol protocol : {Protocol::Ascii, Protocol::ModbusRtu}) {
     listen(protocol);
     receiver_.tallies().clear();

@@ -1,5 +1,5 @@
-// Tests the receiver: host OKs and requests that count like one; protocol, checksum and address; required
-// silences; the module's own replies (wire.md D9).
+// Tests the receiver: host OKs, and requests that count like a host OK; protocol, checksum and address;
+// required silences; the module's own replies (wire.md D9 and D11).
 #include "firmware/line/receiver.hpp"
 
 #include <gtest/gtest.h>
@@ -43,7 +43,7 @@ TEST_F(ReceiverTest, EveryHostOkIsCounted) {
   }
 }
 
-TEST_F(ReceiverTest, AsciiFramesOtherThanAHostOkAreNotCountedAsOne) {
+TEST_F(ReceiverTest, AsciiFramesOtherThanAHostOkAreNotCountedAsHostOks) {
   listen(Protocol::Ascii);
   text("$01M\r$02M\r#**\r~**X\r");
   EXPECT_EQ(receiver_.host_oks().received(), 0);

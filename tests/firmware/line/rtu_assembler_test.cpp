@@ -318,7 +318,7 @@ TEST_F(RtuAssemblerTest, AFrameWithAWrongCrcIsNotAHostOk) {
 
 // --- queue space ---
 
-TEST_F(RtuAssemblerTest, AFrameIsAssembledWhileOneWaits) {
+TEST_F(RtuAssemblerTest, AFrameIsAssembledWhileAnotherFrameWaits) {
   wire_.collect = false;
   EXPECT_EQ(verdict_of(kChannel0On), Verdict::Accepted);
   wire_.bytes(frame_of(20));

@@ -19,7 +19,7 @@ inline constexpr std::uint8_t kOwn = 0x01;
 /// An example frame of wire.md section 7.
 inline const FrameBytes kChannel0On{0x01, 0x05, 0x00, 0x00, 0xFF, 0x00, 0x8C, 0x3A};
 
-/// Returns a frame of `size` bytes, CRC included. `size` must be at least 4.
+/// Returns a frame of `size` bytes, including the CRC. `size` must be at least 4.
 inline FrameBytes frame_of(std::size_t size, std::uint8_t address = kOwn) {
   FrameBytes bytes{address, 0x10};
   while (bytes.size() < size - 2) {

@@ -1,6 +1,6 @@
-// Tests the silences between RTU frames and the gaps within them. T3.5 and T1.5 count from the end of the
-// last stop bit of a byte to the next start bit: wire.md section 7, "Framing", and D11; Modbus over Serial
-// Line V1.02, 2.5.1.
+// Tests the silences between RTU frames and the gaps within RTU frames. T3.5 and T1.5 count from the end of
+// the last stop bit of a byte to the next start bit: wire.md section 7, "Framing", and D11; Modbus over
+// Serial Line V1.02, 2.5.1.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -82,7 +82,7 @@ TEST_P(RtuGaps, AGapLongerThanT35EndsTheFrame) {
                                       Verdict::BadCheck, Verdict::TooShort, Verdict::BadCheck}));
 }
 
-TEST_P(RtuGaps, AFrameT35AfterAnotherIsSeparate) {
+TEST_P(RtuGaps, AFrameThatBeginsT35AfterAnotherFrameIsSeparate) {
   for (const Nanoseconds gap : {t35(baud_), t35(baud_) + kClock, 2 * t35(baud_)}) {
     wire_.verdicts.clear();
     wire_.bytes(kChannel0On);
@@ -93,7 +93,7 @@ TEST_P(RtuGaps, AFrameT35AfterAnotherIsSeparate) {
   }
 }
 
-TEST_P(RtuGaps, AFrameT35AfterAnInvalidFrameIsSeparate) {
+TEST_P(RtuGaps, AFrameThatBeginsT35AfterAnInvalidFrameIsSeparate) {
   wire_.bytes({0x01, 0x05, 0x00, 0x00, 0xFF, 0x00, 0x8C, 0x3B});
   wire_.silence(t35(baud_));
   wire_.frame(kChannel0On);
@@ -102,7 +102,7 @@ TEST_P(RtuGaps, AFrameT35AfterAnInvalidFrameIsSeparate) {
 
 // Even if the interrupt of the silence timer is late, the assembler must not join a frame to the invalid
 // frame before it.
-TEST_P(RtuGaps, AFrameT35AfterAnInvalidFrameIsSeparateEvenIfTheTimerIsLate) {
+TEST_P(RtuGaps, AFrameThatBeginsT35AfterAnInvalidFrameIsSeparateEvenIfTheTimerIsLate) {
   Time now(1'000'000);
   const auto byte = [&](std::uint8_t value) { return assembler_.byte(queue_, value, ByteStatus::Good, now); };
   const auto character = static_cast<std::uint32_t>(wire_.character() / 1000);
@@ -162,7 +162,7 @@ TEST_P(RtuGaps, AFrameMayHaveMoreThanOneGracePeriod) {
   EXPECT_EQ(wire_.verdicts, Verdicts{Verdict::Accepted});
 }
 
-TEST_P(RtuGaps, BytesBeingReceivedAtT35BelongToAFrameThatIsTooLong) {
+TEST_P(RtuGaps, IfAFrameIsTooLongAByteThatIsBeingReceivedAtT35BelongsToThisFrame) {
   wire_.bytes(FrameBytes(258, 0x02));
   for (int i = 0; i < 3; ++i) {
     wire_.silence(t35(baud_) - wire_.character() / 2);
@@ -252,7 +252,7 @@ TEST_P(RtuGaps, StrictTimingAllowsAGapOfT15) {
   }
 }
 
-TEST_P(RtuGaps, StrictTimingAcceptsAFrameWithoutGapsAfterASpoiledOne) {
+TEST_P(RtuGaps, AfterASpoiledFrameStrictTimingAcceptsAFrameWithoutGaps) {
   assembler_.use(LineTiming::strictly_at(baud_, format_));
   with_gap(kChannel0On, 4, t15(baud_) + kClock);
   wire_.verdicts.clear();

@@ -18,8 +18,8 @@ const FrameBytes kAllOutput0On{0x00, 0x05, 0x00, 0x00, 0xFF, 0x00};
 const FrameBytes kHostOk{0x01, 0x03, 0x30, 0x38, 0x00, 0x00};
 const FrameBytes kUnknownFunction{0x01, 0x41};
 
-/// The values of the counters of sub-functions 0B to 0F and 12, without the requests of the call of `counts`
-/// that has returned them.
+/// The values of the counters of sub-functions 0B to 0F and 12. `counts` subtracts the requests that it sends
+/// to read these values.
 struct Counts {
   unsigned bus_messages = 0;
   unsigned bus_errors = 0;
@@ -48,7 +48,7 @@ class Diagnosed : public testing::Test, protected CoreBench {
     return reply.size() == 8 ? reply[4] * 256U + reply[5] : 0;
   }
   /// Reads all counters. Each request that reads a counter is itself a bus message and a server message. The
-  /// function subtracts the requests of this call, but not those of earlier calls.
+  /// function subtracts its own requests of this call, but not its requests of earlier calls.
   Counts counts() {
     Counts told;
     told.bus_messages = (counter(0x0B) - 1U) % 65'536U;

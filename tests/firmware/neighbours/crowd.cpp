@@ -24,8 +24,9 @@ constexpr std::size_t kMaster = 0;
 constexpr std::array<const char*, 9> kCrowd{"EX9052D-M", "EX9042D-M,ascii", "EX9043D-M",
                                             "EX9052D",   "EX9068D-M",       "EX9055D",
                                             "EX9042D-M", "EX9052D-M,ascii", "EX9068AD-M"};
-/// The longest times from the end of a request until its reply begins, without and with a store: 20 ms and
-/// 200 ms (wire.md 3 and 7), plus the silence that ends a Modbus request and a margin.
+/// The longest times from the end of a request until its reply begins, without and with a store. The limits
+/// in wire.md, sections 3 and 7, are 20 ms and 200 ms. These constants also include a margin, and the silence
+/// that ends a Modbus request.
 constexpr milliseconds kAnswers{25};
 constexpr milliseconds kAnswersStoring{210};
 

@@ -51,16 +51,16 @@ class Crowd final : public sim::BusObserver {
  public:
   static constexpr std::size_t kModules = 32;
 
-  /// Creates 32 modules at the addresses 01 to 20 (hex): some models that support Modbus, most of them in
-  /// Modbus RTU and the others in ASCII, and some ASCII-only models. The modules in ASCII have the checksum
-  /// enabled, because without it the bytes of a Modbus frame could form a valid command.
+  /// Creates 32 modules at the addresses 01 to 20 (hex). Most modules whose model supports Modbus use Modbus
+  /// RTU. All other modules use ASCII and have the checksum enabled, because without the checksum the bytes
+  /// of a Modbus frame could form a valid command.
   Crowd(std::uint32_t baud, std::uint64_t seed);
 
   [[nodiscard]] sim::VirtualTime now() { return line_.clock().virtual_now(); }
   Pulser& pulser() { return pulser_; }
-  /// Sends one request to a random module, or a broadcast. Waits for the reply, or for the longest time until
-  /// a reply if none is expected. Checks the reply, which module sent it, and the outputs of all modules. The
-  /// next call may follow immediately. Reports failures through GoogleTest.
+  /// Sends one request to a random module, or a broadcast. Waits until the reply ends. If no reply is
+  /// expected, waits until a reply would be too late. Checks the reply, its sender, and the outputs of all
+  /// modules. The next call may follow immediately. Reports failures through GoogleTest.
   void exchange();
 
   [[nodiscard]] std::uint64_t replies() const { return replies_; }

@@ -1,10 +1,10 @@
 // Tests a module on a line with noise and other faults, in Modbus RTU and in DCON with and without checksum.
-// The module must reply and change outputs only if the bytes that it receives form a valid frame. The first
+// The module may reply or change outputs only if the bytes that it receives form a valid frame. The first
 // test also counts the damaged frames that the module accepts, and compares this number with the theory.
 //
 //     EX9000_FRAMES=N    default 10,000. The first test sends N frames for each check and error rate. The
-//                        second test sends N/20 requests for each check and fault, without those of a second
-//                        master.
+//                        second test sends N/20 requests for each check and fault. If the fault is a second
+//                        master, this master sends N/20 additional requests.
 //     EX9000_SEED=N      seed of the noise and of the requests; default 1
 #include <gtest/gtest.h>
 

@@ -19,8 +19,7 @@ using std::chrono::milliseconds;
 
 constexpr std::size_t kModule = 1;
 constexpr unsigned kOutputs = 13;
-/// The time from the last byte of a request until the next request may follow. It is long enough for a reply
-/// of at most 10 characters.
+/// The time that the master waits after a request. It is long enough for a reply of at most 10 characters.
 constexpr VirtualTime kReplies = milliseconds(6);
 /// Longer than the module needs to store the settings of a command and to reply.
 constexpr VirtualTime kLongest = milliseconds(300);
@@ -80,7 +79,7 @@ void NoisyLine::come_up() {
 
 FrameBytes NoisyLine::a_request() {
   const unsigned kind = below(3);
-  // There are only a few values because in DCON the theory is computed separately for each different request.
+  // There are only a few values because in DCON `misses` computes a separate result for each request.
   constexpr std::uint16_t kOutputValues[] = {0x0000, 0x1FFF, 0x0A5A, 0x15A5};
   const std::uint16_t data = kOutputValues[below(4)];
   if (check_ == Check::Crc) {
@@ -172,7 +171,7 @@ void NoisyLine::expect_the_first_clean_frame_is_answered() {
     }
   }
   send(request, kReplies);
-  EXPECT_EQ(to_master_, reply) << name_of(check_) << ": the first valid frame after the noise";
+  EXPECT_EQ(to_master_, reply) << name_of(check_) << ": wrong reply to the first request after the noise";
 }
 
 sim::Levels NoisyLine::disturbed(const Sent& sent) {

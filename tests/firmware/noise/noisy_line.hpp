@@ -24,7 +24,7 @@ struct Tally {
   std::uint64_t sent = 0;
   std::uint64_t damaged = 0;
   std::uint64_t in_data = 0;          ///< only data bits were damaged
-  std::uint64_t taken_in_data = 0;    ///< of those, accepted as valid frames
+  std::uint64_t taken_in_data = 0;    ///< the frames of `in_data` that were accepted as valid
   double expected = 0;                ///< expected value of `taken_in_data`
   std::uint64_t taken_otherwise = 0;  ///< accepted although start or stop bits were damaged
   std::uint64_t storing = 0;          ///< exchanges with an accepted command that may store something
@@ -53,14 +53,15 @@ class NoisyLine final : public sim::Disturbance, public sim::Station {
   FrameBytes a_request();
   /// Sends `request` while noise flips each bit with the probability `flipped_bit`. In DCON, then sends an
   /// undamaged CR. Checks the effects, and adds the results to `tally`. If the module has received a command
-  /// that may store something, restores its settings and restarts it. Reports failures through GoogleTest.
+  /// that may store something, restores the module's original settings and restarts the module. Reports
+  /// failures through GoogleTest.
   void exchange(const FrameBytes& request, double flipped_bit, Tally& tally);
   /// Ends the noise and waits. In DCON, also sends a CR, which ends a frame that is still incomplete. Then
   /// checks that the module replies correctly to the next frame.
   void expect_the_first_clean_frame_is_answered();
 
-  /// Returns the number of replies and changes of outputs. The witness checks that each of them has a
-  /// permitted cause, for example a frame that the module received from any sender.
+  /// Returns the number of replies plus the number of changes of outputs. The witness checks that each reply
+  /// and each change has a permitted cause, for example a frame that the module received from any sender.
   [[nodiscard]] std::uint64_t replies_and_output_changes() const {
     return onlooker_.replies_and_output_changes();
   }

@@ -48,8 +48,8 @@ class Onlooker final : public sim::BusObserver {
     checking_ = true;
   }
 
-  /// Passes to the witness a byte that has arrived at the module. Ignores the byte if the module's driver is
-  /// on. The module may not have processed the byte yet.
+  /// Passes `byte` to the witness, unless the module's driver is on. Call this for each byte that arrives at
+  /// the module. It is possible that the module has not processed the byte yet.
   void hears(std::uint8_t byte, ByteStatus status) {
     if (!driving_) {
       witness_.hears(byte, status == ByteStatus::Good, module_.module().state().in_force.address, now());
@@ -62,7 +62,7 @@ class Onlooker final : public sim::BusObserver {
     return witness_.counts();
   }
   [[nodiscard]] std::uint64_t replies() const { return replies_; }
-  /// Returns the number of replies and changes of outputs.
+  /// Returns the number of replies plus the number of changes of outputs.
   [[nodiscard]] std::uint64_t replies_and_output_changes() const { return replies_and_output_changes_; }
 
   // --- sim::BusObserver ---

@@ -29,7 +29,8 @@ double choose(unsigned from, unsigned count) {
 }
 
 /// Returns the number of ways to choose `weight` of `bits` places so that an even number of the chosen places
-/// is marked, minus the number of ways with an odd number. `marked`: number of marked places.
+/// is marked, minus the number of ways in which an odd number of the chosen places is marked. `marked`:
+/// number of marked places.
 double krawtchouk(unsigned bits, unsigned weight, unsigned marked) {
   double sum = 0;
   for (unsigned j = 0; j <= weight && j <= marked; ++j) {
@@ -114,7 +115,7 @@ double sum_fits(const std::string& text, double flipped_bit) {
   return passes;
 }
 
-/// Returns the numbers of words of `bytes` bytes. Computes them only once for each length.
+/// Returns the result of `words_of` for a frame of `bytes` bytes. Computes it only once for each length.
 const Words& known_words(std::size_t bytes) {
   static std::map<std::size_t, Words> known;
   const auto [place, fresh] = known.try_emplace(bytes);
@@ -170,8 +171,9 @@ double dcon_misses(const std::string& frame, bool checksum, double flipped_bit) 
 }
 
 Interval interval_of(std::uint64_t count) {
-  // For at most `kMany` events, finds by bisection the two means at which `count` or more extreme counts have
-  // a probability of 2.5 %. For 0 events, the lower mean is 0. For more than `kMany` events, uses the normal
+  // For at most `kMany` events, finds two means by bisection. At the lower mean, the probability of at least
+  // `count` events is 2.5 %. At the higher mean, the probability of at most `count` events is 2.5 %.
+  // Exception: for 0 events, the lower mean is 0. For more than `kMany` events, uses the normal
   // approximation.
   const auto at_most = [](std::uint64_t events, double mean) {
     double term = std::exp(-mean);

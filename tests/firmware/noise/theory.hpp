@@ -19,11 +19,10 @@ double crc_misses_of(std::size_t bytes, unsigned flips);
 double crc_misses(std::size_t bytes, double flipped_bit);
 
 /// Returns the probability that a DCON frame arrives damaged and is accepted. `frame` begins with its
-/// delimiter and ends before CR; it includes the checksum if there is one. Two CRs follow `frame`: its own CR,
-/// which can be damaged, and later a second CR, which is not damaged.
-/// Ignores frames that end early because a character has become a CR: all characters of the requests in the
-/// tests require at least three flips for that. With a checksum, also ignores frames whose own CR has become
-/// another character.
+/// delimiter and ends before CR; it includes the checksum if there is one. Two CRs follow `frame`: its own
+/// CR, which can be damaged, and later a second CR, which is not damaged. Ignores frames that end early
+/// because a character has become a CR: all characters of the requests in the tests require at least three
+/// flips for that. With a checksum, also ignores frames whose own CR has become another character.
 double dcon_misses(const std::string& frame, bool checksum, double flipped_bit);
 
 /// A 95 % confidence interval of the mean of a Poisson variable.

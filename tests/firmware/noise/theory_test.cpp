@@ -1,4 +1,4 @@
-// Tests `crc_misses_of`, for a frame of 8 bytes against an exhaustive count.
+// Tests `crc_misses_of`. For a frame of 8 bytes, compares its results with an exhaustive count.
 #include "tests/firmware/noise/theory.hpp"
 
 #include <gtest/gtest.h>

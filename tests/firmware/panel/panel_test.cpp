@@ -1,4 +1,4 @@
-// Tests the debouncing of INIT*, the status LED and the two watchdogs: wire.md sections 2 and 6, D8, D13.
+// Tests the status LED, the two watchdogs and the debouncing of INIT*: wire.md sections 2 and 6, D8, D13.
 #include <gtest/gtest.h>
 
 #include "firmware/panel/debounce.hpp"
@@ -31,7 +31,7 @@ TEST(Debounce, TheLevelIsUnknownUntilItIsStableFor10Ms) {
   }
 }
 
-TEST(Debounce, AReleasedSwitchIsKnownAfter10MsToo) {
+TEST(Debounce, TheLevelOfAReleasedSwitchIsAlsoKnownAfter10Ms) {
   Debounce debounce;
   debounce.sample(false, Time(0));
   EXPECT_FALSE(debounce.known());
@@ -89,7 +89,7 @@ TEST(Debounce, AShortPulseDoesNotChangeTheLevel) {
   EXPECT_TRUE(debounce.known());
 }
 
-TEST(Debounce, AStableChangeChangesTheLevelInBothDirections) {
+TEST(Debounce, TheLevelChangesInBothDirectionsIfTheNewLevelIsStable) {
   Debounce debounce;
   debounce.sample(true, Time(0));
   debounce.sample(true, ms(Time(0), 10));
@@ -212,7 +212,7 @@ TEST(ModuleWatchdog, RequiresANewTickForEveryFeed) {
   EXPECT_FALSE(watchdog.main_loop_alive());
 }
 
-TEST(ModuleWatchdog, IsFedAtEveryTickAndTurn) {
+TEST(ModuleWatchdog, IsFedInEveryTurnThatFollowsANewTick) {
   ModuleWatchdog watchdog;
   for (int i = 0; i < 1000; ++i) {
     watchdog.tick_alive();
@@ -220,7 +220,7 @@ TEST(ModuleWatchdog, IsFedAtEveryTickAndTurn) {
   }
 }
 
-TEST(ModuleWatchdog, ASlowMainLoopFeedsItInTheNextTurnAtTheLatest) {
+TEST(ModuleWatchdog, IsFedInOneOfTwoTurnsAfterAnyNumberOfTicks) {
   for (int ticks = 1; ticks < 1000; ++ticks) {
     ModuleWatchdog watchdog;
     for (int i = 0; i < ticks; ++i) {
@@ -253,7 +253,7 @@ TEST(HostWatchdog, DoesNotRunIfItIsDisabled) {
   EXPECT_FALSE(watchdog.expiry(settings).armed());
 }
 
-TEST(HostWatchdog, ExpiresAfterEveryTimeoutAndNeverEarlier) {
+TEST(HostWatchdog, ExpiresAtMost1MsLateAndNeverEarlyForEveryTimeoutValue) {
   for (const Time start : kStarts) {
     for (unsigned tenths = 1; tenths <= 0xFF; ++tenths) {
       HostWatchdog watchdog;

@@ -123,7 +123,7 @@ TEST_F(RequestCycleTest, ABroadcastDoesNotAffectTheNextRequest) {
 }
 
 // wire.md D17.
-TEST_F(RequestCycleTest, ATimeoutDuringAClearCommandIsNotCleared) {
+TEST_F(RequestCycleTest, ACommandDoesNotClearTheStatusOfATimeoutThatOccursDuringTheCommand) {
   state_.settings.timeout_status = true;
   judge("~011");
   EXPECT_FALSE(cycle_.outcome().change().applied_to(state_.settings).timeout_status);
@@ -132,7 +132,7 @@ TEST_F(RequestCycleTest, ATimeoutDuringAClearCommandIsNotCleared) {
   EXPECT_TRUE(cycle_.finish());
 }
 
-TEST_F(RequestCycleTest, ATimeoutBeforeAClearCommandIsCleared) {
+TEST_F(RequestCycleTest, ACommandClearsTheStatusOfATimeoutThatOccurredBeforeTheCommand) {
   state_.settings.timeout_status = true;
   cycle_.keep_timeout_status();
   judge("~011");
@@ -140,7 +140,7 @@ TEST_F(RequestCycleTest, ATimeoutBeforeAClearCommandIsCleared) {
 }
 
 // wire.md D18.
-TEST_F(RequestCycleTest, TheNextReplyStartsAfterTheGapSinceThePreviousReply) {
+TEST_F(RequestCycleTest, TheNextReplyStartsAfterTheGapThatFollowsThePreviousReply) {
   judge("$01M");
   cycle_.finish();
   take_reply();
@@ -185,7 +185,7 @@ TEST_F(RequestCycleTest, AReplyWaitsForTheLaterOfTheGapAndTheResponseDelay) {
   }
 }
 
-TEST_F(RequestCycleTest, TheResponseDelayAppliesToOneRequest) {
+TEST_F(RequestCycleTest, HoldReplyUntilDoesNotDelayTheReplyToTheNextRequest) {
   judge("$01M");
   cycle_.hold_reply_until(now_ + milliseconds(30));
   judge("$01M");

@@ -57,7 +57,7 @@ TEST(StoredBytes, SettingsOfAnotherModelAreNotRead) {
   }
 }
 
-/// Corrupts every byte of the files' copies, in both older layouts.
+/// Corrupts each byte of each good copy of layouts 1 and 2 in the files, one byte at a time.
 TEST(OldLayouts, AnyCorruptionOfASingleByteIsDetected) {
   for (const StoredBytes& stored : all_stored_bytes()) {
     for (const std::size_t place : {0x00U, 0x20U}) {

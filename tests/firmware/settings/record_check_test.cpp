@@ -84,9 +84,9 @@ class OfOneKind {
 
 // --- what the check determines ---
 
-// If the check and all other bytes are known, only one value is possible for four adjacent bytes before the
-// check. The check therefore detects every error that is limited to such four bytes and does not change the
-// length of the record.
+// Four adjacent bytes before the check have only one possible value if the check and all bytes except these
+// four are known. The check therefore detects every error that is limited to four such bytes and does not
+// change the length of the record.
 TEST(Record, AnyFourAdjacentBytesAreDeterminedByTheCheckAndTheOtherBytes) {
   std::mt19937 random(3);
   for (const Model& each : kModels) {

@@ -24,7 +24,7 @@ void expect_round_trip(const Model& which, const Stored& stored) {
 
 // --- written records are read back ---
 
-TEST(Record, ARecordOfFactorySettingsFitsAPageOfTheMemory) {
+TEST(Record, ARecordOfFactorySettingsFitsInAPageOfTheMemory) {
   EXPECT_EQ(record_of(factory()).size(), kRecordSize);
   EXPECT_LE(kRecordSize, 32U);
 }
@@ -46,7 +46,7 @@ TEST(Record, RandomSettingsOfEveryModelAreReadBack) {
   }
 }
 
-TEST(Record, EachWatchdogFlagIsReadBackAlone) {
+TEST(Record, EachWatchdogFlagIsReadBackIfOnlyThisFlagIsSet) {
   Stored stored = factory();
   stored.settings.watchdog_enabled = true;
   expect_round_trip(the_model(), stored);

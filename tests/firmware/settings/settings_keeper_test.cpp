@@ -16,7 +16,7 @@ class SettingsKeeperTest : public testing::Test {
   /// Runs all memory jobs of the keeper.
   void drive_memory() {
     for (int jobs = 0; keeper_.busy(); ++jobs) {
-      ASSERT_LT(jobs, 100) << "the store never finishes";
+      ASSERT_LT(jobs, 100) << "the keeper is still busy after 100 jobs";
       const MemoryJob job = keeper_.job();
       keeper_.done(memory_.run(job).value_or(false));
     }
@@ -46,7 +46,7 @@ TEST_F(SettingsKeeperTest, ABlankMemoryMeansFactorySettingsAndIsNotUnreadable) {
   EXPECT_TRUE(keeper_.stored() == factory());
 }
 
-TEST_F(SettingsKeeperTest, WritesNothingAsLongAsNothingHasChanged) {
+TEST_F(SettingsKeeperTest, WritesNothingWhileTheSettingsEqualTheStoredSettings) {
   keeper_.poll(keeper_.stored(), now_);
   EXPECT_FALSE(keeper_.busy());
   keeper_.settings_changed();  // the settings have changed and changed back
@@ -98,7 +98,7 @@ TEST_F(SettingsKeeperTest, RetriesEverySecondUntilTheChangeIsStored) {
     ASSERT_TRUE(keeper_.retry().armed());
     pass(milliseconds(999));
     keeper_.poll(numbered(5), now_);
-    EXPECT_FALSE(keeper_.busy()) << "too early";
+    EXPECT_FALSE(keeper_.busy()) << "the retry starts too early";
     pass(milliseconds(1));
   }
   keeper_.poll(numbered(5), now_);
@@ -121,17 +121,17 @@ TEST_F(SettingsKeeperTest, ACommandThatCannotBeStoredDoesNotPostponeTheRetry) {
   drive_memory();
   ASSERT_FALSE(keeper_.saved());
   keeper_.poll(numbered(5), now_);
-  EXPECT_FALSE(keeper_.busy()) << "too early";
+  EXPECT_FALSE(keeper_.busy()) << "the retry starts too early";
   pass(milliseconds(950));
   keeper_.poll(numbered(5), now_);
-  EXPECT_TRUE(keeper_.busy()) << "a second after the first failure";
+  EXPECT_TRUE(keeper_.busy()) << "the retry has not started one second after the first failure";
 }
 
 // wire.md D15. A save of four pages that fails at the third attempt may write six pages and then invalidates
 // the copy. Each page may take 10 ms, and its transfers on the bus take time too. Two such saves, one without
 // a command and one for the command, could therefore take more than the 200 ms within which the reply to the
 // command must begin.
-TEST_F(SettingsKeeperTest, ASaveForWhichACommandWaitsEndsAtItsNextFailure) {
+TEST_F(SettingsKeeperTest, ASaveForWhichACommandWaitsEndsAtTheNextFailedAttempt) {
   keeper_.settings_changed();
   keeper_.poll(numbered(5), now_);
   keeper_.let_command_through();
@@ -232,7 +232,7 @@ TEST_F(SettingsKeeperTest, ACommandIsStoredEvenIfAnOldCopyCanOnlyBeInvalidatedLa
   EXPECT_EQ(memory.writes.size(), 4U);
 }
 
-TEST_F(SettingsKeeperTest, AChangeWhileARefusedCopyIsInvalidatedIsStoredImmediately) {
+TEST_F(SettingsKeeperTest, IfTheSettingsChangeWhileARefusedCopyIsInvalidatedTheChangeIsStoredImmediately) {
   store(numbered(5));
   memory_.unanswered_writes = 4;
   store(numbered(6));
@@ -257,7 +257,7 @@ TEST_F(SettingsKeeperTest, StoredSettingsAreUncertainUntilARefusedCopyIsInvalida
   EXPECT_TRUE(keeper_.certain());
 }
 
-TEST(SettingsKeeperAtReset, IfTheMemoryDidNotAnswerTheSettingsAreUncertainUntilASave) {
+TEST(SettingsKeeperAtReset, TheSettingsAreUncertainUntilASaveIfTheMemoryDidNotAnswer) {
   FakeMemory memory;
   memory.failing_reads = kReadsOfASilentMemory;
   SettingsKeeper keeper(the_model());

@@ -18,7 +18,7 @@ using Found = SettingsStore::Found;
 
 inline constexpr std::size_t kPage = 32;
 inline constexpr std::size_t kAttempts = 3;
-/// The number of reads with which a store loads from a memory that never answers: three reads at the first
+/// The number of reads that a store makes at reset if the memory never answers: three reads at the first
 /// place, and one at each of the other three places.
 inline constexpr std::size_t kReadsOfASilentMemory = kAttempts + 3;
 /// An offset in a page. A record contains the module's address at this offset in its first page.
@@ -139,7 +139,7 @@ class FakeMemory {
 inline bool drive(SettingsStore& store, FakeMemory& memory) {
   for (int jobs = 0; store.busy(); ++jobs) {
     if (jobs == 100) {
-      ADD_FAILURE() << "the store never finishes";
+      ADD_FAILURE() << "the store is still busy after 100 jobs";
       return false;
     }
     const MemoryJob job = store.job();
@@ -197,7 +197,7 @@ inline void put_longer(FakeMemory& memory, std::size_t copy, const Settings& set
 
 inline void corrupt(FakeMemory& memory, std::size_t copy) { memory.cells[kCopies[copy] + 5U] ^= 0x01U; }
 
-/// Functions that make at least the next three attempts of a save fail, each in a different way.
+/// Each function causes a different kind of failure: at least the next three attempts of a save fail.
 inline const std::vector<void (*)(FakeMemory&)> kFailures{
     [](FakeMemory& memory) { memory.noisy_reads = kAttempts; },
     [](FakeMemory& memory) { memory.failing_reads = kAttempts; },

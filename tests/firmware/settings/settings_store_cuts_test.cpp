@@ -44,11 +44,11 @@ class PowerCuts : public testing::Test {
     const Settings before = run.stored();
     memory.power = bytes;
     memory.garbage = garbage;
-    EXPECT_FALSE(run.save(to)) << "no cut after byte " << bytes;
+    EXPECT_FALSE(run.save(to)) << "no cut after " << bytes << " bytes";
     ++cuts_;
     with_power(memory);
     const Boot next(memory);
-    EXPECT_TRUE(next.stored() == before || next.stored() == to) << "cut after byte " << bytes;
+    EXPECT_TRUE(next.stored() == before || next.stored() == to) << "cut after " << bytes << " bytes";
     return next.stored();
   }
 
@@ -122,7 +122,7 @@ TEST_F(PowerCuts, ACutAtAnyByteOfAFailingSaveLeavesTheOldOrTheNewSettings) {
         with_power(memory);
         const Settings found = Boot(memory).stored();
         EXPECT_TRUE(found == numbered(200) || (!saved && found == before))
-            << "cut after byte " << cut.value_or(0);
+            << "bytes before the cut, or 0 without a cut: " << cut.value_or(0);
         memory.stuck = false;
         expect_works(memory);
         return bytes;
@@ -136,7 +136,7 @@ TEST_F(PowerCuts, ACutAtAnyByteOfAFailingSaveLeavesTheOldOrTheNewSettings) {
   }
 }
 
-TEST_F(PowerCuts, TwoCutsInARowLeaveTheOldOrTheNewSettings) {
+TEST_F(PowerCuts, TwoConsecutiveCutsLeaveTheOldOrTheNewSettings) {
   for (const FakeMemory& beginning : beginnings()) {
     const std::size_t bytes = bytes_of_a_save(beginning, numbered(200));
     for (std::size_t first = 0; first <= bytes; ++first) {
@@ -154,7 +154,7 @@ TEST_F(PowerCuts, TwoCutsInARowLeaveTheOldOrTheNewSettings) {
   }
 }
 
-TEST_F(PowerCuts, ManyCutsInARowLeaveTheOldOrTheNewSettings) {
+TEST_F(PowerCuts, ManyConsecutiveCutsLeaveTheOldOrTheNewSettings) {
   for (FakeMemory memory : beginnings()) {
     for (unsigned i = 0; i < 1000; ++i) {
       const std::size_t cut = (i * 7) % (kBytesOfARecord + 1);

@@ -1,5 +1,6 @@
 // Tests power cuts during the first save after a firmware update, and during a save to a memory with a record
-// that is longer than the records of this firmware: wire.md section 8, "The power may fail at any time, also during a write."
+// that is longer than the records of this firmware: wire.md section 8, "The power may fail at any time, also
+// during a write."
 #include <gtest/gtest.h>
 
 #include <cstddef>

@@ -70,7 +70,8 @@ class Bench {
     driver->start_write(address, {bytes.data(), bytes.size()}, now());
     return finish();
   }
-  /// Runs until the job is over, but for at most about kLongestJob. Returns whether the job succeeded.
+  /// Runs until the job is over, but for at most about kLongestJob. Returns whether the job succeeded. If the
+  /// job is not over by then, fails the test and returns false.
   bool finish() {
     const Instant patience = wires->timeline.now() + kLongestJob;
     while (driver->busy() && wires->timeline.now() < patience) {
@@ -239,7 +240,7 @@ TYPED_TEST(Eeprom, AWriteEndsAfterTheLastPageIsProgrammed) {
 
 // The bytes of a page take about 3 ms at 100 kHz. After the STOP, the EEPROM takes at most 10 ms to program
 // them (tWR, doc. 0336, "AC characteristics").
-TYPED_TEST(Eeprom, PagesAreWrittenWithTheLongestProgrammingTimeOfTheDataSheet) {
+TYPED_TEST(Eeprom, AWriteSucceedsWithTheLongestProgrammingTimeOfTheDataSheet) {
   for (const std::size_t pages : {1U, 2U}) {
     typename TestFixture::TheBench bench(TypeParam::kBehaviour);
     bench.eeprom->set_programming_time(milliseconds(10));
@@ -260,7 +261,7 @@ TYPED_TEST(Eeprom, AWriteThatTakesLongerThanTheDataSheetAllowsFails) {
   TestFixture::expect_works(bench, 1);
 }
 
-TYPED_TEST(Eeprom, AReadAfterAResetWaitsForThePageBeingProgrammed) {
+TYPED_TEST(Eeprom, AReadAfterAResetWaitsUntilTheEepromHasProgrammedThePage) {
   typename TestFixture::TheBench bench(TypeParam::kBehaviour);
   bench.eeprom->set_programming_time(milliseconds(10));
   const auto bytes = some_bytes(32);
@@ -274,7 +275,7 @@ TYPED_TEST(Eeprom, AReadAfterAResetWaitsForThePageBeingProgrammed) {
   EXPECT_EQ(back, bytes);
 }
 
-TYPED_TEST(Eeprom, AMissingEepromFailsEveryJobWithoutAHang) {
+TYPED_TEST(Eeprom, EachJobFailsWithoutAHangIfTheEepromIsMissing) {
   for (const bool pull_ups_too : {false, true}) {
     typename TestFixture::TheBench bench(TypeParam::kBehaviour);
     bench.eeprom->remove(pull_ups_too);
@@ -287,7 +288,7 @@ TYPED_TEST(Eeprom, AMissingEepromFailsEveryJobWithoutAHang) {
   }
 }
 
-TYPED_TEST(Eeprom, AWriteWithAnyByteAfterTheFirstNotAcknowledgedFailsAndProgramsNothing) {
+TYPED_TEST(Eeprom, AWriteFailsAndProgramsNothingIfAByteAfterTheDeviceAddressIsNotAcknowledged) {
   for (unsigned taken = 1; taken < 20; ++taken) {
     typename TestFixture::TheBench bench(TypeParam::kBehaviour);
     bench.eeprom->refuse_after(taken);
@@ -347,7 +348,7 @@ TYPED_TEST(Eeprom, AReadSucceedsAfterAResetAtAnyTimeDuringARead) {
     EXPECT_LE(bench.clocks_before_start, 9U);
     EXPECT_FALSE(bench.data_net().was_shorted() || bench.clock_net().was_shorted());
   }
-  EXPECT_GT(holding, 15U) << "the test did not reach the tested case";
+  EXPECT_GT(holding, 15U) << "the EEPROM held the data line low at too few of the resets";
 }
 
 // A reset releases both pins. If the clock line rises before the data line, the rise of the data line is a
@@ -376,7 +377,7 @@ TYPED_TEST(Eeprom, FreeingTheBusAfterAResetDuringAWriteProgramsNothing) {
     ASSERT_TRUE(bench.read(kPlace, back)) << step;
     ASSERT_EQ(bench.memory, expected) << step;
     ASSERT_TRUE(std::equal(back.begin(), back.end(), expected.begin() + kPlace)) << step;
-    EXPECT_TRUE(!stopped || back == bytes) << step << ": the STOP of the driver follows the last byte";
+    EXPECT_TRUE(!stopped || back == bytes) << step << ": the driver must send STOP only after the last byte";
     EXPECT_TRUE(
         std::equal(cells.begin(), cells.end(), bytes.begin(),
                    [](const EepromChip::Cell& cell, std::uint8_t byte) { return cell.value == byte; }))
@@ -385,14 +386,14 @@ TYPED_TEST(Eeprom, FreeingTheBusAfterAResetDuringAWriteProgramsNothing) {
     cut_by_the_reset += !stopped && !cells.empty() ? 1U : 0U;
     whole += stopped ? 1U : 0U;
   }
-  EXPECT_GT(nothing, 50U) << "the test did not reach the tested case";
+  EXPECT_GT(nothing, 50U) << "after too few of the resets, the EEPROM programmed nothing";
   EXPECT_GT(cut_by_the_reset, 0U);
   EXPECT_GT(whole, 50U);
 }
 
 enum class Line : std::uint8_t { Clock, Data };
 
-TYPED_TEST(Eeprom, AStuckLineFailsEveryJobInBoundedTimeUntilItIsReleased) {
+TYPED_TEST(Eeprom, EachJobFailsInBoundedTimeWhileALineIsStuck) {
   for (const Line line : {Line::Clock, Line::Data}) {
     typename TestFixture::TheBench bench(TypeParam::kBehaviour);
     bench.mcu.reset();

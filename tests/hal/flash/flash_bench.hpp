@@ -44,7 +44,7 @@ inline Page numbered(unsigned number) {
 /// available.
 class Session {
  public:
-  /// Begins as after a reset. `chip` must outlive this object.
+  /// Begins with a new store, as a reset does. `chip` must outlive this object.
   explicit Session(FlashChip& chip) : chip_(chip) { store_.flash().chip = &chip; }
   /// Continues with a copy of `store`. `chip` is the chip of `store` or a copy of that chip.
   Session(FlashChip& chip, const Store& store) : chip_(chip), store_(store) { store_.flash().chip = &chip; }
@@ -98,7 +98,7 @@ class Session {
       }
     }
   }
-  /// Calls `poll`, and again every 10 us while it returns true. Then lets kMemoryPollPeriod pass.
+  /// Calls `poll` every 10 us until it returns false. Then lets kMemoryPollPeriod pass.
   void turn() {
     constexpr std::uint64_t kTurn = 10;  // us
     while (store_.poll(chip_.time())) {

@@ -39,7 +39,8 @@ struct Tear {
 
 class FlashChip {
  public:
-  static constexpr std::uint32_t kBegin = 0x1F'2000;  ///< address of the store; the model has no other bytes
+  /// The address of the store. The model has no bytes outside the store.
+  static constexpr std::uint32_t kBegin = 0x1F'2000;
   static constexpr std::uint32_t kSector = 4096;
   static constexpr std::uint32_t kPageOfFlash = 256;
   static constexpr unsigned kSectorsOfStore = 14;

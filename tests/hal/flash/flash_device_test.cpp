@@ -102,8 +102,8 @@ class ModuleOnFlash {
 
   void run(std::uint64_t microseconds) { run_until(chip_.now + microseconds); }
 
-  /// Adds the CRC to `request` and sends it. Returns the reply without its CRC; if there is no reply, fails
-  /// the test and returns an empty frame.
+  /// Sends `request` and its CRC. Returns the reply without its CRC; if there is no reply, fails the test and
+  /// returns an empty frame.
   Frame ask(Frame request) {
     constexpr std::uint64_t kCharacter = 11'000'000 / kBaud;
     const Crc16 crc = crc16({request.data(), request.size()});
@@ -231,7 +231,7 @@ TEST(FlashDevice, StoresWithShortPausesSucceedInTimeWithErasesOf400Milliseconds)
               static_cast<double>(module.longest) / 1e3);
 }
 
-TEST(FlashDevice, StoresBackToBackSucceedInTimeWithErasesOf45Milliseconds) {
+TEST(FlashDevice, StoresWithoutPausesSucceedInTimeWithErasesOf45Milliseconds) {
   constexpr unsigned kStores = 5'000;
   FlashChip chip = flash_at_115200();
   ModuleOnFlash module(chip);
@@ -241,12 +241,12 @@ TEST(FlashDevice, StoresBackToBackSucceedInTimeWithErasesOf45Milliseconds) {
   }
   EXPECT_LE(module.longest, kReplyLimit);
   EXPECT_GT(chip.suspensions, kStores / 10);
-  std::printf("%u stores back to back, every %.1f ms, erase 45 ms: slowest reply after %.1f ms\n", kStores,
-              static_cast<double>(chip.now - began) / 1e3 / kStores,
+  std::printf("%u stores without pauses, one every %.1f ms, erase 45 ms: slowest reply after %.1f ms\n",
+              kStores, static_cast<double>(chip.now - began) / 1e3 / kStores,
               static_cast<double>(module.longest) / 1e3);
 }
 
-TEST(FlashDevice, StoresBackToBackAreStoredOrRefusedInTimeWithErasesOf400Milliseconds) {
+TEST(FlashDevice, StoresWithoutPausesSucceedOrAreRefusedInTimeWithErasesOf400Milliseconds) {
   constexpr unsigned kStores = 5'000;
   FlashChip chip = flash_at_115200();
   chip.times = FlashChip::kLongest;
@@ -263,7 +263,7 @@ TEST(FlashDevice, StoresBackToBackAreStoredOrRefusedInTimeWithErasesOf400Millise
   }
   EXPECT_LE(module.longest, kReplyLimit);
   std::printf(
-      "%u stores back to back, every %.1f ms, erase 400 ms: slowest reply after %.1f ms, %u refused\n",
+      "%u stores without pauses, one every %.1f ms, erase 400 ms: slowest reply after %.1f ms, %u refused\n",
       kStores, static_cast<double>(chip.now - began) / 1e3 / kStores,
       static_cast<double>(module.longest) / 1e3, refused);
   EXPECT_EQ(module.timeout(), expected);

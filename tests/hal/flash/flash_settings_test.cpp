@@ -33,7 +33,7 @@ class OnFlash {
       : chip_(chip), run_(chip), keeper_(keeper) {
     drive();
   }
-  /// Returns whether the settings are stored.
+  /// Saves `settings` and sets `latency`. Returns whether the save succeeded.
   bool save(const Settings& settings) {
     const std::uint64_t began = chip_.now;
     keeper_.save(settings, chip_.time());
@@ -41,8 +41,8 @@ class OnFlash {
     latency = chip_.now - began;
     return keeper_.saved();
   }
-  /// Runs the main loop for a time without a command. The keeper carries out the actions that belong to no
-  /// command (see SettingsKeeper), and the store erases free sectors.
+  /// Runs the main loop for at least `microseconds` without a command. The keeper carries out the actions
+  /// that belong to no command (see SettingsKeeper), and the store erases free sectors.
   void idle(std::uint64_t microseconds) {
     for (const std::uint64_t end = chip_.now + microseconds; chip_.now < end;) {
       keeper_.poll(keeper_.stored(), chip_.time());
@@ -189,7 +189,7 @@ TEST(FlashSettingsCuts, ACutAtAnyOperationLeavesTheOldOrTheNewSettings) {
 }
 
 // Tests a random sample of the pairs of cuts, with a fixed seed.
-TEST(FlashSettingsCuts, TwoCutsInARowLeaveTheOldOrTheNewSettings) {
+TEST(FlashSettingsCuts, TwoSuccessiveCutsLeaveTheOldOrTheNewSettings) {
   constexpr int kPairs = 300;
   std::mt19937 random(kSeed);
   for (const Beginning& beginning : beginnings()) {
@@ -236,7 +236,7 @@ TEST(FlashSettingsTime, SavesWithPausesOfAbout50MsDoNotWaitForAnErase) {
 TEST(FlashSettingsTime, SavesAndLoadsThatCannotSucceedFailInTime) {
   std::vector<std::pair<std::string, std::uint64_t>> longest;
   for (Beginning& beginning : beginnings()) {
-    beginning.chip.times = {1'000'000'000, 3'000};  // an erase that begins now does not end in this test
+    beginning.chip.times = {1'000'000'000, 3'000};  // an erase that begins later does not end in this test
     OnFlash module(beginning.chip);
     unsigned saves = 0;
     while (module.save(numbered(saves))) {

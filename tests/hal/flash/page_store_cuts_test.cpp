@@ -110,8 +110,8 @@ class PageStoreCuts : public testing::Test {
 
   /// Cuts the power at each operation during `write` and the pause after it, including an erase that has
   /// begun before `write`. For each operation, tries the tears that `tears_of` returns; if `in_every_way` is
-  /// false, tries only some of them. After each cut, checks the store. At the end, sets `state` to the state
-  /// after `write` and the pause without a cut.
+  /// false, tries only some of these tears. After each cut, checks the store. At the end, carries out `write`
+  /// and the pause on `state`, without a cut.
   void cut_everywhere(State& state, const Write& write, bool in_every_way = true) {
     State whole = state;
     bool reported = false;
@@ -218,7 +218,7 @@ TEST_F(PageStoreCuts, ACutWithTheLongestTimesOfTheFlashLeavesTheOldOrTheNewPage)
 }
 
 // There are too many sequences of cuts to test them all, so this test uses a random sample with a fixed seed.
-TEST_F(PageStoreCuts, SeveralCutsInARowLeaveTheOldOrTheNewPage) {
+TEST_F(PageStoreCuts, SeveralSuccessiveCutsLeaveTheOldOrTheNewPage) {
   constexpr int kRounds = 100;
   constexpr int kCutsInARow = 6;
   std::mt19937 random(kSeed);

@@ -110,7 +110,7 @@ TEST(PageStore, AWriteOfAPartOfAPageKeepsTheRest) {
   EXPECT_EQ(run.page(6), last);
 }
 
-TEST(PageStore, AReadAcrossPagesReturnsTheBytesOfEach) {
+TEST(PageStore, AReadAcrossPagesReturnsTheBytesOfEachPage) {
   FlashChip chip;
   Session run(chip);
   run.settle();
@@ -126,7 +126,7 @@ TEST(PageStore, AReadAcrossPagesReturnsTheBytesOfEach) {
   EXPECT_EQ(bytes, expected);
 }
 
-TEST(PageStore, RejectsAddressesBeyondItsEndAndWritesAcrossPages) {
+TEST(PageStore, AJobThatGoesBeyondTheEndFailsAndAWriteAcrossPagesFails) {
   FlashChip chip;
   Session run(chip);
   run.settle();
@@ -242,7 +242,7 @@ TEST(PageStore, AnEraseThatTheMcuSuspendedBeforeItsResetIsContinued) {
 
 // --- a flash that fails ---
 
-TEST(PageStore, IfAWriteIntoABrokenSectorFailsTheNextAttemptSucceeds) {
+TEST(PageStore, TheNextAttemptSucceedsIfAWriteIntoABrokenSectorFails) {
   for (std::size_t broken = 0; broken < 2 * FlashChip::kSector; broken += broken < 200 ? 7 : 203) {
     FlashChip chip;
     chip.broken = broken;
@@ -261,7 +261,7 @@ TEST(PageStore, IfAWriteIntoABrokenSectorFailsTheNextAttemptSucceeds) {
   }
 }
 
-TEST(PageStore, IfAWriteIntoAWornOutSectorFailsTheNextAttemptSucceeds) {
+TEST(PageStore, TheNextAttemptSucceedsIfAWriteIntoAWornOutSectorFails) {
   FlashChip chip;
   chip.broken = kFlashPage;
   chip.broken_size = FlashChip::kSector - kFlashPage;
@@ -309,7 +309,7 @@ TEST(PageStore, ASectorWhoseMarkCannotBeClearedIsNotWritten) {
   EXPECT_EQ(Session(chip).page(1), numbered(49));
 }
 
-TEST(PageStore, AFlashThatHangsFailsEachJobInTimeAndMayRecover) {
+TEST(PageStore, EachJobFailsInTimeWhileTheFlashHangsAndLaterJobsSucceed) {
   FlashChip chip;
   Session run(chip);
   run.settle();
@@ -350,7 +350,7 @@ TEST(PageStore, AGoodEntryIsUsedEvenIfItsProgrammingTookTooLong) {
   EXPECT_EQ(Session(chip).page(1), numbered(2));
 }
 
-TEST(PageStore, AWriteSucceedsAfterTheOpeningOfASectorTookTooLong) {
+TEST(PageStore, IfOpeningASectorTakesTooLongTheWriteFailsAndALaterWriteSucceeds) {
   FlashChip chip;
   Session run(chip);
   run.run(70'000);  // by then, one sector is erased, and the erase of the next one is running
@@ -383,7 +383,7 @@ TEST(PageStore, AResumedEraseIsNotSuspendedTooEarly) {
   EXPECT_EQ(chip.suspensions, 2U);
 }
 
-TEST(PageStore, ADamagedEntryFailsTheReadAndTheNextWriteReplacesIt) {
+TEST(PageStore, AReadOfADamagedEntryFailsAndTheNextWriteReplacesTheEntry) {
   FlashChip chip;
   Session run(chip);
   run.settle();

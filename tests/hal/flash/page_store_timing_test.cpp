@@ -84,7 +84,7 @@ TEST(PageStoreTiming, WritesWithPausesOfAtLeast12MsEndInTimeWithTheLongestTimes)
     run.run(12'000 + i % 7 * 331);
   }
   EXPECT_LE(longest, kLongestWriteEver);
-  std::printf("longest write of 2000: %.1f ms\n", static_cast<double>(longest) / 1e3);
+  std::printf("longest of 2000 writes: %.1f ms\n", static_cast<double>(longest) / 1e3);
 }
 
 TEST(PageStoreTiming, WritesAtTheDocumentedRateNeverFailWithTheLongestTimes) {
@@ -119,7 +119,7 @@ TEST(PageStoreTiming, AWriteThatWaitsForAnEraseSucceedsIfTheEraseEndsInTime) {
   EXPECT_EQ(Session(chip).page(0), numbered(1));
 }
 
-TEST(PageStoreTiming, TheReadsOfAFullLogTakeAtMost25MsAt16MHz) {
+TEST(PageStoreTiming, TheScanOfAFullLogTakesAtMost25MsAt16MHz) {
   FlashChip chip = settled({});
   chip.times = FlashChip::kLongest;
   Session(chip).settle();

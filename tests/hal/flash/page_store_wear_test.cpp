@@ -1,6 +1,6 @@
 // Counts the erases of each sector over many stores of one or four pages, and compares the result with the
-// manufacturer's guarantee. Also checks that neither reads nor resets without a store erase or program
-// anything.
+// manufacturer's guarantee. Also checks that reads erase and program nothing, and that resets erase and
+// program nothing if nothing is stored.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -54,7 +54,7 @@ class PageStoreWear : public testing::Test {
     }
     const double stores = kStores * kCycles / most;
     std::printf(
-        "%s: %u stores, %u erases of %u sectors, at most %u of one; "
+        "%s: %u stores, %u erases of %u sectors, at most %u erases of one sector; "
         "%.1f million stores until a sector has 100,000 erase cycles\n",
         what, kStores, all, sectors, most, stores / 1e6);
     EXPECT_LE(most, all / sectors + 2) << "one sector is erased more often than the others";
@@ -80,14 +80,15 @@ TEST_F(PageStoreWear, AllowsTenMillionStoresOfSettingsInFourPages) {
   });
 }
 
-TEST_F(PageStoreWear, AllowsTenMillionStoresOfAPageWhileAllOthersHoldASectorEach) {
+TEST_F(PageStoreWear, AllowsTenMillionStoresOfAPageWhileEachOfTheOtherPagesIsAloneInASector) {
   for (std::size_t page = 1; page < kPages; ++page) {
     pin(page);
   }
-  stores_until_worn("one page, while all others hold a sector each", [this](unsigned) { write(0); });
+  stores_until_worn("one page, while each of the other pages is alone in a sector",
+                    [this](unsigned) { write(0); });
 }
 
-TEST_F(PageStoreWear, ReadingErasesAndProgramsNothing) {
+TEST_F(PageStoreWear, AReadErasesAndProgramsNothing) {
   write(1);
   const auto erases = chip_.erases;
   const unsigned programs = chip_.programs;
@@ -99,7 +100,7 @@ TEST_F(PageStoreWear, ReadingErasesAndProgramsNothing) {
   EXPECT_EQ(chip_.programs, programs);
 }
 
-TEST_F(PageStoreWear, ResetsWithoutAStoreEraseAndProgramNothing) {
+TEST_F(PageStoreWear, ResetsEraseAndProgramNothingIfNothingIsStored) {
   write(1);
   Session(chip_).settle();
   const auto erases = chip_.erases;

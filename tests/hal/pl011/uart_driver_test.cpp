@@ -1,4 +1,5 @@
-// Tests the UART driver and its RS-485 driver enable, on wires with a master that records the line.
+// Tests the UART driver and its RS-485 driver enable on the wires of a LineBench. The LineBench records the
+// sent characters and the times at which the RS-485 driver is switched on and off.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -156,7 +157,7 @@ TEST_P(Sending, TheDriverIsNotSwitchedOffEarlyIfInterruptsAreLate) {
   }
 }
 
-TEST_P(Sending, ItsOwnEchoIsNotReceived) {
+TEST_P(Sending, TheEchoOfTheSentBytesIsNotReceived) {
   for (const Instant latency : {Instant(0), Instant(microseconds(30))}) {
     UartBench bench(chip(), baud(), format());
     bench.mcu.core.set_latency(latency);
@@ -223,7 +224,7 @@ class Receiving : public testing::TestWithParam<LineFormat> {
 };
 class ReceivingParity : public Receiving {};
 
-/// PL011 TRM, 3.3.7: WLEN is bits 6:5, STP2 bit 3, EPS bit 2, PEN bit 1; FEN, bit 4, is 0.
+/// PL011 TRM, 3.3.7: WLEN is in bits 6:5, STP2 is bit 3, EPS is bit 2, and PEN is bit 1. Bit 4, FEN, is 0.
 TEST_P(Receiving, TheLineControlRegisterSelectsTheFormat) {
   constexpr std::array<std::uint32_t, 4> kLineControl{0x60, 0x68, 0x66, 0x62};
   EXPECT_EQ(bench.mcu.uart0.line_control(), kLineControl.at(static_cast<std::size_t>(GetParam())));
@@ -247,7 +248,7 @@ TEST_P(Receiving, ALongBreakIsReportedOnce) {
   EXPECT_EQ(bench.received[1].byte, 0x42);
 }
 
-TEST_P(Receiving, BytesLostWhileInterruptsAreHeldAreReportedAsOneOverrun) {
+TEST_P(Receiving, OneOverrunIsReportedIfBytesAreLostWhileInterruptsAreHeld) {
   bench.mcu.core.hold(true);
   bench.line.send({1, 2, 3});
   bench.mcu.run_for(4 * character());

@@ -1,4 +1,4 @@
-// Passes the register accesses of RP2040 drivers on a host to an object that the test provides.
+// In host tests, the drivers of the RP2040 access registers of an object that the test provides.
 #pragma once
 
 #include <cstdint>

@@ -23,7 +23,7 @@ class Chip {
 
   void select(bool on) {
     if (on && selected_) {
-      throw std::runtime_error("the last command has not ended");
+      throw std::runtime_error("the previous command has not ended");
     }
     if (!on && selected_) {
       execute();
@@ -110,8 +110,8 @@ class Chip {
   std::vector<std::uint8_t> bytes_;
 };
 
-/// A model of the chip-select pin and of the SSI, in the mode that receives a byte for each byte that it
-/// sends.
+/// A model of the chip-select pin and of the SSI, in the mode in which the SSI receives a byte for each byte
+/// that it sends.
 class Ssi final : public rp2040_model::Bus {
  public:
   std::uint32_t read(std::uint32_t address) override {
@@ -205,7 +205,7 @@ TEST_F(FlashDriver, ReadsWhatItHasProgrammed) {
   EXPECT_EQ(read(kPlace + 4, 1), std::vector<std::uint8_t>{0xFF});
 }
 
-TEST_F(FlashDriver, AFlashThatHasWritesEnabledIsNotBusy) {
+TEST_F(FlashDriver, TheWriteEnableBitDoesNotMeanThatTheFlashIsBusy) {
   ssi_.chip.write_enabled = true;
   EXPECT_FALSE(Flash::busy());
 }

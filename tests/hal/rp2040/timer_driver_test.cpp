@@ -1,5 +1,4 @@
-// Tests the alarms as one-shot timers, also with delays while a timer is started. Source: RP2040 data sheet,
-// 4.6.
+// Tests the alarms as one-shot timers, also if an interrupt delays `restart`. Source: RP2040 data sheet, 4.6.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -100,8 +99,8 @@ class TimerModel final : public rp2040_model::Bus {
 
 using Timer = hal::rp2040::OneShotTimer<0>;
 
-/// Lets time pass until the interrupt is pending, and returns this time in nanoseconds. Fails the test if it
-/// is longer than 100 ms.
+/// Lets time pass until the interrupt is pending. Returns the number of nanoseconds that have passed. If more
+/// than 100 ms pass, the test fails.
 std::uint64_t time_to_interrupt(TimerModel& model) {
   const std::uint64_t begin = model.nanoseconds;
   while (!model.interrupt()) {
@@ -114,7 +113,7 @@ std::uint64_t time_to_interrupt(TimerModel& model) {
   return model.nanoseconds - begin;
 }
 
-TEST(OneShotTimer, FiresOnceNeverEarlyAndAtMostFiveMicrosecondsLate) {
+TEST(OneShotTimer, FiresOnceAndNeverEarlyAndAtMostFiveMicrosecondsLate) {
   for (const std::uint64_t start : {0ULL, 1ULL, 999ULL, 4'294'967'290'500ULL}) {
     for (const std::uint32_t after : {1U, 2U, 60U, 1042U, 34'000U}) {
       TimerModel model;

@@ -48,8 +48,9 @@ class Clock : public testing::Test {
     const auto most =
         static_cast<std::uint32_t>(std::chrono::duration_cast<microseconds>(after - began_).count());
     EXPECT_LE(shown - offset_ - (least - 1), most - least + 2)
-        << shown - offset_ << " at " << least << " to " << most;
-    EXPECT_LT(shown - last_, 0x8000'0000U) << "went back from " << last_ << " to " << shown;
+        << "the clock returned " << shown - offset_ << " us; expected " << least << " to " << most
+        << " us, with a tolerance of 1 us";
+    EXPECT_LT(shown - last_, 0x8000'0000U) << "the clock went back from " << last_ << " to " << shown;
     last_ = shown;
   }
 
@@ -61,8 +62,8 @@ class Clock : public testing::Test {
 };
 
 TEST_F(Clock, IsExactToTheMicrosecondInEveryPhaseAroundATick) {
-  // The accesses of one reading are two clock cycles apart. Each round of the loop begins one clock cycle
-  // later relative to the moment at which the counter reaches 0, so the loop covers every phase.
+  // The accesses of one call of `now` are two clock cycles apart. Each round of the loop begins one clock
+  // cycle later relative to the moment at which the counter reaches 0, so the loop covers every phase.
   for (int clocks = -40; clocks <= 40; ++clocks) {
     bench.mcu.run_until(began_ + milliseconds(20 * (clocks + 50)) + clocks * nanoseconds(20));
     for (int i = 0; i < 10; ++i) {
