@@ -1,6 +1,6 @@
-// Fuzzes the command line. `|` in the input separates two arguments. The result of each command line must be
-// a simulator or another task to run, a text to print, or one line with an error. An input that begins with
-// `{` is a bus file. The target reads no file.
+// Fuzzes the command line and bus files. An input that begins with `{` is the text of a bus file. Any other
+// input is a command line, and `|` separates two arguments. The result of each command line must be a
+// simulator or another task to run, a text to print, or one line with an error. The target reads no file.
 #include <algorithm>
 #include <stdexcept>
 #include <string>
@@ -29,10 +29,10 @@ void check_error(const Parsed& parsed) {
 
 void check_module(const ModuleSpec& module) {
   require(module.model != nullptr && module.settings.possible_for(*module.model),
-          "a module starts with settings it could have stored");
+          "a module starts with settings that it could have stored");
   require(module.eeprom.find('\0') == std::string::npos, "a path contains no NUL");
   for (const sim::InputProgram& input : module.inputs) {
-    require(input.channel < module.model->inputs, "an input program uses an input of the model");
+    require(input.channel < module.model->inputs, "an input that changes by itself is an input of the model");
     require(input.high.count() > 0 && input.bounce <= input.high,
             "an input is on for at least as long as it bounces");
   }
@@ -46,11 +46,11 @@ void check_line(const LineSetup& line) {
       return !other.eeprom.empty() && other.eeprom == module.eeprom;
     };
     require(std::count_if(line.modules.begin(), line.modules.end(), same_file) <= 1,
-            "each EEPROM has a file of its own");
+            "no two modules of a line use the same EEPROM file");
   }
   require(!line.serial || (!line.pty && !line.tcp && !line.modbus_tcp && !line.instant),
           "a serial port excludes other ports and an instant line");
-  require(!line.echo || line.serial, "only a serial port has an echo");
+  require(!line.echo || line.serial, "the option --echo requires a serial port");
   require(!line.instant || !line.strict_gaps, "an instant line has no strict gaps");
   for (const auto& path : {line.pty, line.serial}) {
     require(!path || (!path->empty() && path->find('\0') == std::string::npos),
@@ -84,7 +84,7 @@ void check_setup(const Setup& setup) {
 /// Checks that each line has a name, and that the names and the pseudo-terminals are unique. Otherwise a user
 /// could not distinguish the lines.
 void check_several(const std::vector<LineSetup>& lines) {
-  require(!lines.empty(), "a bus has a line");
+  require(!lines.empty(), "a bus has at least one line");
   for (const LineSetup& line : lines) {
     require(!line.name.empty(), "each line of a bus file has a name");
     const auto is_like = [&line](const LineSetup& other) {
@@ -105,7 +105,7 @@ void parse_file(const std::string& text) {
     const std::string place = "bus.json:";
     const auto end = what.find_first_not_of("0123456789", place.size());
     require(what.rfind(place, 0) == 0 && end > place.size() && what.compare(end, 2, ": ") == 0,
-            "an error in a bus file begins with the path and a line number");
+            "an error message about a bus file begins with the path and a line number");
     const auto lines = std::count(text.begin(), text.end(), '\n') + 1;
     const auto line = std::stol(what.substr(place.size(), end - place.size()));
     require(line >= 1 && line <= lines, "the line with this number exists in the file");
@@ -131,19 +131,19 @@ void parse(const std::string& text) {
   const Parsed parsed = sim::parse_arguments(static_cast<int>(words.size()), argv.data());
   if (parsed.setup) {
     require(parsed.output.empty() && parsed.error.empty() && parsed.exit_status == 0,
-            "a setup comes without text and error");
-    require(parsed.setup->lines.size() == 1, "a command line sets up one line");
+            "a result with a setup has no text and no error");
+    require(parsed.setup->lines.size() == 1, "a command line sets up exactly one RS-485 line");
     const LineSetup& line = parsed.setup->lines[0];
     require(parsed.setup->speed.max() || line.pty || line.tcp || line.modbus_tcp || line.serial,
             "the line has a port, except at maximum speed");
     check_setup(*parsed.setup);
   } else if (parsed.task) {
     require(parsed.output.empty() && parsed.error.empty() && parsed.exit_status == 0,
-            "a task comes without text and error");
+            "a result with a task has no text and no error");
     require(!parsed.task->bus || parsed.task->bus->lines.size() == 1,
-            "the modules of a play are on one line");
+            "the modules of the command play are on one line");
   } else if (!parsed.output.empty()) {
-    require(parsed.error.empty() && parsed.exit_status == 0, "a text comes without an error");
+    require(parsed.error.empty() && parsed.exit_status == 0, "a result with a text has no error");
   } else {
     check_error(parsed);
   }

@@ -179,10 +179,10 @@ bool is_code(const std::uint8_t* data, std::size_t size, std::size_t at, char co
   return at + 1 < size && data[at] == kEscape && data[at + 1] == static_cast<std::uint8_t>(code);
 }
 
-/// In Modbus, replaces the two bytes before each gap with `\c` if at least four plain bytes precede the gap.
-/// In ASCII, inserts `\c` before each CR that follows at least three plain bytes, as long as the input may
-/// grow. A plain byte is a byte that belongs to no code and, in ASCII, is not CR. Returns the new size in
-/// bytes.
+/// In Modbus, replaces the two bytes before each gap with `\c` if at least four plain bytes directly precede
+/// the gap. In ASCII, inserts `\c` before a CR if at least three plain bytes directly precede this CR, and if
+/// the size with `\c` is at most `most`. A plain byte is a byte that belongs to no code and, in ASCII, is not
+/// CR. Returns the new size in bytes.
 std::size_t mend(std::uint8_t* data, std::size_t size, std::size_t most, bool modbus) {
   std::size_t plain = 0;  // consecutive plain bytes directly before `at`
   for (std::size_t at = kHeader; at < size;) {

@@ -30,7 +30,7 @@ const std::vector<sim::ModuleSpec>& specs() {
   return kSpecs;
 }
 
-/// The state of a module that is visible from outside.
+/// The part of a module's state that is visible from outside.
 struct Seen {
   bool powered;
   std::uint16_t outputs;
@@ -195,7 +195,7 @@ void check_effect(Watched& watched, const Words& words, const std::string& reply
     return;
   }
   if (on_line[0] == "sent") {
-    require(reply == "ok 0", "a line without ports has written nothing");
+    require(reply == "ok 0", "a line without ports has sent nothing to ports");
     return;
   }
   if (on_line[0] == "fault" || on_line[0] == "faults") {
@@ -239,7 +239,7 @@ void carry_out(Watched& watched, sim::Control& control, const std::string& comma
   const std::vector<Seen> before = seen(line);
   const sim::Control::Reply reply = control.carry_out(command);
   require(reply.text.find('\n') == std::string::npos, "a reply is one line");
-  require(reply.quit == (valid && words[0] == "quit"), "quit and no other command ends the program");
+  require(reply.quit == (valid && words[0] == "quit"), "only the command quit ends the program");
   if (valid) {
     require(reply.text == "ok" || reply.text.rfind("ok ", 0) == 0, "a valid command is carried out");
     check_effect(watched, words, reply.text);
@@ -261,8 +261,8 @@ class RunTimeLimit {
       watched.line.bus().run_for(std::chrono::milliseconds(10));
     }
   }
-  /// Returns whether the command may run. Each input may run at most one command with 100 to 99,999 pulses,
-  /// and no valid command with more.
+  /// Returns whether the command may run. Of the commands with 100 to 99,999 pulses, only the first one in
+  /// the input of the target may run. A command with 100,000 to 1,000,000 pulses may not run.
   bool permits(const Words& words) {
     const bool pulses = words.size() == 4 && words[1] == "pulse" && is_number(words[3], 100, 1'000'000);
     return !pulses || (std::stoul(words[3]) <= 99'999 && !std::exchange(used_, true));

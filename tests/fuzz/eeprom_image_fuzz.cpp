@@ -1,13 +1,14 @@
 // Starts a module with arbitrary EEPROM content. The module must start, and must then store settings and load
 // them after a reset.
 //
-// Byte 0 of the input selects the model. Byte 1:
+// Byte 0 of the input selects the model. The bits of byte 1 have these meanings:
 //
-//     bit 0, 1   correct the layout and check of the first (bit 0) and the second (bit 1) copy of layout 2
-//     bit 2      INIT* connected to GND
+//     bit 0, 1   the target corrects the layout and the check of the first (bit 0) or the second (bit 1) copy
+//                of layout 2
+//     bit 2      INIT* is connected to GND
 //     bit 3      the memory does not acknowledge until the module has started
-//     bit 4, 5   correct the layout, length and check of the first (bit 4) and the second (bit 5) copy of
-//                layout 3
+//     bit 4, 5   the target corrects the layout, the length and the check of the first (bit 4) or the second
+//                (bit 5) copy of layout 3
 //
 // The following bytes are the content of the memory from address 0. Memory after these bytes is erased.
 #include <algorithm>
@@ -78,8 +79,8 @@ class Trial {
   const State& state() { return session_.module().module().state(); }
 
   /// Waits until no store is pending. The host watchdog can expire at any time, and the module then stores
-  /// that the watchdog is off and that the timeout status is set. If the settings change during the wait,
-  /// waits again.
+  /// that the watchdog is disabled and that the timeout status is set. If the settings change during the
+  /// wait, waits again.
   void wait_for_leftovers() {
     constexpr Microseconds kLongest = 1500 * kMillisecond;
     Settings before;
@@ -101,7 +102,7 @@ class Trial {
                 in_force.baud_code == (init ? 0x06 : settings.baud_code) &&
                 in_force.protocol == (init ? Protocol::Ascii : settings.protocol) &&
                 in_force.checksum == (!init && (settings.format & 0x40U) != 0),
-            "the stored settings are in force, or those of INIT mode");
+            "the stored settings or, in INIT mode, the settings of INIT mode are in force");
   }
 
   Bytes ask(std::string_view command) {
@@ -119,16 +120,16 @@ class Trial {
     if (session_.speaks_modbus()) {
       const Bytes reply = ask({settings.address, 0x03, 0x01, 0xE4, 0x00, 0x02});
       require(reply.size == 7 && reply.word(3) == settings.address && reply.word(5) == settings.baud_code,
-              "address and rate are read as they are stored");
+              "the module returns the stored address and baud rate");
       return;
     }
     const Bytes configuration = ask("$..2");
     require(configuration.size == 9 && are_digits_of(configuration.data + 1, settings.address) &&
                 are_digits_of(configuration.data + 5, settings.baud_code) &&
                 are_digits_of(configuration.data + 7, settings.format),
-            "the configuration is read as it is stored");
+            "the module returns the stored configuration");
     const Bytes name = ask("$..M").from(3);
-    require(Name(name) == settings.name, "the name is read as it is stored");
+    require(Name(name) == settings.name, "the module returns the stored name");
   }
 
   void store_something() {

@@ -126,6 +126,7 @@ inline When when(const Words& words, std::size_t at, nanoseconds now) {
 enum class Whose { AnyModules, ThisModules };
 
 /// Returns whether `words` are `TROUBLE [VALUE] [WHEN]` and describe a fault that is permitted for `whose`.
+/// `now` is the line time. A fault with an earlier time after `at` is not permitted.
 inline bool is_fault(const Words& words, Whose whose, std::chrono::nanoseconds now) {
   using namespace fault;
   if (words.empty()) {

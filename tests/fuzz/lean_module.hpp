@@ -22,7 +22,7 @@ using judges::kMillisecond;
 using judges::kNever;
 using judges::Microseconds;
 
-/// Observes the effects of a module on its surroundings when they occur.
+/// Observes the replies, the outputs and the turns of a module.
 class ModuleObserver {
  public:
   /// Called when the module has switched its RS-485 driver on. `reply`: the complete reply.

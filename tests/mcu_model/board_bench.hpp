@@ -27,8 +27,9 @@ class BoardBench {
   [[nodiscard]] bool powered() const { return run_.has_value(); }
   /// Resets the microcontroller through its reset pin. The supply must be on.
   void reset();
-  /// Runs until `when`. If the supply is off, only lets time pass. Throws Fault if the image causes one.
-  /// Counts resets by the image or its watchdog and continues after them.
+  /// Runs the image until `when`. If the supply is off, only lets time pass. Throws Fault if the image causes
+  /// one. If the image or the watchdog resets the microcontroller, counts the reset in `resets` and
+  /// continues.
   void run_until(Instant when);
   void run_for(Instant time) { run_until(timeline.now() + time); }
 
@@ -39,8 +40,8 @@ class BoardBench {
 
   /// Sends a DCON command and its CR. Receives like `exchange`; returns the reply without CR.
   std::string ask(const std::string& command);
-  /// Sends any bytes. Waits up to 250 ms for a reply, and then until about 20 ms pass without a character;
-  /// returns what was received.
+  /// Sends `bytes` and waits up to 250 ms for a reply. After the first character of the reply, waits until
+  /// about 20 ms pass without a character. Returns the bytes that were received during this call.
   std::vector<std::uint8_t> exchange(const std::vector<std::uint8_t>& bytes);
 
   Net& net(PinPlace place) { return pins.at(place.port, place.pin); }
@@ -58,7 +59,7 @@ class BoardBench {
   /// The time at which an output came on for the first time since the last reset of any kind; kNever if no
   /// output has come on since then.
   Instant output_came_on = kNever;
-  // From the next reset of any kind on, the microcontroller uses these values.
+  // A change of these values takes effect at the next reset of any kind.
   Instant crystal_start = std::chrono::milliseconds(2);  ///< how long the crystal takes to start
   bool record = false;                                   ///< whether to record the bus accesses
 

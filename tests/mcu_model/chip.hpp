@@ -12,15 +12,16 @@ struct Chip {
   const char* name;
   unsigned ports;             ///< 6: A to F; 7: A to G
   bool port_control;          ///< GPIOPCTL and GPIOAMSEL exist
-  bool i2c_clock_open_drain;  ///< the pin of SCL must be open drain; if false, it must not be
+  bool i2c_clock_open_drain;  ///< true: the SCL pin must be open drain; false: it must not be open drain
   bool pin_clears_causes;     ///< a reset by the pin clears the other bits of RESC
-  /// The number of clock cycles required between setting a clock gate and the first access to its peripheral.
+  /// After software sets the bit of a clock gate, this number of clock cycles must pass before the first
+  /// access to the peripheral.
   unsigned clocks_after_gate;
-  Instant cycle_at_reset;  ///< period of the internal oscillator: 12 MHz or 16 MHz
+  Instant cycle_at_reset;  ///< period of the internal oscillator, whose frequency is 12 MHz or 16 MHz
   std::uint32_t rcc_at_reset;
   std::uint32_t rcc_kept;       ///< bits of RCC that must keep their value
   std::uint32_t crystal_code;   ///< value of RCC field XTAL for the crystal on the board
-  std::uint32_t crystal_field;  ///< mask of RCC field XTAL, shifted down
+  std::uint32_t crystal_field;  ///< mask of RCC field XTAL, shifted to bit 0
 };
 
 /// LM3S6965 on its evaluation board, with an 8 MHz crystal.

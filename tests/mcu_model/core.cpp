@@ -14,9 +14,9 @@ constexpr std::uint32_t kKey = 0x05FA;
 Core::Core(const SystemControl& clock, Timeline& timeline)
     : Peripheral(kBase), clock_(clock), timeline_(timeline), tick_(timeline, [this] { count_tick(); }) {}
 
-/// Returns the SysTick counter. In this model, the counter is 0 while it is disabled. While it is enabled, a
-/// clock at 0 loads the reload value, and every other clock decrements the counter. If the SysTick exception
-/// is enabled, it becomes pending when the counter reaches 0.
+/// Returns the SysTick counter. In this model, the counter is 0 while it is disabled. While it is enabled,
+/// each clock cycle decrements it, except that a clock cycle at 0 loads the reload value. If the SysTick
+/// exception is enabled, it becomes pending when the counter reaches 0.
 std::uint32_t Core::current() const {
   if ((tick_control_ & 1U) == 0) {
     return 0;

@@ -38,7 +38,8 @@ class Core final : public Peripheral {
   void on_exception(std::function<void(unsigned exception)> act) { serve_ = std::move(act); }
   /// Sets the function to call when software requests a reset through the system control block.
   void on_reset_request(std::function<void()> act) { on_reset_ = std::move(act); }
-  /// Delays each exception by `latency` before it is served, like instructions that cannot be interrupted.
+  /// Sets the minimum time between the moment when an exception becomes pending and the call of its handler.
+  /// On a chip, an instruction that cannot be interrupted causes such a delay.
   void set_latency(Instant latency) { latency_ = latency; }
 
   void interrupt_line_of(unsigned interrupt, bool asserted);

@@ -21,7 +21,7 @@ class DriverBench {
     mcu.on_exception([this](unsigned exception) {
       const auto handler = handlers_.find(exception);
       if (handler == handlers_.end()) {
-        throw Fault(exception, "an exception without a handler");
+        throw Fault(exception, "the exception with this number has no handler");
       }
       handler->second();
     });

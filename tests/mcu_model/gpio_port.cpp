@@ -118,7 +118,7 @@ void GpioPort::write(std::uint32_t offset, std::uint32_t value) {
     return;
   }
   if (offset == kRaw || offset == kMasked) {
-    fault(offset, "cannot be written");
+    fault(offset, "the register is read-only");
   }
   std::uint32_t& place = stored(offset);
   check_lock(offset, place ^ value);

@@ -34,8 +34,9 @@ class GpioPort final : public Peripheral {
   static constexpr std::uint32_t kAnalog = 0x528;
   static constexpr std::uint32_t kControl = 0x52C;
 
-  /// `letter` is 'A' to 'G'. The nets must outlive the port. The constructor and the destructor release all
-  /// of them, except that the constructor connects the pull-ups of the debug pins.
+  /// `letter` is 'A' to 'F', or 'G' if `chip` has seven ports. The nets must outlive the port. The
+  /// constructor releases all nets, but connects the pull-ups of the debug pins. The destructor releases all
+  /// nets.
   GpioPort(const Chip& chip, char letter, PortNets& nets);
   ~GpioPort() override;
 

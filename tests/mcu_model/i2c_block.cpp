@@ -19,7 +19,8 @@ constexpr std::uint32_t kBusBusy = 1U << 6U;
 
 constexpr std::uint32_t kMaster = 1U << 4U;
 
-// How long the clock is low and high in a bit, in tenths of a bit: SCL_LP and SCL_HP of the data sheets.
+// The low time and the high time of the clock in each bit, in tenths of the bit time: SCL_LP and SCL_HP of
+// the data sheets.
 constexpr int kLowTime = 6;
 constexpr int kHighTime = 4;
 
@@ -109,12 +110,12 @@ void I2cBlock::write(std::uint32_t offset, std::uint32_t value) {
 
 void I2cBlock::check_pins() const {
   if (!port_.given_to(kClockPin, kFunction) || !port_.given_to(kDataPin, kFunction)) {
-    fault(kControl, "its pins are not assigned to it");
+    fault(kControl, "the pins of the I2C master are not assigned to it");
   }
   const std::uint32_t open_drain = port_.peek(GpioPort::kOpenDrain);
   if ((open_drain >> kDataPin & 1U) == 0 ||
       ((open_drain >> kClockPin & 1U) != 0) != chip_.i2c_clock_open_drain) {
-    fault(kControl, "its pins do not have the open-drain setting that the family requires");
+    fault(kControl, "the pins of the I2C master do not have the open-drain setting that the family requires");
   }
 }
 
@@ -185,7 +186,7 @@ void I2cBlock::begin_move() {
   if (move == Move::Start) {
     if (!clock_high() || !data_high()) {
       if (behaviour_.waits_for_free_bus) {
-        return;  // waits until a reset of the block: the driver must free the bus
+        return;  // the block stays busy until it is reset
       }
       fail(kArbitrationLost);
       return;

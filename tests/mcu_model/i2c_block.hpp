@@ -13,10 +13,10 @@
 
 namespace ex9000::registers {
 
-/// Behaviour that the data sheets leave open.
+/// Behaviour that the data sheets do not specify.
 struct I2cBehaviour {
-  bool stop_interrupts = false;     ///< a STOP without a byte raises an interrupt, like a byte
-  bool stops_after_error = false;   ///< a STOP requested with a byte is sent even without an acknowledge
+  bool stop_interrupts = false;     ///< a STOP without a byte raises an interrupt
+  bool stops_after_error = false;   ///< the block sends a requested STOP even if an acknowledge is missing
   bool waits_for_free_bus = false;  ///< a START on a busy bus waits for a reset; false: it loses arbitration
   bool loss_is_no_error = false;    ///< lost arbitration does not set the error bit
 };
@@ -34,7 +34,7 @@ class I2cBlock final : public Peripheral {
   static constexpr std::uint32_t kClear = 0x01C;
   static constexpr std::uint32_t kConfiguration = 0x020;
 
-  static constexpr unsigned kClockPin = 2;  ///< on port B
+  static constexpr unsigned kClockPin = 2;  ///< on port B, like the data pin
   static constexpr unsigned kDataPin = 3;
   static constexpr std::uint32_t kFunction = 3;
 

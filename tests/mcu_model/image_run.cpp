@@ -24,7 +24,7 @@ ImageRun::~ImageRun() {
 
 void ImageRun::run_until(Instant when) {
   if (over_) {
-    throw std::logic_error("the image has ended, so it cannot run until a later time");
+    throw std::logic_error("the image has ended and cannot run again");
   }
   limit_ = when;
   if (timeline_.now() < when) {
@@ -53,7 +53,7 @@ void ImageRun::pass(Instant to) {
     if (ending_) {
       throw Ended();
     }
-    return;  // before `to`, because the test may have set earlier alarms
+    return;  // possibly before `to`: the test may have set an alarm that is due earlier
   }
   timeline_.advance(to);
 }

@@ -39,7 +39,7 @@ class LineBench {
   void set_format(LineFormat format);
   [[nodiscard]] Instant bit_time() const { return bit_time_; }
   [[nodiscard]] Instant character_time() const { return bits_on_wire(format_) * bit_time_; }
-  /// Queues characters. They follow the characters that already wait, without a gap.
+  /// Adds characters to the end of the queue. The master sends the characters of the queue without gaps.
   void send(const std::vector<std::uint8_t>& bytes);
   void send_one(Character character);
   [[nodiscard]] bool sending() const { return sender_.busy() || !waiting_.empty(); }
@@ -56,7 +56,7 @@ class LineBench {
   /// tolerance is a tenth of a bit, for the difference of the clocks. On the wires, a second stop bit cannot
   /// be distinguished from the idle line.
   unsigned let_go_early = 0;
-  /// The number of times that the driver went off more than the duration of a character after the end of the
+  /// The number of times that the driver went off too late: more than one character time after the end of the
   /// last character.
   unsigned let_go_late = 0;
 

@@ -141,9 +141,9 @@ void Microcontroller::check_usable(const Place& place, std::uint32_t address) co
     case SystemControl::Gate::Shut:
       throw Fault(address, "the peripheral has no clock");
     case SystemControl::Gate::TooFresh:
-      throw Fault(
-          address,
-          "its clock gate was opened too recently; wait for the clock cycles that the data sheet requires");
+      throw Fault(address,
+                  "the clock gate of the peripheral was opened too recently; wait for the clock cycles that "
+                  "the data sheet requires");
     case SystemControl::Gate::Open:
       break;
   }
@@ -227,7 +227,7 @@ void Microcontroller::wait_for_interrupt() {
   while (!core.wakes()) {
     const Instant next = std::min(timeline_.next(), core.next_wake());
     if (next == kNever && !pass_) {
-      throw Fault(0, "the processor sleeps, and no event is left that could wake it");
+      throw Fault(0, "the processor sleeps, and no further event can wake it");
     }
     pass(next);
   }

@@ -96,13 +96,14 @@ class Microcontroller {
 
   /// Sets the function that serves each exception; see Core.
   void on_exception(std::function<void(unsigned exception)> act) { core.on_exception(std::move(act)); }
-  /// Sets the function that lets time pass until `to`. The function may return before `to`. The default, also
-  /// for null, is Timeline::advance.
+  /// Sets the function that lets time pass until `to`. The function may return before `to`. If `pass` is
+  /// null, or if no function is set, Timeline::advance lets time pass.
   void pass_time_by(std::function<void(Instant to)> pass) { pass_ = std::move(pass); }
 
   /// Sets the number of clock cycles of each access. The default is 2, the minimum of a bus access. The model
-  /// does not count the instructions between two accesses, so a delay that consists of accesses has its
-  /// shortest length. A greater value makes the simulation faster if the firmware makes many accesses.
+  /// does not count the instructions between two accesses. With the default, a delay that consists of
+  /// accesses is therefore never longer than on a chip. A greater value makes the simulation faster if the
+  /// firmware makes many accesses.
   void set_clocks_an_access(int clocks) { clocks_an_access_ = clocks; }
   [[nodiscard]] std::uint64_t accesses() const { return accesses_; }
   void record(bool on) { recording_ = on; }

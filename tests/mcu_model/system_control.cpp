@@ -94,25 +94,25 @@ void SystemControl::write_rcc(std::uint32_t value) {
   const std::uint32_t changed = value ^ rcc_;
   const std::uint32_t crystal = chip_.crystal_field << kCrystalShift;
   if ((changed & chip_.rcc_kept) != 0) {
-    fault(kRcc, "bits of RCC that must keep their value change");
+    fault(kRcc, "the write changes bits of RCC that must keep their value");
   }
   const std::uint32_t validated =
       crystal | (0x3U << kSourceShift) | (1U << kPowerDown) | (0xFU << kDividerShift);
   if ((changed & validated) != 0 && !rcc_has(kBypass)) {
-    fault(kRcc, "reconfigures the PLL while the processor runs on it");
+    fault(kRcc, "the write reconfigures the PLL while the processor runs on the PLL");
   }
   if ((changed & validated) != 0 && (changed & ~rcc_ & (1U << kUseDivider)) == 0 && rcc_has(kUseDivider)) {
-    fault(kRcc, "reconfigures the clock while the divider is in use");
+    fault(kRcc, "the write reconfigures the clock while the divider is in use");
   }
   const bool bypass_ends = rcc_has(kBypass) && (value >> kBypass & 1U) == 0;
   if (bypass_ends && !locked_) {
-    fault(kRcc, "runs on a PLL that has not locked");
+    fault(kRcc, "the processor would run on a PLL that has not locked");
   }
   if (bypass_ends && (value >> kUseDivider & 1U) == 0) {
-    fault(kRcc, "runs on the PLL without a divider");
+    fault(kRcc, "the processor would run on the PLL without a divider");
   }
   if (bypass_ends && (value >> kDividerShift & 0xFU) + 1 < 4) {
-    fault(kRcc, "runs at more than 50 MHz");
+    fault(kRcc, "the processor would run at more than 50 MHz");
   }
   const bool powers_up = rcc_has(kPowerDown) && (value >> kPowerDown & 1U) == 0;
   if (rcc_has(kMainOscillatorOff) && (value >> kMainOscillatorOff & 1U) == 0) {
@@ -139,7 +139,7 @@ void SystemControl::use_clock() {
     if (main_oscillator) {
       cycle = chip_.crystal_code == kLm3s6965.crystal_code ? Instant(125'000) : Instant(62'500);
       if (crystal_swings_ == kNever) {
-        fault(kRcc, "runs on a crystal that is off");
+        fault(kRcc, "the processor would run on a crystal that is off");
       }
     }
     if (rcc_has(kUseDivider)) {

@@ -42,7 +42,7 @@ class SystemControl final : public Peripheral {
 
   /// Returns the period of the system clock.
   [[nodiscard]] Instant cycle() const { return cycle_; }
-  /// Adds a function that receives the new period before it takes effect.
+  /// Adds a function to call before a new period takes effect. Its argument is the new period.
   void on_clock_change(std::function<void(Instant cycle)> act) { on_clock_change_.push_back(std::move(act)); }
   /// Sets the function to call when the processor must wait for the crystal until `until`.
   void on_standstill(std::function<void(Instant until)> act) { on_standstill_ = std::move(act); }

@@ -92,7 +92,7 @@ class TimerBlock final : public Peripheral {
       end_.cancel();
     } else if (!was_running) {
       if (configuration_ != 0 || mode_ != 1) {
-        fault(kControl, "the simulation supports only the 32-bit one-shot that counts down");
+        fault(kControl, "the simulation supports only the 32-bit one-shot mode that counts down");
       }
       end_.set(timeline_.now() + interval_ * clock_.cycle());
     }

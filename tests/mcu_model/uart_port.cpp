@@ -30,7 +30,7 @@ std::uint32_t UartPort::read(std::uint32_t offset) {
   switch (offset) {
     case kData: {
       if (!receive_holding_) {
-        fault(offset, "nothing has been received");
+        fault(offset, "the data register is read while it contains no received byte");
       }
       const std::uint32_t value = *receive_holding_;
       receive_holding_.reset();
@@ -96,7 +96,7 @@ void UartPort::write(std::uint32_t offset, std::uint32_t value) {
         fault(offset, "divisors have no effect until the line control register is written");
       }
       if ((value & 1U) != 0 && (integer_divisor_ == 0 || line_control_ == 0)) {
-        fault(offset, "enabled before it is set up");
+        fault(offset, "the UART is enabled before it is set up");
       }
       control_ = value;
       break;
@@ -132,8 +132,8 @@ void UartPort::transmit(std::uint8_t byte) {
   }
 }
 
-/// Begins to send a byte. The start bit begins at the first tick of the baud rate generator that is not
-/// before `not_before`. The generator runs continuously.
+/// Begins to send a byte. The start bit begins at the first tick of the baud rate generator at or after
+/// `not_before`. The generator runs continuously.
 void UartPort::begin_character(std::uint8_t byte, Instant not_before) {
   const Instant tick = bit_time_ / 16;
   shifting_ = true;

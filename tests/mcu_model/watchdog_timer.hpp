@@ -19,8 +19,8 @@ class WatchdogTimer final : public Peripheral {
   static constexpr std::uint32_t kClear = 0x00C;
   static constexpr std::uint32_t kLock = 0xC00;
 
-  /// The timer calls `on_expiry` at the end of the second countdown after the start or the last feed, if its
-  /// reset output is enabled.
+  /// If the reset output is enabled, the timer calls `on_expiry` at the end of the second countdown after the
+  /// start or the last feed.
   WatchdogTimer(SystemControl& clock, Timeline& timeline, std::function<void()> on_expiry)
       : Peripheral(kBase),
         clock_(clock),

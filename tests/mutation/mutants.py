@@ -48,8 +48,8 @@ OPERATORS = {
     "&=": "|=",
     "^=": "|=",
 }
-# Most of these operators can also be unary or part of a type. clang-format puts a space or the end of the line on
-# each side only of a binary operator.
+# Most of these operators can also be unary or part of a type. clang-format puts a space before a binary operator, and a
+# space or the end of the line after it. It does not do this for the other uses.
 BETWEEN_OPERANDS = {"<", ">", "+", "-", "*", "/", "%", "&", "|", "^", "<<", ">>", "&&"}
 
 STATEMENT = re.compile(r"^[ ]+(?P<statement>[a-z_][\w.>\[\]:+\- ]*(?:\(.*\)| [-+|&^]?= .*|\+\+|--);)$", re.MULTILINE)
@@ -150,12 +150,13 @@ def all_of(file, source):
 
 
 def spread(sources, seed):
-    """Yields all mutants of `sources` ({file: source}), from each file in turn. The order depends on `seed`."""
+    """Yields all mutants of `sources` ({file: source}): one mutant of each file, then another one of each file, and so
+    on. The order depends on `seed`."""
     chance = random.Random(seed)
     heaps = []
     for file, source in sorted(sources.items()):
-        # The rules of a file are also taken in turn, because the rule for constants makes many mutants, which rarely
-        # reveal a missing test.
+        # Takes one mutant of each rule, then another one of each rule, and so on. Otherwise, most mutants would be
+        # changed constants, which rarely reveal a missing test.
         of_rules = {}
         for mutant in all_of(file, source):
             of_rules.setdefault(mutant.rule, []).append(mutant)

@@ -39,7 +39,7 @@ class Mutants(unittest.TestCase):
         self.assertIn("wide(a ||", lines)
         self.assertIn("c -= 0x10U;", lines)
 
-    def test_references_preprocessor_lines_comments_and_literals_do_not_change(self):
+    def test_comments_preprocessor_lines_strings_character_literals_and_references_do_not_change(self):
         for line in changed(mutants.of_operators) | changed(mutants.of_constants):
             self.assertNotIn("|", line.replace("||", ""))
             self.assertFalse(line.startswith("#"))
@@ -71,7 +71,7 @@ class Mutants(unittest.TestCase):
         for each in mutants.all_of("f", SOURCE):
             self.assertNotIn("static_assert", SOURCE[SOURCE.rfind("\n", 0, each.begin) : each.end])
 
-    def test_the_seed_determines_the_order_of_all_mutants_and_files_are_taken_in_turn(self):
+    def test_files_are_taken_in_turn_and_the_seed_determines_the_order_of_all_mutants(self):
         sources = {"a": SOURCE, "b": SOURCE, "c": SOURCE}
         order = list(mutants.spread(sources, 1))
         self.assertEqual(order, list(mutants.spread(sources, 1)))

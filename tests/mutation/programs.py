@@ -1,8 +1,8 @@
 """Defines which tests check which sources, and how those tests are built.
 
-A unit is one object file: one or more sources that are compiled together. A program is a test. It lists the units that
-it may require, and the linker takes those that it does require. Most programs are read from the CMakeLists.txt files;
-the functions `players`, `image_programs` and `pico_program` define the others.
+A unit is one object file: one or more sources that are compiled together. A program is a test. It lists the library
+units that it can use. Of these units, the linker takes only the units that the test requires. Most programs are read
+from the CMakeLists.txt files; the functions `players`, `image_programs` and `pico_program` define the others.
 """
 
 import dataclasses
@@ -64,8 +64,8 @@ class Unit:
 
     @functools.cached_property
     def headers(self):
-        """Returns the library headers to precompile for the unit, because they take long to compile. GoogleTest's
-        header is always among them, because it includes most of the standard library."""
+        """Returns the headers of other projects to precompile for the unit. These headers take long to compile. The
+        header of GoogleTest is always one of them, because it includes many headers of the standard library."""
         has_json = any("#include <nlohmann/json.hpp>" in (ROOT / file).read_text() for file in self.files)
         return ("gtest/gtest.h", "nlohmann/json.hpp") if has_json else ("gtest/gtest.h",)
 
@@ -141,7 +141,7 @@ class Program:
     environment: tuple = ()
     images: tuple = ()
     options: tuple = ()
-    processor_seconds: int = 8  # several times the normal run time; a program that requires more counts as failed
+    processor_seconds: int = 8  # limit, several times the normal processor time; a program that exceeds it fails
 
     @property
     def sources(self):
@@ -162,7 +162,7 @@ class Program:
 
 
 # Parts of the simulator that use sockets, files, ports or signals of the operating system. Mutation does not change
-# them, because tests that run the program as a process cover most of them. Names without folder and extension.
+# them, because tests that run the program as a process cover most of them. The names have no folder and no extension.
 PROCESS = set(
     "claim control_socket line_ports listening main panel_server port program pty pty_port "
     "running_line running_program serial_port stop_signals tcp_port".split()
@@ -170,7 +170,7 @@ PROCESS = set(
 # The sources in PROCESS that only the whole program links.
 WHOLE = {"main", "panel_server", "program", "running_program"}
 # Sources that are compiled separately, because they take long to compile and few tests reach them. sim/CMakeLists.txt
-# lists further ones after ON_THEIR_OWN.
+# lists more such sources after ON_THEIR_OWN.
 ALONE = {"line_record", "play_record"}
 
 
@@ -326,7 +326,7 @@ PICO_TESTS = """
 
 def filter_of_pico_tests():
     """Returns the value of GTEST_FILTER that selects PICO_TESTS. A test with parameters runs only with the parameter
-    `Nothing`. Ends the program if a test does not exist, because GoogleTest ignores a name without a test."""
+    `Nothing`. Exits if one of these tests does not exist, because GoogleTest ignores a name that no test has."""
     source = "".join((ROOT / file).read_text(encoding="utf-8") for file in PICO_SOURCES)
     patterns = []
     for test in PICO_TESTS:
@@ -365,9 +365,9 @@ def pico_program():
 
 @dataclasses.dataclass(frozen=True)
 class Area:
-    """The sources to change, the units of the product that contain them, and the tests that must detect the change.
-    Tests whose file names begin with the name of the changed file run first, then tests that include the header of this
-    file, then the other tests of each group in turn."""
+    """The sources to change, the units of the product that contain them, and the tests that must detect a change. Tests
+    whose file names begin with the name of the changed file run first. Tests that include the header of this file run
+    next. The other tests run last, one group after the other."""
 
     name: str
     sources: list
@@ -416,7 +416,8 @@ def areas():
     ]
     of_drivers = [hal, interleaved, sim, [players()], image_programs()]
     of_simulator = [LIBRARY_UNITS[name] for name in LIBRARIES["ex9000_main"] if name != "core"]
-    # In the simulator, only a source in WHOLE includes this header. The units of its test replace the product.
+    # In the simulator, only panel_server.cpp includes loopback.hpp, and no unit contains panel_server.cpp. Therefore
+    # the units of the test of loopback.hpp count as part of the product.
     of_simulator += [unit for each in sim for unit in each.tests if "sim/front_ends/panel/loopback.hpp" in unit.files]
     return [
         Area("firmware", files("firmware/*.cpp", "firmware/*.hpp"), core + images, [[players()], of_core]),

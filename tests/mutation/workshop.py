@@ -13,7 +13,7 @@ from programs import ROOT
 
 BUILD = ROOT / "build/mutation"
 COMPILE = ["clang++", "-std=c++17", "-w", "-fno-ident"]
-MOST_MEMORY = 4 << 30  # a program that requires more counts as failed
+MOST_MEMORY = 4 << 30  # limit in bytes; a program that exceeds it fails
 
 
 def run(command, folder=ROOT, **environment):
@@ -180,8 +180,9 @@ class Bench:
         return self.objects[unit.name]
 
     def changes(self, units):
-        """Compiles those of these units that contain the changed file, up to the first unit whose object code the
-        mutant changes. Returns whether there is such a unit. Returns False if a unit does not compile."""
+        """Compiles the units that contain the changed file, one after the other. Stops and returns True after the first
+        unit whose object code the mutant changes. Stops and returns False after the first unit that does not compile.
+        Returns False if the mutant changes the object code of no unit."""
         for unit in filter(self.is_in, units):
             _, as_it_is = self.workshop.unit(unit)
             changed = self.object_of(unit)

@@ -40,7 +40,8 @@ struct CopiedSettings {
   std::uint8_t response_delay = 0;
 };
 
-/// The addresses of copies. The first two are for layout 3, the others for the older layouts.
+/// The addresses at which copies begin. The first two are for layout 3. The last two are for the older
+/// layouts.
 constexpr std::array<std::size_t, 4> kStoredPlaces{0x080, 0x100, 0x000, 0x020};
 constexpr std::size_t kStoredMemory = 0x180;  ///< bytes of the memory that settings may occupy
 constexpr std::size_t kStoredPage = 32;
@@ -52,8 +53,8 @@ class StoredCopy {
   StoredCopy(const StoringModel& model, const std::uint8_t* memory, std::size_t place)
       : model_(model), bytes_(memory + place), layout_(place >= 0x080 ? 3 : layout_of_old(bytes_)) {}
 
-  /// Sets the layout of the copy at `place`: 2 at a place for the older layouts, otherwise 3. In layout 3,
-  /// reduces a length of more than 120 to 120. Then writes the correct check.
+  /// Sets the layout number and the check of the copy at `place`. The layout number becomes 2 at a place for
+  /// the older layouts, otherwise 3. In layout 3, a length of more than 120 becomes 120.
   static void seal(const StoringModel& model, std::uint8_t* memory, std::size_t place) {
     std::uint8_t* bytes = memory + place;
     if (place >= 0x080) {
@@ -155,7 +156,8 @@ class StoredCopy {
   [[nodiscard]] std::size_t check_at() const {
     return layout_ == 3 ? std::size_t{4} + bytes_[1] : layout_ == 2 ? 24 : 21;
   }
-  /// Returns whether the copy contains `size` bytes at `at`. A record of layout 3 may end before a setting.
+  /// Returns whether the copy contains a setting: `size` bytes from offset `at` on. A copy of layout 3 does
+  /// not always contain all settings.
   [[nodiscard]] bool reaches(std::size_t at, std::size_t size) const {
     return layout_ != 3 || at + size <= check_at();
   }
@@ -179,7 +181,7 @@ class StoredCopy {
     std::for_each(bytes_, bytes_ + check_at(), add);
     return ~crc;
   }
-  /// For each value of four bits, the CRC after four steps of one bit.
+  /// For each value of four bits, the result of four shifts of the CRC.
   static constexpr std::array<std::uint32_t, 16> kOfDigit = [] {
     std::array<std::uint32_t, 16> table{};
     for (std::uint32_t i = 0; i < table.size(); ++i) {

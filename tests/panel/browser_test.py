@@ -10,7 +10,7 @@ READ_INPUTS = bytes.fromhex("020200000008") + crc(bytes.fromhex("020200000008"))
 
 
 class Modules(Panel):
-    def test_two_clicks_on_an_input_are_one_count_on_the_page_and_over_modbus(self):
+    def test_the_page_and_modbus_show_one_count_after_two_clicks_on_an_input(self):
         _, master = self.show_two()
         counted = text(INPUTS, "li:nth-child(4) .count", "1")
         self.assertEqual(master.counter(2, 3), 0)
@@ -118,7 +118,7 @@ class Modules(Panel):
             .map((each) => each.outerHTML)"""
         self.assertEqual(self.browser.run(nameless), [])
 
-    def test_faults_can_be_switched_and_the_page_shows_their_effect(self):
+    def test_faults_can_be_switched_on_and_off_and_the_page_shows_their_effect(self):
         _, master = self.show_two()
         noise = "[aria-label='Fault inserted-bytes 0.01']"
         self.browser.type("[aria-label='Another fault']", "nonsense\ue007")
@@ -143,7 +143,7 @@ class Modules(Panel):
         for channel in range(3):
             master.coil(1, channel, True)
             master.counter(2, channel)
-        # On a busy host, the list also contains notes that the host was late.
+        # On a busy host, the list can also contain notes. Such a note reports that the host was late.
         count = "document.querySelectorAll('#filler .row:not([data-kind=note])').length"
         self.browser.until(f"{count} === 12")
         self.browser.type("#search", "coil 0002")
@@ -165,7 +165,7 @@ class Modules(Panel):
         self.browser.click("#pause")
         self.browser.until(f"{count} === 14")
 
-    def test_a_phone_shows_one_module_and_many_without_scrolling_sideways(self):
+    def test_a_phone_shows_one_module_or_64_modules_without_horizontal_scrolling(self):
         self.browser.size(*PHONE, phone=True)
         self.show("EX9043D-M@01,baud=115200")
         self.browser.run("document.querySelector('details').open = true")
@@ -205,7 +205,7 @@ class Modules(Panel):
         self.browser.prefers(color_scheme="dark")
         self.picture("one-dark")
 
-    def test_64_modules_on_full_lines_are_on_the_screen_and_show_every_click(self):
+    def test_the_page_shows_64_modules_and_every_click_while_both_lines_are_fully_loaded(self):
         simulator = self.many()
         self.look_at(simulator)
         self.assertEqual(self.browser.run("return document.querySelectorAll('.plate').length"), 64)
@@ -217,7 +217,7 @@ class Modules(Panel):
             self.browser.until("document.querySelectorAll('#filler .row').length > 10")
             # The module's counter counts falling edges: one for every two clicks.
             clicks = 0
-            for _ in range(3 * CLICKS):  # a busy machine may lose the connection; a click then has no effect
+            for _ in range(3 * CLICKS):  # on a busy host, the page may lose its connection; then a click has no effect
                 self.browser.until(f"""{there} && (window.was = [{pressed(input_)}, {count}],
                     document.querySelector("{input_}").click(), true)""")
                 self.browser.until(f"""!({there}) || ({pressed(input_)} !== was[0] && {latched} &&
@@ -230,7 +230,7 @@ class Modules(Panel):
             self.browser.prefers(color_scheme="dark")
             self.browser.run("document.getElementById('bus').scrollIntoView()")
             self.picture("64-bus-dark")
-        print(f"64 modules, both lines at full load: {CLICKS} clicks, each seen on the screen", flush=True)
+        print(f"64 modules, both lines at full load: the page shows each of {CLICKS} clicks", flush=True)
 
 
 if __name__ == "__main__":

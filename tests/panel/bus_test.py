@@ -6,14 +6,14 @@ from panel_page import Panel, pressed
 from simulator import Master, repeating, wait_until
 from web_socket import Page
 
-# The number of rows that the page has made, without notes. The page makes rows only for the visible entries of the list
-# and some around them. A note reports, for example, a delay of the host.
+# The number of rows in the document, except rows of notes. The document contains rows only for the visible entries of
+# the list and for some entries above and below them. A note reports, for example, a delay of the host.
 ROWS = "document.querySelectorAll('#filler .row:not([data-kind=note])').length"
 TALLY = "document.getElementById('tally').textContent"
 PAUSED = "document.getElementById('pause').getAttribute('aria-pressed') === 'true'"
 LOST = "document.getElementById('lost').textContent.includes('trying again')"
 PICTURE = "document.getElementById('canvas').toDataURL()"
-# A JavaScript function that returns whether row `y` of the strip's pixels contains the colour with this name.
+# A JavaScript function that returns whether pixel row `y` of the strip contains the colour `name`.
 PAINTED = """((name, y) => {
   const strip = document.getElementById('canvas');
   const copy = document.createElement('canvas');
@@ -81,7 +81,7 @@ class Bus(Panel):
         self.type("#search", "")
         self.browser.until(f"{ROWS} === 6")
 
-    def test_each_line_counts_the_rows_that_a_paused_page_has_omitted(self):
+    def test_after_a_pause_the_page_shows_for_each_line_the_number_of_omitted_rows(self):
         modules = [{"model": "EX9052D-M", "address": "02"}]
         simulator = self.bus([{"name": name, "tcp": 0, "line": "instant", "modules": modules}
                               for name in ("hall", "yard")])
@@ -122,7 +122,7 @@ class Bus(Panel):
             return timeline.entries.filter(({missed}) => missed).map(({from, means}) => `${from}: ${means}`);""")
         self.assertEqual(sorted(rows), ["hall: 300 rows were left out here", "yard: 1 row was left out here"])
 
-    def test_a_paused_page_starts_again_with_a_new_run_and_its_modules(self):
+    def test_if_the_simulator_starts_again_a_paused_page_resumes_and_shows_the_new_modules(self):
         simulator, master = self.show_two()
         self.ask_inputs(master, 1)
         self.browser.until(f"{TALLY} === '2 frames'")
@@ -173,7 +173,7 @@ class Bus(Panel):
         page.until(lambda message: heard.extend(entries_of(message)) or any("error" in each for each in heard))
         late = next(each for each in heard if "error" in each)
         notes = [f"{each['began'] / 1e6:.6f}" for each in heard[: heard.index(late)] if each["began"] > late["began"]]
-        self.assertTrue(notes)  # made during the frame, and received before it
+        self.assertTrue(notes)  # these notes began after the frame began, and the page received them before the frame
         after = """const rows = [...document.querySelectorAll('#filler .row')];
             return rows.slice(rows.findIndex((row) => row.dataset.kind === 'error') + 1)
               .map((row) => row.querySelector('.time').textContent)"""
@@ -196,7 +196,7 @@ class Bus(Panel):
         self.browser.run("document.getElementById('lanes').scrollTop = 0")
         self.browser.until(f"!{PAINTED}('master', 8 * 52 + 20)")
 
-    def test_the_strip_is_moved_by_keys_and_by_dragging_while_paused(self):
+    def test_arrow_keys_and_dragging_move_a_paused_strip(self):
         _, master = self.show_two()
         with self.asking_inputs(master):  # so that the strip shows different frames after each move
             self.browser.until(f"{ROWS} > 20 && {PAINTED}('master', 20)")
@@ -212,7 +212,7 @@ class Bus(Panel):
         self.browser.click("#pause")
         self.browser.until(f"{label} === 'The last 1000 ms on 1 line'")
 
-    def test_each_of_several_fast_clicks_on_a_fault_counts(self):
+    def test_each_of_several_fast_clicks_switches_the_fault(self):
         simulator, _ = self.show_two()
         noise = "[aria-label='Fault inserted-bytes 0.01']"
         click = f"""document.querySelector("{noise}").click();"""

@@ -35,7 +35,7 @@ class Console(Panel):
         self.browser.until(f"{REPLIES}.length >= {count}")
         return self.browser.run(f"return {REPLIES}")
 
-    def test_an_item_of_the_map_becomes_a_request_whose_reply_is_decoded(self):
+    def test_an_item_of_the_register_map_fills_in_a_request_and_the_console_decodes_the_reply(self):
         self.open("EX9042D-M@01", "EX9052D-M@02")
         self.choose(MODULE, "2 EX9052D-M at 02")
         self.browser.until(f"{ITEMS}.some((each) => each.startsWith('Read 0000–0007: inputs'))")
@@ -53,14 +53,14 @@ class Console(Panel):
         self.send("05 0003 0000")
         self.browser.until(lit(0))
 
-    def test_a_module_that_speaks_ascii_has_its_commands_in_the_list(self):
+    def test_the_list_contains_the_dcon_commands_of_a_module_that_uses_ascii(self):
         self.open("EX9042D@0A")
         self.choose(ITEM, "$AAM")
         self.assertEqual(self.browser.run(f"""return document.querySelector("{REQUEST}").value"""), "$0AM")
         self.browser.click(SEND)
         self.assertIn("$0AM → !0A9042D\\r reply", self.replies(1)[0])
 
-    def test_an_ascii_address_may_be_higher_than_those_of_modbus(self):
+    def test_an_ascii_address_may_be_higher_than_the_highest_modbus_address(self):
         self.open("EX9042D@FF")
         self.send("$FFM")
         self.assertIn("$FFM → !FF9042D\\r reply", self.replies(1)[0])

@@ -24,7 +24,7 @@ class Inputs(Panel):
     def focus(self, selector):
         self.browser.run(f"""document.querySelector("{selector}").focus()""")
 
-    def test_a_held_input_is_released_after_the_simulator_hangs(self):
+    def test_a_held_input_is_released_when_a_hang_of_the_simulator_ends(self):
         simulator, _ = self.show_two()
         self.browser.click("[aria-label='2 EX9052D-M: input DI1']")
         self.browser.click(HOLD)
@@ -70,7 +70,7 @@ class Inputs(Panel):
         self.click_in_the_page(DI3)
         self.browser.until(pressed(DI3))
 
-    def test_a_click_without_a_pointer_toggles_in_hold_mode(self):
+    def test_in_hold_mode_a_click_without_a_pointer_switches_the_input(self):
         self.show_two()
         self.browser.click(HOLD)
         self.click_in_the_page(DI3)
@@ -111,7 +111,7 @@ class Inputs(Panel):
             self.browser.until(f"{COUNT} === {turn + 2}")
         self.assertFalse(self.browser.run(f"return {pressed(DI3)}"))
 
-    def test_the_reset_button_switches_an_output_back_off(self):
+    def test_the_reset_button_sets_an_output_to_its_power_on_value(self):
         simulator, master = self.show_two()
         master.coil(1, 0, True)
         page = Page(simulator.port)

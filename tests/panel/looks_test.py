@@ -1,6 +1,6 @@
 """Tests the appearance of the panel, and what a screen reader finds in it: contrast, roles and names, narrow windows,
-the header, the terminals, a timed output, the drawer of a module (its settings and values), and the text on a page that
-exceeds the limit of open pages."""
+the header, the terminals, a timed output, the drawer of a module (its settings and values), and the text that an extra
+page shows if too many pages are open."""
 
 import tempfile
 import unittest
@@ -13,8 +13,8 @@ MOST_PAGES = 16
 LEGIBLE = 4.5  # the minimum contrast ratio that a text requires
 VISIBLE = 3  # the minimum contrast ratio that a border requires
 # Returns the contrast ratio between a colour and the background colour of the element `ground`. The colour is a
-# property of the element `selector`, or of the content generated before or after this element. The opacities of this
-# element and of all its ancestors count.
+# property of the element `selector`, or of the content generated before or after this element. The ratio includes the
+# effect of the opacities of this element and of all its ancestors.
 CONTRAST = """
   const [selector, generated, property, ground] = arguments;
   const channels = (colour) => colour.match(/[0-9.]+/g).slice(0, 3).map((each) => Number(each) / 255);
@@ -77,7 +77,7 @@ class Looks(Panel):
         ):
             self.assertIn(wanted, found)
 
-    def test_a_drawer_keeps_scroll_focus_and_selection_while_values_change(self):
+    def test_a_drawer_keeps_its_scroll_position_focus_and_selection_while_values_change(self):
         _, master = self.show_two()
         self.browser.size(320, 700)
         self.browser.click(f"{OUTPUTS} summary")
@@ -100,7 +100,7 @@ class Looks(Panel):
                     document.activeElement === table, selected !== '' && String(getSelection()) === selected];""")
         self.assertTrue(scrolled and same and focused and selected, (scrolled, same, focused, selected))
 
-    def test_the_plate_counts_a_timed_output_down_and_the_drawer_shows_the_extensions(self):
+    def test_the_plate_shows_the_remaining_time_of_an_output_and_the_drawer_shows_the_extensions(self):
         simulator = self.show("EX9055D@01,format=8E1")
         master = Master(simulator.lines[0])
         self.addCleanup(master.close)
@@ -161,7 +161,7 @@ class Looks(Panel):
         page.close()
         self.browser.until("document.querySelectorAll('.plate').length === 2")
         self.browser.until(f"document.getElementById('lost').textContent === '' && !{dot}")
-        # Without data-link, as before the first connection, the dot also shows that the page is not connected.
+        # Before the first connection, the body has no attribute data-link. The dot must then also show "not connected".
         self.assertTrue(self.browser.run(f"document.body.removeAttribute('data-link'); return {dot}"))
 
     def test_320_pixels_are_enough_for_long_names(self):

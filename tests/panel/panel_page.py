@@ -1,5 +1,5 @@
-"""The base class and the helpers of the browser tests. Each test starts its own simulator and shows its page. Some
-tests save pictures in build/panel."""
+"""The base class and the helpers of the browser tests. Each test starts its own simulator and opens the page of this
+simulator. Some tests save pictures in build/panel."""
 
 import atexit
 import contextlib
@@ -77,8 +77,8 @@ def both_lines_busy(simulator):
 
 
 def requests_of(master):
-    """Returns a function that sends two requests to the next group of four modules: one switches an output of the first
-    module of the group, the other reads the inputs of the second."""
+    """Returns a function. Each call of it sends two requests to the next group of four modules. The first request
+    switches an output of the first module. The second request reads the inputs of the second module."""
     turns = itertools.count()
 
     def send():

@@ -55,7 +55,7 @@ class Plant(Panel):
         self.browser.until(lamp)
         self.picture("plant-one-open")
 
-    def test_a_state_that_changed_while_its_line_was_folded_is_shown_when_the_line_is_opened(self):
+    def test_an_opened_line_shows_a_state_that_changed_while_the_line_was_folded(self):
         master = Master(self.simulator.lines[2])
         self.addCleanup(master.close)
         master.ask("01050000FF00", 8)
@@ -63,7 +63,7 @@ class Plant(Panel):
         self.browser.click(".line:nth-child(3) > summary")
         self.browser.until("document.querySelector('[aria-label=\"21 EX9042D-M\"] .output')?.dataset.on === 'true'")
 
-    def test_modules_are_found_by_line_position_model_address_and_name(self):
+    def test_modules_are_found_by_line_and_position_and_model_and_address_and_name(self):
         for words, lines, plates in (
             ("hall3", ["hall3"], 10),
             ("p4v7", ["hall4"], 1),
@@ -82,7 +82,7 @@ class Plant(Panel):
         self.assertEqual(self.value(SHOWN_LINES), [])
         self.picture("plant-nothing-found")
 
-    def test_too_many_modules_stay_folded_and_an_empty_search_shows_all_lines(self):
+    def test_lines_stay_folded_if_too_many_modules_match_and_an_empty_search_shows_all_lines(self):
         self.find("hall")
         self.assertEqual(len(self.value(SHOWN_LINES)), 7)
         self.assertEqual(self.value(OPEN_LINES), [])
@@ -91,7 +91,7 @@ class Plant(Panel):
         self.assertNotEqual(self.value(OPEN_LINES), [])
         self.find("")
         self.assertEqual(len(self.value(SHOWN_LINES)), 7)
-        self.assertEqual(self.value(OPEN_LINES), [], "the lines of a large plant are folded again")
+        self.assertEqual(self.value(OPEN_LINES), [], "some lines are open; all lines must be folded again")
         self.assertEqual(self.value("document.getElementById('found').textContent"), "")
 
     def test_a_search_shows_only_the_faults_of_the_found_lines(self):

@@ -1,6 +1,6 @@
-"""Tests what the panel's server accepts and rejects while a master polls the line without errors. Also tests at which
-addresses and ports the server listens, how the simulator ends while pages are open, and what happens if a page does not
-read."""
+"""Tests what the panel's server accepts and rejects. During these tests, a master polls a module, and no poll may fail.
+Also tests at which addresses and ports the server listens, how the simulator ends while pages are open, and what
+happens if a page does not read."""
 
 import json
 import pathlib
@@ -16,11 +16,11 @@ from web_socket import Page, all_of, ask, open_socket, request, status, upgrade
 MOST_PAGES = 16
 MOST_REQUESTS = 64  # concurrent requests, in addition to the pages
 TRY_AGAIN_LATER = 1013
-LOOKS = 20  # messages that one page receives while the server sends none to a page that does not read
+LOOKS = 20  # states that one page receives while the server sends no message to another page, which does not read
 
 
 class Polling:
-    """A master that polls continuously and stores the first error."""
+    """A master that polls a module until `end` is called or a poll fails. `wrong` is the error of that poll."""
 
     def __init__(self, port):
         self._master = Master(port)
@@ -33,14 +33,14 @@ class Polling:
         try:
             while self._left != 0:
                 if self._master.ask("020200000008", 6)[:2] != b"\x02\x01":
-                    raise AssertionError("unexpected reply to the poll")
+                    raise AssertionError("poll: unexpected PDU; expected a PDU that begins with 02 01 (hex)")
                 if self._left is not None:
                     self._left -= 1
         except Exception as wrong:  # pylint: disable=broad-exception-caught # tearDown reports it
             self.wrong = wrong
 
     def end(self):
-        """Stops the polling after up to five more polls, and waits for its end."""
+        """Lets the thread carry out up to five more polls, waits until the thread ends, and closes the connection."""
         self._left = 5
         self._thread.join()
         self._master.close()
@@ -96,7 +96,7 @@ class Server(unittest.TestCase):
         self.expect(403, upgrade(self.port, origin=None))
         self.expect(403, request(self.port, "/live"))
 
-    def test_a_sec_fetch_site_other_than_same_origin_or_none_is_refused(self):
+    def test_a_sec_fetch_site_with_a_value_other_than_same_origin_or_none_is_refused(self):
         for site in "cross-site", "same-site", "nonsense":
             self.expect(403, request(self.port, headers=[f"Sec-Fetch-Site: {site}"]))
             twice = ["Sec-Fetch-Site: none", f"Sec-Fetch-Site: {site}"]
@@ -105,7 +105,7 @@ class Server(unittest.TestCase):
         for site in "same-origin", "none":
             self.expect(200, request(self.port, headers=[f"Sec-Fetch-Site: {site}"]))
 
-    def test_unknown_paths_other_methods_bodies_and_live_without_an_upgrade_are_refused(self):
+    def test_unknown_paths_unsupported_methods_bodies_and_live_without_an_upgrade_are_refused(self):
         for target in ("/nothing", "/../etc/passwd", "/panel.js?x", "//", "http://example.org/"):
             self.expect(404, request(self.port, target))
         for method in "POST", "PUT", "DELETE", "OPTIONS", "FOO":
@@ -117,7 +117,7 @@ class Server(unittest.TestCase):
         for method in "GET", "HEAD":
             self.expect(413, request(self.port, method=method, headers=["Content-Length: 10"]) + b"0123456789")
 
-    def test_head_gets_the_header_of_get_without_the_body(self):
+    def test_the_response_to_head_is_the_header_of_the_response_to_get(self):
         for target in "/", "/panel.js", "/nothing":
             header, body = ask(self.port, request(self.port, target)).split(b"\r\n\r\n", 1)
             self.assertNotEqual(body, b"")
@@ -140,7 +140,8 @@ class Server(unittest.TestCase):
     def test_a_request_may_come_in_pieces(self):
         whole = request(self.port)
         with open_socket(self.port) as connection:
-            for at in range(0, len(whole) - 1, 16):  # few pieces: the server waits 5 s for a whole request
+            # With smaller pieces, the request could take longer than 5 s, the timeout of the server.
+            for at in range(0, len(whole) - 1, 16):
                 connection.sendall(whole[at:min(at + 16, len(whole) - 1)])
                 self.expect(200, request(self.port, "/panel.css"))  # so that the piece arrives separately
             connection.sendall(whole[-1:])
@@ -164,9 +165,9 @@ class Server(unittest.TestCase):
         rounds = 0
 
         def again():
-            """Carries out a round if the server answers a request: opens MOST_REQUESTS connections, expects that the
-            server rejects one more connection, and expects that the server still replies to the page. Returns whether
-            three rounds have passed."""
+            """If the server accepts a request, carries out a round: opens MOST_REQUESTS connections, expects that the
+            server rejects one more connection and still replies to the page, and closes the connections. Returns
+            whether three rounds have passed."""
             nonlocal rounds
             if status(ask(self.port, request(self.port))) == 200:
                 waiting = [open_socket(self.port) for _ in range(MOST_REQUESTS)]
@@ -210,7 +211,7 @@ class Server(unittest.TestCase):
             self.assertFalse(page.tell(command)["ok"])
         self.assertTrue(page.tell("list")["ok"])
 
-    def test_a_held_input_is_released_when_the_connection_of_its_page_ends(self):
+    def test_an_input_that_a_page_holds_is_released_when_the_connection_of_the_page_ends(self):
         page, another = self.page(), self.page()
         page.say("2 input 5 on", undo="2 input 5 off")
         self.assertTrue(page.until(lambda message: message.get("reply"))["reply"]["ok"])
@@ -320,7 +321,7 @@ class Slow(unittest.TestCase):
             times += times_of({"state": state})
             inputs = next((each["plate"]["inputs"] for each in state["modules"]
                            if each["module"] == 1 and "plate" in each), inputs)
-        # `most` is the largest number of messages that `page` received between two messages to the slow page.
+        # `most` is the largest number of states for `page` between two successive states for the slow page.
         most = max(sum(before < each < after for each in told) for before, after in zip(times, times[1:]))
         self.assertGreaterEqual(most, LOOKS - 1)
 
@@ -338,7 +339,7 @@ def unsent(port, connection):
         columns = line.split()
         if columns[1:3] == ends:
             return int(columns[4].split(":")[0], 16)
-    raise AssertionError("the connection was closed")
+    raise AssertionError("/live: the server has closed the connection; expected an open connection")
 
 
 def times_of(message):

@@ -1,4 +1,4 @@
-"""Runs ex9000-sim with its panel, and a master for Modbus RTU and DCON on one of its lines."""
+"""Runs ex9000-sim with the panel. Also contains a master that sends Modbus RTU and DCON requests to the simulator."""
 
 import concurrent.futures
 import contextlib
@@ -58,8 +58,8 @@ class Simulator:
         self.process.stdout.close()
 
     def start_again(self, *others):
-        """Starts the program again with the same port of the panel. Uses the previous arguments, or `others` if given.
-        Call `kill` before."""
+        """Starts ex9000-sim again, with the same panel port. If `others` is empty, uses the previous arguments;
+        otherwise uses `others`. Call `kill` before this method."""
         self._arguments = others or self._arguments
         self._start(self.port)
 
@@ -97,8 +97,8 @@ class Master:
         self._socket.sendall(data)
 
     def ask(self, request, size):
-        """Sends a request, given in hex without CRC. Returns the PDU of the reply. `size` is the number of bytes of the
-        reply, with address and CRC."""
+        """Sends a request with its CRC. `request` is in hex and contains no CRC. Returns the PDU of the reply. `size`
+        is the number of bytes of the reply, with address and CRC."""
         data = bytes.fromhex(request)
         self._socket.sendall(data + crc(data))
         answer = self._read(size)
@@ -109,7 +109,7 @@ class Master:
         answer = b""
         while len(answer) < size:
             piece = self._socket.recv(size - len(answer))
-            assert piece, "the simulator has closed the connection"
+            assert piece, "TCP: the simulator has closed the connection; expected a reply"
             answer += piece
         return answer
 

@@ -20,7 +20,7 @@ KEYS = {"Tab": "\ue004", "Enter": "\ue007", "Space": " ", "Shift": "\ue008", "Al
 
 
 class Browser:
-    """Chromium without a display. Only one thread at a time may use an object."""
+    """Chromium without a display. Only one thread at a time may use a Browser object."""
 
     def __init__(self, driver="chromedriver", browser="/usr/bin/chromium"):
         self._profile = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
@@ -131,8 +131,8 @@ class Browser:
         ]}]})
 
     def touch(self, kind, *at):
-        """Sends a touch event. `kind` is start, move, end or cancel. `at` is x and y in the viewport, in pixels,
-        for start and move."""
+        """Sends a touch event. `kind` is "start", "move", "end" or "cancel". If `kind` is "start" or "move", `at` is
+        x and y in the viewport, in pixels; otherwise `at` is empty."""
         points = [{"x": at[0], "y": at[1]}] if at else []
         self.devtools("Input.dispatchTouchEvent", type=f"touch{kind.capitalize()}", touchPoints=points)
 
@@ -156,14 +156,14 @@ class Browser:
         )
 
     def prefers(self, **features):
-        """Sets media features whose names begin with prefers-, for example color_scheme="dark". Ends the emulation
-        of all other media features."""
+        """Sets media features whose names begin with prefers-. For example, color_scheme="dark" sets
+        prefers-color-scheme to dark. Ends the emulation of all other media features."""
         media = [{"name": "prefers-" + name.replace("_", "-"), "value": value} for name, value in features.items()]
         self.devtools("Emulation.setEmulatedMedia", features=media)
 
     def logged_errors(self):
-        """Returns the messages of all levels that the browser has logged since the last call. Omits failed connections
-        to the server, and messages that begin with chrome://, which are from pages of the browser itself."""
+        """Returns the messages that the browser has logged since the previous call, at all levels. Omits messages about
+        failed connections, and messages that begin with chrome://, because pages of the browser itself log these."""
         nobody = ("ERR_CONNECTION_REFUSED", "ERR_CONNECTION_RESET", "closed before the connection is established")
         said = self._post("/se/log", {"type": "browser"})
         messages = [each["message"] for each in said if not each["message"].startswith("chrome://")]

@@ -136,7 +136,7 @@ void AlarmClock::run_for(nanoseconds time) {
 nanoseconds AlarmClock::make_edges(Pin pin, std::uint32_t edges) {
   constexpr nanoseconds kEach{4'000};
   constexpr std::uint32_t kDirection = 0x400;
-  constexpr std::uint32_t kAtOnce = 200'000;  // less than 1 s, which does not trigger the watchdog
+  constexpr std::uint32_t kAtOnce = 200'000;  // less than 1 s, so that the watchdog does not expire
   const nanoseconds time = kEach * (std::int64_t{edges} + 1);
   while (edges != 0) {
     const std::uint32_t now = edges < kAtOnce ? edges : kAtOnce;
@@ -159,7 +159,7 @@ void AlarmClock::run(std::uint32_t clocks, const std::string& orders) {
 
 void AlarmClock::begin_to_run(std::uint32_t clocks, const std::string& orders) {
   std::string commands = orders;
-  if (at_first_ || ordered_ != clocks) {  // often the same for several bytes of a request
+  if (at_first_ || ordered_ != clocks) {  // `clocks` is often the same for several bytes of a request
     commands += QtestClient::write_command(kOrders + kNextAlarm, clocks);
     ordered_ = clocks;
   }

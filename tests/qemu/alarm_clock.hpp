@@ -19,15 +19,16 @@ class Halted : public std::runtime_error {
 
 /// The machine is stopped between calls. The same calls have the same effects, independently of the host,
 /// with one exception. When the emulator advances time for a processor that has just gone to sleep, it can
-/// omit the time of the last instructions, depending on the host. About one transcript in a hundred therefore
-/// ends earlier or later than in the previous run, by at most 2 us, or by at most 7 us with input pulses.
+/// omit the time of the last instructions, depending on the host. Therefore about one transcript in a hundred
+/// ends earlier or later than in the previous run. The difference is at most 2 us, or at most 7 us if the
+/// transcript contains input pulses.
 ///
 /// The timer GPTM3, which no image uses, generates an interrupt when the requested time, or a part of it, has
 /// elapsed. The interrupt code is in RAM that no image uses. At the end of the requested time, the interrupt
 /// code reaches the gate (gate.cpp), where the processor waits. The image and its vectors are not changed:
 /// the processor uses a copy of the vectors with an entry for this interrupt. This interrupt and the
 /// interrupts of the image cannot preempt each other. This interrupt can delay an interrupt of the image by
-/// 0.5 us. It uses no more stack than an interrupt of the image.
+/// up to about 0.5 us, and uses no more stack than an interrupt of the image.
 ///
 /// The functions that access the emulator throw std::runtime_error on an unexpected state. The functions that
 /// run the machine throw Halted if the machine is about to be reset.
@@ -43,8 +44,8 @@ class AlarmClock {
   /// duration. Between `set_up` and this call, the machine must have run; otherwise edges are lost.
   std::chrono::nanoseconds make_edges(Pin pin, std::uint32_t edges);
 
-  /// Makes the machine also stop before each store to these bytes of the bus. After this call only
-  /// `run_to_store` may run the machine.
+  /// Makes `run_to_store` stop the machine before each store to one of the `size` bytes from the bus address
+  /// `address` on. After this call, only `run_to_store` may run the machine.
   void watch_stores(std::uint32_t address, std::uint32_t size);
   /// Runs the machine until the next watched store, but at most for `time`. If the previous call has returned
   /// true, this call ignores `time` and continues with the rest of the earlier time. Returns whether the
@@ -74,7 +75,7 @@ class AlarmClock {
   const char* go_on_ = "c";    ///< the debugger's packet that continues a machine that is not at the gate
   bool at_store_ = false;      ///< the machine has stopped before a store, and the alarm has not occurred yet
   std::string watched_;        ///< the watched range in the debugger's format
-  std::uint32_t ordered_ = 0;  ///< clocks to the next alarm, before a long time is divided into parts
+  std::uint32_t ordered_ = 0;  ///< the last value of kNextAlarm in alarm_clock.cpp, in clocks
   std::uint32_t last_report_ = 0;  ///< the last report of the interrupt code
 };
 

@@ -54,7 +54,7 @@ void EmulatedBoard::kill() {
   emulator_.reset();
 }
 
-/// Fills RAM with noise, because an image must not depend on the content of RAM after power-on.
+/// Fills RAM with the byte 0xA5, because an image must not depend on the content of RAM after power-on.
 void EmulatedBoard::fill_ram() {
   constexpr std::uint32_t kRam = 0x2000'0000;
   constexpr std::uint32_t kRamSize = 0x1'0000;
@@ -123,7 +123,7 @@ hal::SerialMode EmulatedBoard::mode() {
   const auto format = line_format_of(uart[3]);
   if (!format || (uart[3] & kUartFifosOn) != 0) {
     throw std::runtime_error("UART0: the line control register is " + std::to_string(uart[3]) +
-                             "; expected 8N1, 8N2, 8E1 or 8O1, and the FIFOs off");
+                             " (decimal); expected 8N1, 8N2, 8E1 or 8O1, and the FIFOs off");
   }
   return {board::kClock.frequency() / 16 * 64 / divisor, *format};
 }

@@ -28,9 +28,9 @@ class EmulatedBoard {
   /// Returns the output levels. Bit n is channel n. The levels are 0 if the supply is off.
   [[nodiscard]] std::uint16_t outputs();
   [[nodiscard]] bool led_lit();
-  /// Returns the baud rate and the line format of the UART as the image has configured its registers. The
-  /// rate is 0 if the supply or the UART is off, or if the divisor is 0. Otherwise throws std::runtime_error
-  /// if the line control register selects a format that modules do not have, or enables the FIFOs.
+  /// Returns the baud rate and the line format that the image has selected in the registers of the UART. The
+  /// rate is 0 if the supply or the UART is off, or if the divisor is 0. In all other cases, throws
+  /// std::runtime_error if the format is not one that modules have, or if the FIFOs are on.
   [[nodiscard]] hal::SerialMode mode();
 
   /// Returns the emulator. Call this only while the board is powered.
@@ -41,14 +41,14 @@ class EmulatedBoard {
 
  protected:
   /// Stores `settings` in the EEPROM. If the pointer is null or the settings are the factory settings, erases
-  /// the EEPROM, which means factory settings.
+  /// the EEPROM instead. With an erased EEPROM, the module uses the factory settings.
   EmulatedBoard(const Model& model, const Settings* settings);
   ~EmulatedBoard() = default;
 
   /// Switches the supply. When the supply goes on, the machine is halted before its first instruction, and
-  /// RAM contains noise. The start of an emulator takes most of the time of a short test. Therefore this
-  /// function resets an emulator that already exists, which must be halted. The reset makes the emulator read
-  /// the EEPROM's file again.
+  /// each byte of RAM is 0xA5. The start of an emulator takes most of the time of a short test. Therefore
+  /// this function resets an existing emulator. The existing emulator must be halted before the call. The
+  /// reset makes the emulator read the EEPROM's file again.
   void supply(bool on);
   /// Switches the supply off and kills the emulator with SIGKILL. The next `supply(true)` starts a new
   /// emulator.
@@ -57,7 +57,7 @@ class EmulatedBoard {
   /// from UART0 that have not been read.
   void pull_reset();
   /// Makes the board like a new one whose supply has just gone on: INIT* is disconnected, inputs are off, and
-  /// the EEPROM contains `settings`, see the constructor.
+  /// the EEPROM contains `settings` (see the constructor).
   void renew(const Settings* settings);
   /// Sets the level of an input channel. The model must have that channel.
   void set_level(unsigned channel, bool level);

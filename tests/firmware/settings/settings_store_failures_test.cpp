@@ -12,7 +12,7 @@
 namespace ex9000 {
 namespace {
 
-TEST(SettingsStore, AWriteThatReadsBackDifferentlyOnceOrTwiceIsRepeated) {
+TEST(SettingsStore, IfTheReadBackDiffersOnceOrTwiceTheWriteIsRepeated) {
   for (std::size_t noisy = 1; noisy < kAttempts; ++noisy) {
     FakeMemory memory;
     Boot run(memory);
@@ -23,7 +23,7 @@ TEST(SettingsStore, AWriteThatReadsBackDifferentlyOnceOrTwiceIsRepeated) {
   }
 }
 
-TEST(SettingsStore, AWriteThatIsNotAnsweredOnceOrTwiceIsRepeated) {
+TEST(SettingsStore, IfAWriteIsNotAnsweredOnceOrTwiceItIsRepeated) {
   for (std::size_t unanswered = 1; unanswered < kAttempts; ++unanswered) {
     FakeMemory memory;
     Boot run(memory);
@@ -57,7 +57,7 @@ TEST(SettingsStore, AfterThreeFailedAttemptsTheOldSettingsStayAndAreFoundAtTheNe
   }
 }
 
-TEST(SettingsStore, AfterThreeFailedAttemptsTheCopyIsInvalidated) {
+TEST(SettingsStore, AfterThreeFailedAttemptsTheNewCopyIsInvalidated) {
   FakeMemory memory;
   Boot run(memory);
   memory.noisy_reads = kAttempts;
@@ -114,7 +114,7 @@ void end_jobs(SettingsStore& store, bool answered, int count) {
   }
 }
 
-TEST(SettingsStore, TheCopyOfAFailedSaveIsInvalidatedAndNotTheLastReadCopy) {
+TEST(SettingsStore, TheCopyOfAFailedSaveIsInvalidatedAndTheCopyThatWasReadLastIsNot) {
   constexpr int kAllReads = 4 * static_cast<int>(kAttempts);
   SettingsStore store(the_model());
   end_jobs(store, false, static_cast<int>(kReadsOfASilentMemory));
@@ -149,8 +149,8 @@ TEST(SettingsStore, RefusedSettingsAreNotUsedWhenAllCopiesAreReadAgain) {
   Boot run(memory);
   ASSERT_EQ(run.found(), Found::Unreadable);
   memory.unanswered_writes = kAttempts + 1;
-  // The memory carries out these writes without answering: it stores the refused settings and then
-  // invalidates them.
+  // The memory carries out these writes but does not answer them. First it stores the refused settings. Then
+  // it stores the zeros that invalidate this copy.
   memory.unanswered_but_done = true;
   EXPECT_FALSE(run.save(numbered(6)));
   put(memory, 1, numbered(6), 8);  // as if the invalidating write had not been done
@@ -159,7 +159,7 @@ TEST(SettingsStore, RefusedSettingsAreNotUsedWhenAllCopiesAreReadAgain) {
   memory.unanswered_but_done = false;
   EXPECT_FALSE(run.save(numbered(9)));
   for (const std::uint16_t address : memory.writes) {
-    EXPECT_NE(address, kCopies[0]) << "the only copy without refused settings";
+    EXPECT_NE(address, kCopies[0]) << "a write to the only copy without refused settings";
   }
   EXPECT_TRUE(Boot(memory).stored() == numbered(5));
 }

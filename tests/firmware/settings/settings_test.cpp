@@ -272,7 +272,7 @@ TEST(SettingsChange, AChangeOfOneFieldMakesTheSettingsUnequal) {
   }
 }
 
-TEST(SettingsChange, AChangeOfOneFieldKeepsEarlierChangesOfOthers) {
+TEST(SettingsChange, AChangeOfOneFieldKeepsEarlierChangesOfOtherFields) {
   const Settings factory = Settings::factory(model("EX9042D-M"));
   Settings all = factory;
   for (const FieldChange& each : changes_of_each_field(factory)) {
@@ -302,7 +302,7 @@ TEST(SettingsChange, AChangeOfSeveralFieldsChangesThemTogether) {
   EXPECT_TRUE(changed == expected);
 }
 
-TEST(SettingsChange, TheLastValueOfAFieldCounts) {
+TEST(SettingsChange, TheLastValueOfAFieldApplies) {
   const Settings factory = Settings::factory(model("EX9042D-M"));
   const SettingsChange twice = change([](SettingsChange& c) {
     c.address = 7;
@@ -324,7 +324,7 @@ TEST(SettingsChange, AShorterNameReplacesALongerOneCompletely) {
   EXPECT_TRUE(twice.applied_to(settings) == expected);
 }
 
-TEST(SettingsChange, SettingFalseOr0IsAChangeToo) {
+TEST(SettingsChange, AChangeCanGiveAFieldTheValueFalseOr0) {
   Settings settings = Settings::factory(model("EX9042D-M"));
   settings.watchdog_enabled = settings.timeout_status = true;
   settings.safe_value = 0x1FFF;
@@ -372,7 +372,7 @@ TEST(Settings, AreUnequalIfDifferentFieldsWereChanged) {
   }
 }
 
-TEST(Settings, UpToTheSafeValueAreZeroOrEmptyAtFirst) {
+TEST(Settings, FromTheAddressToTheSafeValueAreZeroOrEmptyInANewObject) {
   const Settings untouched;
   EXPECT_EQ(untouched.address, 0);
   EXPECT_EQ(untouched.baud_code, 0);

@@ -24,7 +24,7 @@ void expect_no_old_copy_counts(const FakeMemory& memory) {
   EXPECT_EQ(Boot(old).found(), Found::Unreadable);
 }
 
-TEST(SettingsAfterAnUpdate, AreThoseOfTheLaterOldCopyAndNothingIsWritten) {
+TEST(SettingsAfterAnUpdate, AreThoseOfTheNewerOldCopyAndNothingIsWritten) {
   FakeMemory memory = updated();
   const Boot run(memory);
   EXPECT_EQ(run.found(), Found::Settings);
@@ -47,7 +47,7 @@ TEST(SettingsAfterAnUpdate, AreUnreadableIfBothOldCopiesAreCorrupted) {
   EXPECT_EQ(Boot(memory).found(), Found::Unreadable);
 }
 
-TEST(SettingsAfterAnUpdate, TheFirstStoreMakesANewCopyAndInvalidatesTheOldOnes) {
+TEST(SettingsAfterAnUpdate, TheFirstSaveMakesANewCopyAndInvalidatesTheOldOnes) {
   FakeMemory memory = updated();
   EXPECT_TRUE(Boot(memory).save(numbered(9)));
   EXPECT_EQ(memory.writes,
@@ -57,7 +57,7 @@ TEST(SettingsAfterAnUpdate, TheFirstStoreMakesANewCopyAndInvalidatesTheOldOnes) 
   expect_no_old_copy_counts(memory);
 }
 
-TEST(SettingsAfterAnUpdate, TheSecondStoreWritesOnlyTheOtherPlace) {
+TEST(SettingsAfterAnUpdate, TheSecondSaveWritesOnlyTheOtherNewPlace) {
   FakeMemory memory = updated();
   EXPECT_TRUE(Boot(memory).save(numbered(9)));
   memory.writes.clear();
@@ -78,7 +78,7 @@ TEST(SettingsAfterAnUpdate, OldCopiesAreNeverUsedAgainEvenIfAllNewCopiesFail) {
   EXPECT_TRUE(next.stored() == factory());
 }
 
-TEST(SettingsAfterAnUpdate, AFirstStoreThatFailsKeepsTheOldCopies) {
+TEST(SettingsAfterAnUpdate, IfTheFirstSaveFailsTheOldCopiesStayValid) {
   for (std::size_t failure = 0; failure < kFailures.size(); ++failure) {
     FakeMemory memory = updated();
     Boot run(memory);
@@ -109,7 +109,7 @@ TEST(SettingsAfterAnUpdate, OldCopiesStayValidUntilTheSettingsAreSavedAgain) {
   EXPECT_TRUE(Boot(memory).stored() == numbered(9));
 }
 
-TEST(SettingsAfterAnUpdate, NothingIsUnfinishedBeforeTheFirstStore) {
+TEST(SettingsAfterAnUpdate, NothingIsUnfinishedBeforeTheFirstSave) {
   FakeMemory memory = updated();
   SettingsStore store(the_model());
   drive(store, memory);
@@ -184,7 +184,7 @@ TEST(SettingsAfterAnUpdate, InvalidatingAnOldCopyCanBeRepeated) {
   ASSERT_TRUE(store.needs_invalidation());
   store.begin_invalidating();
   drive(store, memory);
-  EXPECT_TRUE(store.needs_invalidation());  // one of the two old copies is left
+  EXPECT_TRUE(store.needs_invalidation());  // one of the two old copies is still valid
   store.begin_invalidating();
   drive(store, memory);
   EXPECT_FALSE(store.needs_invalidation());
@@ -199,7 +199,7 @@ TEST(SettingsAfterAnUpdate, ANewCopyWithAnySequenceNumberIsUsedInsteadOfOldCopie
   }
 }
 
-TEST(SettingsAfterAnUpdate, OldCopiesAreNotUsedAfterAStoreEvenIfTheMemoryDidNotAnswerAtReset) {
+TEST(SettingsAfterAnUpdate, OldCopiesAreNotUsedAfterASaveEvenIfTheMemoryDidNotAnswerAtReset) {
   FakeMemory memory = updated();
   memory.failing_reads = kReadsOfASilentMemory;
   Boot run(memory);
@@ -221,7 +221,7 @@ TEST(ALongerRecord, IsReadUpToTheLastKnownSetting) {
   }
 }
 
-TEST(ALongerRecord, KeepsUnknownSettingsThroughStores) {
+TEST(ALongerRecord, KeepsUnknownSettingsAfterEachSave) {
   for (unsigned length = kSupportedSettings + 1; length <= 120; ++length) {
     FakeMemory memory;
     put_longer(memory, 0, numbered(5), 7, static_cast<std::uint8_t>(length));
@@ -240,7 +240,7 @@ TEST(ALongerRecord, KeepsUnknownSettingsThroughStores) {
   }
 }
 
-TEST(ALongerRecord, KeepsUnknownSettingsAfterAFailedStore) {
+TEST(ALongerRecord, KeepsUnknownSettingsAfterAFailedSave) {
   FakeMemory memory;
   put_longer(memory, 0, numbered(5), 7, 96);
   Boot run(memory);

@@ -1,6 +1,6 @@
 // Reads the files in stored_bytes/: memory contents that this firmware and earlier versions of it have
-// stored. Each file is committed once and never regenerated, so that it keeps the bytes that modules in the
-// field can contain, even if the firmware changes and would store other bytes. The lines of a file:
+// stored. The memories of modules in the field can contain these bytes. Therefore each file is committed once
+// and never regenerated, even if later firmware stores other bytes. The lines of a file:
 //
 //     # comment
 //     model DESIGNATION

@@ -98,8 +98,8 @@ constexpr Demand demand_of_tilde(Bytes text, unsigned outputs) {
 
 }  // namespace detail
 
-/// Returns the effects of `command` on a module with `outputs` outputs. `command` has delimiter and address,
-/// but no checksum and no CR.
+/// Returns the effects of `command` on a module with `outputs` outputs. `command` has at least delimiter and
+/// address, but no checksum and no CR.
 constexpr Demand dcon_demand(Bytes command, unsigned outputs) {
   const Bytes text = command.from(3);
   Demand demand;
@@ -128,7 +128,7 @@ constexpr bool is_dcon_output_command(Bytes command) {
   return (command[0] == '#' && command.size == 7) || (command[0] == '@' && command.size > 3);
 }
 
-/// Returns true for every command that can set the response delay (wire.md 12), and for some others.
+/// Returns true for every command that can set the response delay (wire.md 12), and for some other commands.
 constexpr bool may_set_delay_by_dcon(Bytes command) {
   return command.size > 4 && command[0] == '~' && (command[3] == 'R' || command[3] == 'X');
 }

@@ -21,8 +21,8 @@ class DconJudge {
   /// Call this when the module begins the valid reply to `%`, except in INIT mode. `address`: the address
   /// that `%` sets.
   void answer_to(std::uint8_t address) { own_ = address; }
-  /// Call this while `%` is being executed, because the module may already reply at `address`. Call this
-  /// without a value when the module replies.
+  /// Call this while the module executes a `%` that sets `address`, because this address may already be in
+  /// force. Call this with std::nullopt when the module replies.
   void may_answer_to(std::optional<std::uint8_t> address) { next_ = address; }
 
   Finding byte(std::uint8_t byte, bool good, Microseconds now) {

@@ -12,7 +12,7 @@
 
 namespace ex9000::judges {
 
-/// The properties of the module on which the form of a reply depends, in addition to the request.
+/// The form of a reply depends on the request and on these properties of the module.
 struct DconRules {
   std::uint8_t address = 0;
   bool init_mode = false;  ///< in INIT mode, `$002` returns the stored address
@@ -116,7 +116,7 @@ inline bool is_answer(std::string_view shape, Bytes request, Bytes reply, const 
   return true;
 }
 
-/// Returns whether every refusal of this request carries no address (wire.md D12).
+/// Returns whether a refusal of this request is `?` or `!`, without an address (wire.md 3 and D12).
 constexpr bool is_bare_where_refused(Bytes request, const DconRules& rules) {
   const bool is_of_outputs =
       (request[0] == '@' && request.size > 3) || (request[0] == '#' && (request.size != 4 || !rules.inputs));

@@ -58,7 +58,7 @@ struct Demand {
   bool keeps_power_on = false;            ///< `~AA5P`: the outputs are stored as power-on value
   bool keeps_safe = false;                ///< `~AA5S`: the outputs are stored as safe value
   bool clears_timeout = false;            ///< clears the timeout status
-  bool restarts = false;                  ///< restarts the host watchdog if the watchdog is then enabled
+  bool restarts = false;                  ///< restarts the host watchdog if it is enabled after the command
   bool stores_something = false;          ///< may store a setting; a store takes time and may fail
   std::optional<std::uint8_t> timeout{};
   std::optional<bool> enabled{};
@@ -86,8 +86,9 @@ struct Demand {
   }
 
   /// Returns the values after the command, if the host watchdog expired while the command was being stored.
-  /// Such a command drives nothing (wire.md D6) and does not clear the timeout status (wire.md D17).
-  /// `values`: those after the timeout. `outputs`: the lasting outputs before the timeout.
+  /// After such a command, the outputs have the safe value, which can be new (wire.md D6). The command does
+  /// not clear the timeout status (wire.md D17). `values`: those after the timeout. `outputs`: the lasting
+  /// outputs before the timeout.
   [[nodiscard]] constexpr Values values_after_a_timeout(Values values, std::uint16_t outputs) const {
     store(values, outputs);
     values.outputs = values.safe;

@@ -10,7 +10,7 @@
 
 namespace ex9000::judges {
 
-/// Stores the latest restart and the latest timeout of the host watchdog. If register 0x0251 is 1, each
+/// Stores the times at which the host watchdog last restarted and last expired. If register 0x0251 is 1, each
 /// request for the module also restarts the host watchdog. This class does not store these restarts.
 class HostWatchdog {
  public:

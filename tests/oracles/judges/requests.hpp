@@ -42,7 +42,7 @@ class Requests {
   static constexpr std::size_t kMost = 32;
 
   [[nodiscard]] std::size_t size() const { return size_; }
-  /// Returns a request; 0 is the oldest one.
+  /// Returns the request at `index`. Index 0 is the oldest request.
   Request& operator[](std::size_t index) { return requests_[(oldest_ + index) % kMost]; }
   const Request& operator[](std::size_t index) const { return requests_[(oldest_ + index) % kMost]; }
 
@@ -51,8 +51,8 @@ class Requests {
     oldest_ = (oldest_ + count) % kMost;
     size_ -= count;
   }
-  /// Appends a request with the frame of this finding. The queue must not be full. The caller sets `over`,
-  /// `demand` and `alone`.
+  /// Appends a request with the frame of this finding, and returns the request. The queue must not be full.
+  /// The caller must set `over`, `demand`, `alone` and `fresh`.
   Request& append(const Finding& finding) {
     Request& latest = (*this)[size_++];
     std::copy(finding.frame.begin(), finding.frame.end(), latest.bytes.begin());

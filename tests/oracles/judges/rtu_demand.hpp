@@ -87,8 +87,8 @@ constexpr void add_timed_output(unsigned channel, unsigned value, Demand& demand
   }
 }
 
-/// Returns the effects of a write to `count` registers from `first` on, whose values are in `values`. Returns
-/// no effects unless all registers are timed outputs.
+/// Returns the effects of a write of `values` to `count` registers from `first` on. Returns no effects unless
+/// all registers are timed outputs.
 constexpr Demand demand_of_timed_outputs(unsigned first, unsigned count, Bytes values, unsigned outputs) {
   Demand demand;
   if (first < kTimedOutputs || first + count > kTimedOutputs + outputs) {
@@ -112,7 +112,8 @@ constexpr Demand demand_of_register(unsigned address, unsigned value) {
 
 }  // namespace detail
 
-/// Returns whether a request with function 06 or 10 begins at a timed output that some model has.
+/// Returns whether the first register in a request with function 06 or 10 is a timed output of at least
+/// one model.
 constexpr bool is_timed_output(Bytes request) {
   constexpr unsigned kMost = 16;
   return request.size >= 4 && request.word(2) >= detail::kTimedOutputs &&
@@ -153,7 +154,7 @@ constexpr Demand rtu_demand(Bytes request, unsigned outputs) {
   }
 }
 
-/// Returns whether the request drives outputs unless the module refuses the request.
+/// Returns true for every output command, and for some requests that the module always refuses.
 constexpr bool is_rtu_output_command(Bytes request) {
   if (request[1] == 0x06 || request[1] == 0x10) {
     return is_timed_output(request);
@@ -164,8 +165,8 @@ constexpr bool is_rtu_output_command(Bytes request) {
   return request.word(2) < 0x0100;
 }
 
-/// Returns whether the request sets the response delay unless the module refuses or ignores the request
-/// (wire.md 12).
+/// Returns whether the request is a write to register 0x0252, the response delay (wire.md 12). The module may
+/// refuse or ignore this write.
 constexpr bool may_set_delay_by_rtu(Bytes request) {
   constexpr unsigned kDelay = 0x0252;
   if (request.size < 6 || (request[1] != 0x06 && request[1] != 0x10)) {

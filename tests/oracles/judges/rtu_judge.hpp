@@ -26,8 +26,8 @@ class RtuJudge {
         doubt_(doubt) {}
 
   /// Returns the time at which the test must report the next byte: `end`, or a later time if the gap before
-  /// the byte is too near a limit. Near a limit, rounding to whole microseconds, by the clock or by the
-  /// module, could change the result.
+  /// the byte is too near a limit. The clock and the module round times to whole microseconds. Near a limit,
+  /// this rounding could change the result.
   [[nodiscard]] Microseconds beyond_doubt(Microseconds end) const {
     if (size_ == 0) {
       return end;
@@ -106,7 +106,7 @@ class RtuJudge {
 
   [[nodiscard]] Finding judge_from(std::size_t start) const {
     if (!is_whole_from(start)) {
-      // The bytes may be the 00 of a line turn-around and a frame.
+      // The first byte may be the 00 of a line turn-around before a frame.
       if (bytes_[start] != 0 || !is_whole_from(start + 1)) {
         return {};
       }
@@ -132,7 +132,8 @@ class RtuJudge {
   /// The greatest time between the reports of two successive bytes of a frame; kNever: no limit.
   Microseconds apart_;
   Microseconds doubt_;
-  /// Two more than the longest frame: the 00 of a turn-around, and a byte that makes the frame too long.
+  /// Two bytes more than the longest frame: the 00 of a line turn-around, and a byte that makes the frame too
+  /// long.
   static constexpr std::size_t kMost = kLongest + 2;
   std::array<std::uint8_t, kMost> bytes_{};
   std::array<bool, kMost> bad_{};

@@ -31,7 +31,7 @@ class ValueChanges {
   void note(const Request& request) { timers_.may_be_restarted(request.demand, request.last); }
 
   /// Returns the claim that a change of the values to `to` violates, or null if the change has a permitted
-  /// cause. Only requests that are `fresh` and not `done` can cause a change. Call `change` after this
+  /// cause. A request can cause a change only if it is `fresh` and not `done`. Call `change` after this
   /// function.
   const char* objection_to_change(const Values& to, Requests& requests, Microseconds now) {
     if (one_leads_to(to, requests, now)) {
@@ -43,7 +43,7 @@ class ValueChanges {
     const Causes causes{requests, now};
     return some_lead(values_, to, causes, 0, kMostInATurn)
                ? nullptr
-               : "values change only because of a command, a timeout or a reset";
+               : "values change only because of a command, a timeout, an ended timer or a reset";
   }
 
   /// Stores the new values `to`, and the earliest ends of the timers that have started. `requests`: those
@@ -86,9 +86,8 @@ class ValueChanges {
              demand.values_after_a_timeout(from, watchdog_.outputs_before()) == to));
   }
 
-  /// Returns whether a single command can have changed the values to `to`, which is the usual case. If so,
-  /// records the cause: a timeout if it explains the change too, or else the command if no other command
-  /// explains the change.
+  /// Returns whether a single command can have changed the values to `to`. If so, records the cause: the
+  /// timeout if a timeout is also possible, otherwise the command if no other command is possible.
   bool one_leads_to(const Values& to, Requests& requests, Microseconds now) {
     Request* only = nullptr;
     unsigned count = 0;

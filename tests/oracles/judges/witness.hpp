@@ -1,4 +1,4 @@
-// Receives the same bytes as a module, and checks what the module does against them.
+// A witness receives the same bytes as a module. It checks whether the module does what these bytes require.
 #pragma once
 
 #include <algorithm>
@@ -38,31 +38,32 @@ struct Listening {
 };
 
 /// Reports a violated claim if
-///  - a reply begins that no frame has requested, or begins too early or too late, or does not have the
-///    format that the request requires;
+///  - no received request explains a reply, or a reply begins too early or too late, or a reply does not
+///    have the form that its request requires;
 ///  - the values (outputs, their running timers, power-on value, safe value, timeout and enable of the host
 ///    watchdog, timeout status) change, but received commands, an expiry of the host watchdog and ended
 ///    timers of outputs do not explain exactly this change;
-///  - the values are not what a command demands when the reply that accepts this command begins, or after an
-///    idle module has received a broadcast that drives outputs and stores nothing;
+///  - when the reply that accepts a command begins, the values do not match the effects of this command;
+///  - after an idle module has received a broadcast that drives outputs and stores nothing, the values do not
+///    match the effects of this broadcast;
 ///  - an output command is accepted although its form is wrong or the timeout status blocks it;
 ///  - a command is refused although it has changed a value;
-///  - a valid output command is refused although the timeout status is not set and no store can have failed,
-///    or with a reply other than `!` and exception 04;
+///  - a valid output command is refused although the timeout status is not set and no store can have failed;
+///  - a valid output command is refused with a reply other than `!` and exception 04;
 ///  - any other command is refused with `!`, or with exception 04 although it stores nothing;
 ///  - an idle module does not reply in time to a request for it that is not a host OK;
 ///  - the host watchdog expires too early;
 ///  - the timer of an output ends too early;
 ///  - in ASCII, the address changes while no received request waits for its reply;
-///  - outputs are not the safe value while the timeout status is set, or an output is driven that the model
-///    does not have.
+///  - the outputs do not have the safe value while the timeout status is set;
+///  - the module drives an output that the model does not have.
 ///
 /// This class does not check that the host watchdog or a timer expires in time, that a reply waits for the
 /// response delay, that requests restart the host watchdog if register 0x0251 is 1, or that the module
-/// refuses an ASCII write of a timed output whose form is wrong.
+/// refuses a write of a timed output by `~AAX` if the form of the command is wrong.
 ///
-/// `now` must not decrease from one call to the next, except that `reply_begins` gets the time at which the
-/// driver was switched on.
+/// `now` must not decrease from one call to the next. Exception: the `now` of `reply_begins` may be earlier
+/// than the `now` of the call before it.
 class Witness {
  public:
   /// Receives the claim that is violated.
@@ -169,10 +170,10 @@ class Witness {
     }
   }
 
-  /// Call this after a turn of the main loop with the address of the module.
+  /// Call this after a turn of the main loop. `address`: the present address of the module.
   void follow_address(std::uint8_t address) {
     if (dcon_ && pending_.size() == 0 && address != dcon_->own_address()) {
-      report_violation_("the address changes by a command only");
+      report_violation_("only a command changes the address");
     }
   }
 
@@ -372,8 +373,8 @@ class Witness {
   }
 
   /// Returns why the module cannot have refused the request, or null if the module can have refused it.
-  /// `refuses_outputs`: the reply is `!` or exception 04, which says that outputs are blocked or that a
-  /// Modbus request could not be stored.
+  /// `refuses_outputs`: the reply is `!` (the timeout status blocks an output command) or exception 04 (the
+  /// same, or a store has failed).
   [[nodiscard]] const char* objection_to_refusal(const Request& request, bool refuses_outputs) const {
     const Demand& demand = request.demand;
     if (request.done) {
@@ -403,8 +404,7 @@ class Witness {
     if (demand.drives() && changes_.values().timed_out && !since) {
       return "an output command is refused while the timeout status is set";
     }
-    return changes_.meet(request, since) ? nullptr
-                                         : "an answered command has exactly the effects that it requires";
+    return changes_.meet(request, since) ? nullptr : "an accepted command has exactly the required effects";
   }
 
   /// Checks that an idle module has executed the latest broadcast, if this must still be checked.
@@ -443,7 +443,7 @@ class Witness {
   /// An idle module has received a broadcast that drives outputs and stores nothing, and the effect of this
   /// broadcast has not been checked yet.
   bool broadcast_ = false;
-  Microseconds free_ = 0;  ///< from this time on, only earlier requests can delay a request
+  Microseconds free_ = 0;  ///< from this time on, a request waits only for earlier requests
   Microseconds busy_ = 0;  ///< time of the last byte that arrived while the module was busy
 };
 

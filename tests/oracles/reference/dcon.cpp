@@ -9,7 +9,8 @@
 
 namespace ex9000::reference {
 
-/// Returns the address in replies, except those to `%` and `$AA2`. In INIT mode it is 00 (wire.md 2).
+/// Returns the address that replies carry, except the replies to a valid `%` and to `$AA2`. In INIT mode this
+/// address is 00 (wire.md 2).
 std::string Module::aa() const { return hex(address_, 2); }
 
 /// Returns the fields First and Second of a reply (wire.md 1).
@@ -23,16 +24,17 @@ std::string Module::first_second(unsigned outputs, unsigned inputs) const {
   return row_.outputs != 0 ? hex(outputs, 2) + hex(inputs, 2) : hex(inputs, 2) + "00";
 }
 
-/// Processes a frame from the delimiter to the character before CR. Returns no value if there is no reply.
-/// `spoiled`: a byte of the frame had a line error. The value of a line tally includes the request that reads
-/// it, if the tally counts this request, like the counters of function 08 in Modbus.
+/// Processes a frame. Returns no value if there is no reply. `frame`: the characters from the delimiter to
+/// the last one before CR. `spoiled`: a byte of the frame had a line error. The tallies of received frames
+/// count a request before it is executed. If the request reads such a tally, the value therefore includes
+/// this request.
 std::optional<std::string> Module::dcon_frame(std::string frame, bool spoiled) {
   if (spoiled) {
     rule("ASCII frame spoiled");
     counts_.crc_errors += 1;
     return std::nullopt;
   }
-  // wire.md 3: a frame has at most 32 characters.
+  // wire.md 3: a frame has at most 32 characters before CR.
   if (frame.size() > 32) {
     rule("ASCII frame too long");
     counts_.crc_errors += 1;
@@ -114,7 +116,7 @@ std::string Module::dcon_command(char delimiter, const std::string& body) {
 std::string Module::set_configuration(const std::string& body) {
   const std::optional<unsigned> all = number(body);
   if (body.size() != 8 || !all) {
-    throw Refused{"%AANNTTCCFF out of form"};
+    throw Refused{"%AANNTTCCFF with a wrong form"};
   }
   const unsigned address = *all >> 24 & 0xFFU;
   const unsigned type = *all >> 16 & 0xFFU;
@@ -174,7 +176,7 @@ std::string Module::hash_command(const std::string& body) {
 std::string Module::set_group_or_single(const std::string& body) {
   const std::optional<unsigned> all = number(body);
   if (body.size() != 4 || !all) {
-    throw Refused{"#AABBDD out of form", true};
+    throw Refused{"#AABBDD with a wrong form", true};
   }
   const unsigned group = *all >> 8;
   const unsigned data = *all & 0xFFU;
@@ -185,7 +187,7 @@ std::string Module::set_group_or_single(const std::string& body) {
     const unsigned shift = group == 0x0B ? 8 : 0;
     const unsigned mask = (0xFFU << shift) & all_outputs();
     if (mask == 0) {
-      throw Refused{"#AABBDD group lacking", true};
+      throw Refused{"#AABBDD group that the model does not have", true};
     }
     if ((data << shift & ~mask) != 0) {
       throw Refused{"#AABBDD group's data beyond its channels", true};  // wire.md E2
@@ -201,7 +203,7 @@ std::string Module::set_group_or_single(const std::string& body) {
     }
     const unsigned channel = digit + (lead == 0xB ? 8 : 0);
     if (digit > 7 || channel >= row_.outputs) {
-      throw Refused{"#AABBDD channel lacking", true};
+      throw Refused{"#AABBDD channel that the model does not have", true};
     }
     if (data > 0x01) {
       throw Refused{"#AABBDD single DD out of range", true};
@@ -212,7 +214,7 @@ std::string Module::set_group_or_single(const std::string& body) {
   }
   // wire.md 6: the module checks format and range first, then the timeout status.
   if (stored_.timed_out) {
-    rule("#AABBDD ignored");
+    rule("#AABBDD blocked by the timeout status");
     return "!";
   }
   rule(reached);
@@ -254,7 +256,7 @@ std::string Module::dollar_command(const std::string& body) {
   }
   if (!body.empty() && body[0] == 'C') {
     if (row_.inputs == 0) {
-      throw Refused{"$AAC lacking"};
+      throw Refused{"$AAC on a model without inputs"};
     }
     if (body == "C") {
       rule("$AAC");
@@ -271,7 +273,7 @@ std::string Module::dollar_command(const std::string& body) {
   }
   if (!body.empty() && body[0] == 'L') {
     if (row_.inputs == 0) {
-      throw Refused{"$AALS lacking"};
+      throw Refused{"$AALS on a model without inputs"};
     }
     if (body != "L0" && body != "L1") {
       throw Refused{"$AALS refused"};
@@ -281,7 +283,7 @@ std::string Module::dollar_command(const std::string& body) {
   }
   if (!body.empty() && body[0] == 'P') {
     if (!row_.both_protocols) {
-      throw Refused{"$AAP lacking"};
+      throw Refused{"$AAP on a model without Modbus"};
     }
     if (body == "P") {
       rule(stored_.modbus ? "$AAP Modbus" : "$AAP ASCII");
@@ -301,7 +303,7 @@ std::string Module::set_protocol(const std::string& body) {
     throw Refused{"$AAPN without permission"};
   }
   if (body == "1" && (stored_.address < 0x01 || stored_.address > 0xF7)) {
-    throw Refused{"$AAPN at an address that Modbus lacks"};
+    throw Refused{"$AAPN 1 with a stored address outside 01-F7"};
   }
   rule("$AAPN " + body);
   stored_.modbus = body == "1";
@@ -314,19 +316,19 @@ std::string Module::at_command(const std::string& body) {
     return ">" + first_second(outputs_, levels_);
   }
   if (row_.outputs == 0) {
-    throw Refused{"@AA(Data) lacking"};
+    throw Refused{"@AA(Data) on a model without outputs"};
   }
   const std::size_t longest = row_.outputs <= 4 ? 1 : row_.outputs <= 8 ? 2 : 4;
   const std::size_t shorter = longest == 1 ? 1 : longest / 2;  // wire.md E4
   const std::optional<unsigned> data = number(body);
   if ((body.size() != longest && body.size() != shorter) || !data) {
-    throw Refused{"@AA(Data) out of form", true};
+    throw Refused{"@AA(Data) with a wrong form", true};
   }
   if ((*data & ~all_outputs()) != 0) {
     throw Refused{"@AA(Data) beyond the last channel", true};
   }
   if (stored_.timed_out) {
-    rule("@AA(Data) ignored");
+    rule("@AA(Data) blocked by the timeout status");
     return "!";
   }
   rule("@AA(Data) of " + std::to_string(body.size()));
@@ -359,7 +361,7 @@ std::string Module::tilde_command(const std::string& body) {
   if (command == '4' || command == '5') {
     const std::string name = std::string("~AA") + command + "V";
     if (row_.outputs == 0) {
-      throw Refused{name + " lacking"};
+      throw Refused{name + " on a model without outputs"};
     }
     if (argument != "P" && argument != "S") {
       throw Refused{name + " refused"};
@@ -382,10 +384,10 @@ std::string Module::tilde_command(const std::string& body) {
       return character >= 0x20 && character <= 0x7E;
     });
     if (argument.empty() || argument.size() > row_.longest_name) {
-      throw Refused{"~AAO(Data) out of length"};
+      throw Refused{"~AAO(Data) with a wrong length"};
     }
     if (!characters) {
-      throw Refused{"~AAO(Data) with other characters"};
+      throw Refused{"~AAO(Data) with a character outside 0x20-0x7E"};
     }
     rule("~AAO(Data) of " + std::to_string(argument.size()));
     stored_.name = argument;
@@ -404,7 +406,7 @@ std::string Module::tilde_command(const std::string& body) {
 std::string Module::set_host_watchdog(const std::string& body) {
   const std::optional<unsigned> timeout = number(body.size() == 3 ? body.substr(1) : "");
   if (!timeout || (body[0] != '0' && body[0] != '1')) {
-    throw Refused{"~AA3EVV out of form"};
+    throw Refused{"~AA3EVV with a wrong form"};
   }
   if (*timeout == 0) {
     throw Refused{"~AA3EVV VV out of range"};

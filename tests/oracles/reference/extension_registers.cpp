@@ -1,4 +1,4 @@
-// Values of the extension registers of the reference, and `~AARD` and `~AAX`: wire.md, extensions.
+// Values of the extension registers of the reference, and `~AARD` and `~AAX`: extensions.md.
 #include "tests/oracles/reference/extension_registers.hpp"
 
 #include "tests/oracles/reference/dcon_refusal.hpp"
@@ -42,8 +42,8 @@ unsigned Module::tally(unsigned index) const {
   return tallies[index];
 }
 
-/// Returns the value of a register, or the 32-bit value of which it is a part. Sets `left_open_` if the value
-/// is not known.
+/// Returns the value of a register. If the register is a part of a 32-bit value, returns the 32-bit value.
+/// Sets `left_open_` if the value is not known.
 unsigned Module::extension_value(unsigned address) {
   const ExtensionRow row = extension_row(row_, address);
   switch (row.row) {
@@ -71,7 +71,7 @@ unsigned Module::extension_value(unsigned address) {
       return timeouts_;
     case Extension::Stores:
       if (now_ < timeout_stored_) {
-        left_open_ = "the number of stores is not known while a timeout may be being stored";
+        left_open_ = "the number of stores is not known while the module may be storing a timeout";
       }
       rule(stores_ != 0 ? "0x0305 reads stores" : "0x0305 reads 0");
       return stores_;
@@ -147,7 +147,7 @@ std::string Module::delay_command(const std::string& body) {
   }
   const std::optional<unsigned> delay = number(body.size() == 3 ? body.substr(1) : "");
   if (!delay || body[0] != 'D') {
-    throw Refused{"~AARD out of form"};
+    throw Refused{"~AARD with a wrong form"};
   }
   if (*delay > kLongestDelay) {
     throw Refused{"~AARDVV out of range"};
@@ -161,13 +161,13 @@ std::string Module::delay_command(const std::string& body) {
 std::string Module::extension_command(const std::string& body) {
   const std::optional<unsigned> digits = number(body);
   if ((body.size() != 4 && body.size() != 8) || !digits) {
-    throw Refused{"~AAX out of form"};
+    throw Refused{"~AAX with a wrong form"};
   }
   const bool writes = body.size() == 8;
   const unsigned address = writes ? *digits >> 16 : *digits;
   const ExtensionRow row = extension_row(row_, address);
   if (row.row == Extension::None) {
-    throw Refused{"~AAX lacking"};
+    throw Refused{"~AAX register that the model does not have"};
   }
   if (!writes) {
     if (row.wide && (address - row.first) % 2 != 0) {
@@ -177,14 +177,14 @@ std::string Module::extension_command(const std::string& body) {
     return "!" + aa() + hex(extension_value(address), row.wide ? 8 : 4);
   }
   if (!row.written) {
-    throw Refused{"~AAXRRRRVVVV read only"};
+    throw Refused{"~AAXRRRRVVVV to a read-only register"};
   }
   const unsigned value = *digits & 0xFFFFU;
   if (!extension_accepts(address, value)) {
     throw Refused{std::string("~AAXRRRRVVVV ") + row.name + " out of range"};
   }
   if (row.row == Extension::TimedOutputs && stored_.timed_out) {
-    rule("~AAXRRRRVVVV ignored");
+    rule("~AAXRRRRVVVV blocked by the timeout status");
     return "!";
   }
   rule(std::string("~AAXRRRRVVVV ") + row.name);

@@ -1,4 +1,4 @@
-// The table of extension registers of the reference: wire.md, extensions.
+// The table of extension registers of the reference: extensions.md.
 #pragma once
 
 #include "tests/oracles/reference/models.hpp"

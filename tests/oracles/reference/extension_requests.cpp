@@ -1,4 +1,4 @@
-// Addresses and values for requests to extension registers, in and out of range: wire.md, extensions.
+// Addresses and values for requests to extension registers, in and out of range: extensions.md.
 #include <optional>
 
 #include "tests/oracles/reference/extension_registers.hpp"

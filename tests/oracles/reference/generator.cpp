@@ -12,7 +12,7 @@ namespace {
 
 Step wait(const Module& module, Random& random) {
   // Some waits are longer than the host watchdog's timeout. If a step is too close to the expiry, the session
-  // waits by itself.
+  // waits until the expiry is over.
   if (module.expiry() && random.once_in(2)) {
     return WaitForExpiry{std::chrono::milliseconds(random.between(5, 120))};
   }
@@ -28,8 +28,8 @@ std::uint32_t pulses(const Module& module, Random& random) {
   return random.once_in(60) ? wraps - 2 + random.below(5) : random.between(1, 5);
 }
 
-/// Returns a line format that has another parity, and whose bytes a module with `format` can separate from
-/// each other.
+/// Returns a line format with a parity other than that of `format`. A module that uses `format` can determine
+/// where each byte in the returned line format ends.
 LineFormat another_format(LineFormat format, Random& random) {
   const LineFormat other_parity = format == LineFormat::k8E1 ? LineFormat::k8O1 : LineFormat::k8E1;
   const bool has_parity = format == LineFormat::k8E1 || format == LineFormat::k8O1;
@@ -84,8 +84,8 @@ Step next_step(const Module& module, Random& random) {
   }
   // Some steps use inputs that the model does not have; these steps have no effect.
   if (what < (module.row().inputs != 0 ? 40U : 15U)) {
-    // These steps prefer an input whose filter time is running, and the first two inputs, because requests
-    // set the filters of these two more often.
+    // Many of these steps use an input whose filter time is running, if there is one. Many others use input 0
+    // or 1, because requests set the filters of inputs 0 and 1 more often than other filters.
     const std::optional<unsigned> settling = module.settling_input();
     const unsigned channel = settling && random.once_in(2) ? *settling
                              : random.once_in(2)           ? random.below(2)

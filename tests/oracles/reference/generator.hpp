@@ -1,6 +1,6 @@
-// Generates random steps for a session. Most of them suit the model of the reference module, and its current
-// protocol, address and checksum. For a module without extensions, they contain no request that requires an
-// extension, except by chance.
+// Generates random steps for a session. Most of these steps suit the model and the current protocol, address
+// and checksum of the reference module. For a module without extensions, the steps contain no request that
+// requires an extension, except by chance.
 #pragma once
 
 #include "tests/oracles/reference/random.hpp"
@@ -8,9 +8,9 @@
 
 namespace ex9000::reference {
 
-/// Returns the first steps of a session: either none, or the steps by which a person, in INIT mode, sets the
-/// address, CC and FF with `%AANNTTCCFF` and, on an -M model, the protocol with `$AAPN`. Random steps alone
-/// rarely have this order.
+/// Returns the first steps of a session: either none, or steps that configure the module in INIT mode.
+/// `%AANNTTCCFF` sets the address, CC and FF. On an -M model, `$AAPN` then sets the protocol. Random steps
+/// alone rarely have this order.
 std::vector<Step> first_steps(const Module& module, Random& random);
 
 /// Returns the next step, in most cases a request.
@@ -20,12 +20,12 @@ Step next_step(const Module& module, Random& random);
 /// a mistake, no CR, or other bytes before them. Some results are only random characters.
 Bytes dcon_request(const Module& module, Random& random);
 
-/// Returns a CC with this code of a baud rate in bits 5:0, for example 06 for 9600 baud. The code may be one
-/// that does not exist. If the module has extensions, about half of the returned CCs have a random line
-/// format.
+/// Returns a CC with `code` in bits 5:0. `code`: the code of a baud rate, for example 0x06 for 9600 baud, or
+/// a code that no baud rate has. If the module has extensions, about half of the returned CCs have a random
+/// line format.
 unsigned baud_code_with(unsigned code, const Module& module, Random& random);
 
-/// Returns the address of an extension register, or one at which this model has none.
+/// Returns the address of an extension register, or an address at which this model has no such register.
 unsigned extension_address(const Module& module, Random& random);
 
 /// Returns a value to write to the extension register at this address. If the register can be written, it

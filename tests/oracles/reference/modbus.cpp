@@ -26,7 +26,7 @@ bool known_function(const ModelRow& model, unsigned function) {
 /// a CRC error, and a broadcast counts as a message without a reply. `bad`: which bytes have a line error.
 Bytes Module::modbus_frame(Bytes frame, std::vector<bool> bad) {
   const auto spoiled = [&] { return std::find(bad.begin(), bad.end(), true) != bad.end(); };
-  // A turn-around 00 before a frame, with or without a line error, does not invalidate the frame.
+  // A 00 from a line turn-around before a frame does not spoil the frame, even if the 00 has a line error.
   if (frame.size() > 4 && (spoiled() || !crc_is_right(frame)) && frame[0] == 0x00) {
     if (frame.size() > 256) {
       left_open_ = "whether a frame of 256 bytes may have a turn-around 00 before it";
@@ -112,7 +112,7 @@ Bytes Module::modbus_function(const Bytes& frame) {
     throw Exception{0x02, "Modbus extension"};
   }
   if (!known_function(row_, function)) {
-    throw Exception{0x01, function == 0x02 ? "FC02 lacking" : "unknown function"};
+    throw Exception{0x01, function == 0x02 ? "FC02 on a model without inputs" : "unknown function"};
   }
   switch (function) {
     case 0x01:

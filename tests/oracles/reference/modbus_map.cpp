@@ -66,8 +66,8 @@ bool coil_listed(const CoilRow& row, unsigned function) {
   return function == 0x01 ? row.by_01 : function == 0x05 ? row.by_05 : row.by_0f;
 }
 
-/// Returns the row of a range of coils, which must lie within one row. Throws Exception 02 if the range
-/// extends beyond the row, or if the table does not list the coils for this model and this function.
+/// Returns the row that contains a range of coils. Throws Exception 02 if the range extends beyond one row,
+/// or if the table does not list the coils for this model and this function.
 CoilRow listed_coils(const ModelRow& model, unsigned first, unsigned quantity, unsigned function) {
   const CoilRow row = coil_row(model, first);
   if (!coil_listed(row, function) || first + quantity > row.first + row.count) {
@@ -267,7 +267,7 @@ void Module::set_coils(unsigned first, const std::vector<bool>& values) {
         clear_timeout_status();
         break;
       case Row::CountingEdge:
-        // The edge takes effect immediately, unlike bit 7 of FF in `%AANNTTCCFF`.
+        // This setting takes effect immediately. Bit 7 of FF in `%AANNTTCCFF` takes effect at the next reset.
         stored_.format = values[i] ? stored_.format | 0x80U : stored_.format & 0x7FU;
         counts_rising_ = values[i];
         break;
@@ -345,7 +345,7 @@ void Module::judge_registers(unsigned first, const std::vector<unsigned>& values
           throw Exception{0x03, "register 0x01E8 03"};
         }
         if (value == 0 && stored_.enabled) {
-          throw Exception{0x03, "register 0x01E8 03 0 while enabled"};
+          throw Exception{0x03, "register 0x01E8 03 value 0 while enabled"};
         }
         break;
       default:
@@ -381,8 +381,8 @@ void Module::set_registers(unsigned first, const std::vector<unsigned>& values) 
   }
 }
 
-/// Returns whether a write that begins at this register is ignored in a broadcast. The result is the same for
-/// all registers that one request can write.
+/// Returns whether the module ignores a broadcast that writes registers from `first` on. The result is the
+/// same for all registers that one request can write.
 bool Module::broadcast_ignored(unsigned first) {
   if (first == 0x01E4 || first == 0x01E5) {
     rule("broadcast ignored: configuration");

@@ -1,4 +1,4 @@
-// Helpers to read and build Modbus frames of the reference, and the reasons to refuse a request: wire.md 7.
+// Functions of the reference that read words of Modbus frames, build frames and refuse requests: wire.md 7.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +9,8 @@
 
 namespace ex9000::reference {
 
-/// A Modbus exception: the module refuses the request, and nothing changes. The reply has the function code
-/// with bit 7 set, and the exception code. A broadcast gets no reply.
+/// A Modbus exception: the module refuses the request and executes no part of it. The reply has the function
+/// code with bit 7 set, and the exception code. A broadcast gets no reply.
 struct Exception {
   std::uint8_t code;
   std::string rule;

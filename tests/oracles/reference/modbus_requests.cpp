@@ -38,8 +38,8 @@ unsigned coil_quantity(const Module& module, unsigned address, Random& random) {
     case 0:
       return random.one_of({0U, 1U, 1968U, 1969U, 2000U, 2001U, 0xFFFFU});
     case 1:
-      // On a model without inputs or without outputs, a range that begins at the coil of a channel ends with
-      // the last coil of the row, or with the next address.
+      // On a model with only inputs or only outputs, a range that begins at the coil of a channel ends at the
+      // last coil of the row, or one address after it.
       return module.row().inputs + module.row().outputs - (address & 0x1FU) % 16 + random.below(2);
     case 2:
       return random.between(1, 40);

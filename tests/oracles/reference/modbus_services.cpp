@@ -40,7 +40,7 @@ Bytes Module::diagnostics(const Bytes& frame) {
       count = counts_.no_response;
       break;
     case 0x12:
-      count = 0;  // no session has an overrun
+      count = 0;  // no session has an overrun or loses a frame
       break;
     default:
       throw Exception{0x01, "FC08 01"};

@@ -9,10 +9,11 @@ namespace ex9000::reference {
 namespace {
 
 constexpr std::chrono::milliseconds kTimeoutUnit{100};  // wire.md 6: VV x 0.1 s
-/// Covers one tick, and the time until the main loop executes a request after the silence at its end.
+/// Covers one tick, and the time from the end of the silence after a request until the main loop of the
+/// firmware executes the request.
 constexpr std::chrono::milliseconds kTick{3};
-/// The longest silence that ends a Modbus frame: 32.08 ms at 1200 baud (wire.md 7), rounded up. The module
-/// judges an ASCII frame earlier.
+/// The longest silence that ends a Modbus frame: 32.08 ms at 1200 baud (wire.md 7), rounded up. The time
+/// between an ASCII frame and its judgement is shorter.
 constexpr std::chrono::milliseconds kLongestSilence{33};
 
 auto members(const Stored& s) {
@@ -126,7 +127,7 @@ void Module::come_up(Time now) {
   counters_ = {};
   wide_counters_ = {};
   clear_latches();
-  // wire.md, extensions: the raw levels at reset are the baseline and do not count as edges.
+  // extensions.md: at reset, the levels before the filter are the baseline and do not count as edges.
   levels_ = raw_levels();
   settling_ = {};
   sample_.reset();
@@ -154,7 +155,7 @@ unsigned Module::seconds_since_reset() {
   const auto least = seconds(now_ - came_up_ - kComingUp);
   const auto most = seconds(now_ - came_up_ + kLongestStore);
   if (least != most) {
-    left_open_ = "the time of the reset is known to 0.1 s, and the request may wait for a store";
+    left_open_ = "the exact time of the reset is not known, and the request may wait for a store";
   }
   return static_cast<unsigned>(least.count());
 }
@@ -182,7 +183,7 @@ void Module::restart_host_watchdog_by_host_ok() {
 }
 
 /// Restarts the host watchdog if it is enabled and register 0x0251 is 1. Call this for each correctly
-/// received request with this module's own address, before its execution.
+/// received request with this module's own address, before the module executes the request.
 void Module::restart_host_watchdog_by_request() {
   if (stored_.restarted_by_requests) {
     rule(!expiry_       ? "request does not start a host watchdog that does not run"
@@ -192,7 +193,7 @@ void Module::restart_host_watchdog_by_request() {
   }
 }
 
-// --- wire.md, extensions: timed outputs ---
+// --- extensions.md: timed outputs ---
 
 /// Sets outputs by a command. The command ends the timers of all channels that it covers.
 void Module::drive(unsigned channels, unsigned values) {
@@ -207,7 +208,7 @@ void Module::drive(unsigned channels, unsigned values) {
   }
 }
 
-/// Switches an output on for `time` x 0.1 s; 0: switches it off.
+/// Switches an output on for `time` x 0.1 s. If `time` is 0, switches the output off.
 void Module::set_timed_output(unsigned channel, unsigned time) {
   rule(time == 0 ? "timed output of 0" : "timed output starts");
   const unsigned bit = 1U << channel;
@@ -218,7 +219,7 @@ void Module::set_timed_output(unsigned channel, unsigned time) {
   }
 }
 
-/// Returns the remaining time of a timed output in 0.1 s, rounded up; 0 if no time is running. Sets
+/// Returns the remaining time of a timed output in units of 0.1 s, rounded up; 0 if no time is running. Sets
 /// `left_open_` if the remaining time is not known.
 unsigned Module::time_left(unsigned channel) {
   const std::optional<Moment>& timer = timers_[channel];
@@ -332,20 +333,22 @@ Answer Module::on_bytes(const Bytes& bytes, LineFormat sent_in, Time now) {
   if (runs_modbus_) {
     answer.reply = modbus_frame(bytes, bad);
   } else {
-    // wire.md 3: a delimiter begins a frame. The first character of a reply begins another module's reply,
-    // which is skipped. A CR ends both.
+    // wire.md 3: outside a frame, a delimiter begins a frame, and `!`, `>` or `?` begins another module's
+    // reply. The module skips this reply up to its CR.
     for (std::size_t i = 0; i < bytes.size(); ++i) {
       const char character = static_cast<char>(bytes[i]);
-      // The end of this byte: if one of several frames restarts the host watchdog, the restart happens at the
-      // end of that frame.
+      // `now_` is the time at which this byte ends. If one of several frames restarts the host watchdog, the
+      // restart happens at the end of that frame.
       now_ = now - Time((bytes.size() - 1 - i) * character_bits(sent_in) * 1'000'000'000ULL / rate());
       if (!answer.reply.empty()) {
-        left_open_ = "the effect of bytes that arrive while the module answers depends on its timing";
+        left_open_ =
+            "the effect of bytes that arrive while the module replies depends on the time of the reply";
       }
       if (bad[i]) {
-        // Outside a frame the byte is noise, and inside a frame it spoils the frame. A CR with a line error
-        // is not a CR.
-        rule(framing_ == Framing::Nothing ? "bad byte outside an ASCII frame" : "bad byte in an ASCII frame");
+        // A bad byte in a frame spoils the frame. The module ignores any other bad byte. A CR with a line
+        // error is not a CR.
+        rule(framing_ == Framing::Nothing ? "bad byte outside an ASCII frame"
+                                          : "bad byte in an ASCII frame or in a skipped reply");
         spoiled_ = true;
       } else if (framing_ == Framing::Nothing) {
         spoiled_ = false;

@@ -23,15 +23,16 @@ using Bytes = std::vector<std::uint8_t>;
 using Time = std::chrono::nanoseconds;
 /// wire.md 2: the longest time from power-on or reset until the module listens.
 inline constexpr std::chrono::milliseconds kComingUp{100};
-/// wire.md 3: the reply starts at most 200 ms after a request that stores a setting. wire.md 7: at 1200 baud,
-/// a Modbus frame ends about 32 ms after its last byte.
+/// The longest time from the last byte of a request until its settings are stored. This is the sum of 200 ms
+/// for the store (wire.md 3), and about 32 ms for the silence that ends a Modbus frame at 1200 baud
+/// (wire.md 7).
 inline constexpr std::chrono::milliseconds kLongestStore{232};
-/// wire.md, extensions: the longest response delay, in ms.
+/// extensions.md: the longest response delay, in ms.
 inline constexpr unsigned kLongestDelay = 0x1E;
 
-/// Returns the number of bits of a character: wire.md, extensions.
+/// Returns the number of bits of a character: extensions.md.
 constexpr unsigned character_bits(LineFormat format) { return format == LineFormat::k8N1 ? 10 : 11; }
-/// Returns whether `code` is a valid CC. A CC combines a rate and a line format.
+/// Returns whether `code` is a valid CC. A CC combines a baud rate and a line format.
 bool baud_code_exists(unsigned code);
 /// Returns the line format of a valid CC.
 LineFormat format_of(unsigned baud_code);
@@ -41,14 +42,14 @@ const char* name_of(LineFormat format);
 /// wire.md 8: the values that survive a power failure.
 struct Stored {
   unsigned address = 0x01;
-  unsigned baud_code = 0x06;  ///< bits 5:0: the rate; bits 7:6: the line format
+  unsigned baud_code = 0x06;  ///< bits 5:0: the baud rate; bits 7:6: the line format
   unsigned format = 0x00;     ///< bit 7: rising edges are counted; bit 6: checksum
   bool modbus = false;
   std::string name;
   unsigned power_on = 0;    ///< bit n is channel n
   unsigned safe = 0;        ///< bit n is channel n
   bool enabled = false;     ///< host watchdog enabled
-  unsigned timeout = 0xFF;  ///< of the host watchdog, in 0.1 s
+  unsigned timeout = 0xFF;  ///< of the host watchdog, in units of 0.1 s
   bool timed_out = false;   ///< the timeout status
   /// Register 0x0251: whether every correctly received request with this module's own address restarts the
   /// host watchdog.
@@ -139,7 +140,7 @@ class Module {
   /// Returns all moments at which the module changes by itself: the expiry of the host watchdog, the ends of
   /// the running filter times, and the ends of timed outputs.
   [[nodiscard]] std::vector<Moment> moments() const;
-  /// Returns the first input whose filter time is running, if there is one.
+  /// Returns the lowest channel number of the inputs whose filter times are running, if there is one.
   [[nodiscard]] std::optional<unsigned> settling_input() const;
 
  private:
@@ -148,7 +149,7 @@ class Module {
   /// `left_open_`. `needed`: whether the request requires an extension.
   bool refuses_extension(bool needed) {
     const bool refuses = needed && !has_extensions();
-    left_open_ = refuses ? "only a module with extensions has this request" : left_open_;
+    left_open_ = refuses ? "this request requires an extension that the module does not have" : left_open_;
     return refuses;
   }
 
@@ -215,7 +216,7 @@ class Module {
   void set_registers(unsigned first, const std::vector<unsigned>& values);
   bool broadcast_ignored(unsigned first);
 
-  // wire.md, extensions; extension_registers.cpp
+  // extensions.md, extension_registers.cpp
   [[nodiscard]] unsigned tally(unsigned index) const;
   unsigned extension_value(unsigned address);
   unsigned extension_word(unsigned address);
@@ -260,8 +261,8 @@ class Module {
   Framing framing_ = Framing::Nothing;
   std::string frame_;
   bool spoiled_ = false;  ///< in a frame: one of its bytes had a line error
-  /// The line tallies (wire.md, extensions), except those of overruns and of lost frames. In Modbus, the
-  /// first five are counters of function 08.
+  /// The line tallies (extensions.md), except those of overruns and of lost frames. In Modbus, the first five
+  /// are counters of function 08.
   struct Counts {
     unsigned bus_messages = 0;
     unsigned crc_errors = 0;
@@ -271,7 +272,7 @@ class Module {
     unsigned bad_bytes = 0;
   } counts_;
   std::optional<Moment> expiry_;
-  Time came_up_{0};                 ///< the earliest time of the last reset
+  Time came_up_{0};                 ///< the earliest possible time of the last reset
   unsigned reset_reason_ = 0;       ///< register 0x0301
   unsigned timeouts_ = 0;           ///< register 0x0304
   unsigned stores_ = 0;             ///< register 0x0305

@@ -21,7 +21,7 @@ class Rules {
   void reached(const std::string& rule);
   /// Returns the rules that were never reached, in the order of the list.
   [[nodiscard]] std::vector<std::string> missing() const;
-  /// Returns the list as text: on each line a rule and how often it was reached.
+  /// Returns the list as text. Each line has the count of one rule, and then the rule.
   [[nodiscard]] std::string table() const;
   [[nodiscard]] std::size_t size() const { return list_.size(); }
 

@@ -18,15 +18,15 @@ using std::chrono::milliseconds;
 /// module changes by itself. This time covers one tick, and the time until the module executes a received
 /// request.
 constexpr milliseconds kMargin{3};
-/// Longer than the store of a command (wire.md 3), or of the timeout status and the enable flag after an
-/// expiry (wire.md 6).
+/// Longer than the time that the module requires to store a command (wire.md 3), or to store the timeout
+/// status and the enable flag after an expiry (wire.md 6).
 constexpr milliseconds kStored{250};
 /// wire.md 3: the reply to a request that stores nothing starts within 20 ms.
 constexpr milliseconds kAnswers{20};
 constexpr milliseconds kAnswersStoring{200};
-/// Longer than the time until the reply to a request that stores nothing begins, at any baud rate, without a
-/// response delay. The player of transcripts (sim/app/play/player.cpp) waits equally long, so a transcript
-/// has the same timing there.
+/// If a request stores nothing and nothing else is being stored, its reply begins within this time after the
+/// request, at any baud rate. The player of transcripts (sim/app/play/player.cpp) waits for the same time, so
+/// that a transcript has the same timing in the player.
 constexpr milliseconds kNoAnswer{65};
 /// The time for which the session listens for extra bytes, for example before a reset. If a reply is too
 /// long, its first extra byte arrives in this time, at 9600 baud or more.
@@ -82,8 +82,8 @@ std::string Session::transcript() const {
 }
 
 bool Session::play(const Step& step) {
-  // The rules are moved before each step, so that `play_step` does not copy the rules of earlier steps with
-  // the reference.
+  // `play_step` copies the reference together with its rules. Therefore the rules of earlier steps are moved
+  // to `rules_` first.
   for (std::string& rule : reference_.take_rules()) {
     rules_.push_back(std::move(rule));
   }
@@ -126,7 +126,8 @@ void Session::set_format(LineFormat format) {
   target_.set_format(format);
 }
 
-/// Lets a short time pass that the transcript does not mention, and checks that the module sends nothing.
+/// Listens for a short time and checks that the module sends nothing. The transcript contains no line for
+/// this time.
 bool Session::nothing_more() {
   const play::Bytes heard = target_.listen(kBetween);
   return heard.empty() || differs("; nothing more", reply_line(heard));
@@ -183,7 +184,7 @@ bool Session::listen(milliseconds time) {
 /// comment if no kind of step can express the expectation.
 bool Session::differs(const std::string& expected, const std::string& got) {
   lines_.push_back(expected);
-  lines_.push_back("; but the firmware: " + got);
+  lines_.push_back("; the firmware differs: " + got);
   return false;
 }
 
@@ -219,11 +220,12 @@ Time Session::heard_in(std::size_t bytes) const {
 
 bool Session::play_step(const Send& send) {
   // wire.md 7: a silence of 3.5 characters of 11 bits, or of 1.75 ms above 19200 baud, ends a Modbus frame.
-  // The reply starts no earlier.
+  // The reply starts no earlier than the end of this silence.
   const Time modbus_silence = rate_ <= 19200 ? Time(77ULL * 1'000'000'000ULL / (2ULL * rate_))
                                              : Time(std::chrono::microseconds(1750));
   const Time turn_around = reference_.runs_modbus() ? modbus_silence : takes(1);
-  // The 20 and 200 ms count from the end of the response delay, if the delay is longer than the turn-around.
+  // If the response delay is longer than the turn-around, the 20 ms or 200 ms within which a reply starts
+  // count from the end of the delay.
   const Time delay = reference_.reply_delay() > turn_around ? reference_.reply_delay() : Time(0);
   const Time earliest = std::max(turn_around, delay);
   // wire.md 7 allows 20 ms from the end of a Modbus frame, which is the end of its silence. If the response

@@ -15,12 +15,12 @@
 
 namespace ex9000::reference {
 
-/// The master sends these bytes without a gap, at the baud rate and in the line format of the reference. A
-/// silence follows.
+/// The master sends these bytes without a gap, at the baud rate and in the line format of the reference. Then
+/// it listens for a reply.
 struct Send {
   Bytes bytes;
-  /// If the module runs Modbus and the request gets no reply, the next request may follow while the module is
-  /// still storing the settings of this request.
+  /// Whether the next request may follow while the module is still storing the settings of this request. Has
+  /// an effect only if the module runs Modbus and this request gets no reply.
   bool next_may_follow_at_once = false;
 };
 /// The master sends these bytes in another line format, `format`, and then uses the module's line format
@@ -32,9 +32,10 @@ struct SendInAnotherFormat {
 struct Wait {
   std::chrono::milliseconds time;
 };
-/// Waits until the earliest possible expiry of the host watchdog is `before` away. Does not wait if the host
-/// watchdog is not running, or if the wait would be shorter than 1 ms.
+/// Waits until a given time before the earliest possible expiry of the host watchdog. Does not wait if the
+/// host watchdog is not running, or if the wait would be shorter than 1 ms.
 struct WaitForExpiry {
+  /// The time from the end of the wait to the earliest possible expiry.
   std::chrono::milliseconds before;
 };
 struct Reset {};
@@ -55,31 +56,32 @@ struct Pulse {
 
 using Step = std::variant<Send, SendInAnotherFormat, Wait, WaitForExpiry, Reset, Power, Init, Input, Pulse>;
 
-/// Plays steps on a firmware module and on a reference module, from factory settings. `extensions`: whether
-/// the reference module has the extensions; the firmware always has them. The specification does not define
-/// exactly when the module changes by itself, for example when the host watchdog expires. If a result could
-/// depend on the exact time of such a change, the session waits until the change is over.
+/// Plays steps on a firmware module and on a reference module. Both modules start with factory settings.
+/// `extensions`: whether the reference module has the extensions; the firmware always has them. The
+/// specification does not define exactly when the module changes by itself, for example when the host
+/// watchdog expires. If a result could depend on the exact time of such a change, the session waits until the
+/// change is over.
 class Session {
  public:
   explicit Session(const ModelRow& row, Extensions extensions = Extensions::Present);
 
   /// Plays a step on both modules and compares the reply, the time of the reply, the outputs and the LED.
-  /// Does not compare the outputs and the LED while the module may be storing the last request. Returns false
-  /// if the modules differ; the last lines of the transcript describe the difference. Does not send a request
-  /// that `left_open` counts.
+  /// Does not compare the outputs and the LED while the module may be storing the settings of the last
+  /// request. Returns false if the modules differ; the last lines of the transcript describe the difference.
+  /// Does not send a request that `left_open` counts.
   bool play(const Step& step);
 
   [[nodiscard]] const Module& reference() const { return reference_; }
-  /// Returns the steps played so far as a conformance transcript (tests/conformance/README.md).
+  /// Returns a conformance transcript (tests/conformance/README.md) of the steps that have been played.
   [[nodiscard]] std::string transcript() const;
   /// Returns the rules that the reference has applied, as rules.cpp names them.
   [[nodiscard]] std::vector<std::string> rules() const;
   /// Returns the number of requests that `Send` steps have sent.
   [[nodiscard]] std::uint64_t transactions() const { return transactions_; }
-  /// Returns the number of these requests that ended less than 0.1 s before the host watchdog could expire.
+  /// Returns the number of `Send` requests that ended less than 0.1 s before the host watchdog could expire.
   [[nodiscard]] std::uint64_t before_expiry() const { return before_expiry_; }
-  /// Returns the number of `Send` requests that were sent while the module might be storing a timeout of the
-  /// host watchdog.
+  /// Returns the number of `Send` requests that were sent while the module might be storing the timeout
+  /// status after an expiry of the host watchdog.
   [[nodiscard]] std::uint64_t behind_expiry() const { return behind_expiry_; }
   /// Returns the number of requests that were not sent because the reference cannot predict what the module
   /// does, or because the master could not read the reply.
@@ -116,9 +118,10 @@ class Session {
   runner::CoreTarget target_;
   /// Whether the module may be storing the settings of the last request.
   bool storing_ = false;
-  /// Whether the module may be storing a timeout of the host watchdog.
+  /// Whether the module may be storing the timeout status after an expiry of the host watchdog.
   bool storing_timeout_ = false;
-  /// The time by which the latest timeout has been stored. Later requests do not change it.
+  /// The time by which the module has stored the timeout status after the latest expiry. A request resets
+  /// `storing_timeout_`, but not this time.
   Time timeout_stored_{0};
   unsigned rate_ = 9600;
   LineFormat format_ = LineFormat::k8N1;
@@ -131,8 +134,8 @@ class Session {
   std::uint64_t left_open_ = 0;
 };
 
-/// Removes steps as long as the rest still makes the two modules differ, and returns the rest. `steps` must
-/// make them differ.
+/// Removes steps that are not necessary to make the two modules differ, and returns the remaining steps.
+/// `steps` must make the two modules differ.
 std::vector<Step> shrink(const ModelRow& row, std::vector<Step> steps, Extensions extensions);
 
 /// Returns the transcript of these steps, up to the first difference.
