@@ -42,7 +42,7 @@ std::vector<std::string> command_of(const std::string& image, const std::string&
           "at24c-eeprom,bus=i2c,address=0x50,rom-size=8192,drive=memory",
           "-icount",
           "shift=4,sleep=off",
-          "-semihosting-config",  // AlarmClock's interrupt code uses it to ask the debugger for a stop
+          "-semihosting-config",  // AlarmClock's interrupt code halts the machine with a semihosting call
           "enable=on,target=gdb",
           "-plugin",
           EX9000_GATE ",socket=gate,address=" + std::to_string(Emulator::kGate),
@@ -69,9 +69,9 @@ Emulator::Emulator(const std::string& image, const std::string& memory) {
   gate_.emplace(gate.accept());
 }
 
-/// With reboot=shutdown, the emulator halts the machine when a reset is requested, so this function changes
-/// the action temporarily. The emulated UARTs ignore a reset, so this function also restores the registers of
-/// UART0 that affect the start of an image.
+/// With reboot=shutdown, the emulator halts the machine when a reset is requested. Therefore this function
+/// temporarily sets reboot=reset. The emulated UARTs ignore a reset, so this function also restores the
+/// registers of UART0 that affect the start of an image.
 void Emulator::reset() {
   qmp_->execute("set-action", "return", R"({"reboot": "reset"})");
   qmp_->execute("system_reset", "RESET");
@@ -80,7 +80,7 @@ void Emulator::reset() {
   bus_->write(kUart0 + kUartControl, kUartControlAtReset);
   bus_->write(kUart0 + kUartLineControl, kUartFifosOn);  // a change of this bit empties the FIFOs
   bus_->write(kUart0 + kUartLineControl, 0);
-  bus_->read(kUart0);  // an unread byte would keep its flag and its interrupt
+  bus_->read(kUart0);  // clears the flag and the interrupt of an unread byte
 }
 
 void Emulator::send_break() { qmp_->execute("chardev-send-break", "return", R"({"id": "uart"})"); }

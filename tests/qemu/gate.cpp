@@ -6,10 +6,10 @@
 //     -plugin gate.so,address=INSTRUCTION,socket=PATH
 //
 // When the processor executes this instruction, the plugin sends the address from which the instruction loads
-// the byte, and then waits for a byte from the socket. Before this instruction, the interrupt code of
-// AlarmClock has put the UART flags and the levels of two pins into this address. This file declares the
-// required functions of the emulator, because Debian has no package with the header: QEMU 7.2,
-// include/qemu/qemu-plugin.h.
+// the byte, and then waits for a byte from the socket. This address is a report: the interrupt code of
+// AlarmClock calculates it from the UART flags and the levels of two pins. This file declares the functions
+// of the emulator that the plugin calls, because Debian has no package with their header,
+// include/qemu/qemu-plugin.h of QEMU 7.2.
 #include <sys/socket.h>
 #include <sys/un.h>
 #include <unistd.h>

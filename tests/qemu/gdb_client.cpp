@@ -17,7 +17,7 @@ struct Packet {
   std::size_t end;    ///< position of `#`
 };
 
-/// Returns the first packet if it is complete, with its checksum.
+/// Returns the first packet. Returns no value if the packet or its checksum is incomplete.
 std::optional<Packet> find_packet(std::string_view received) {
   const std::size_t begin = received.find('$');
   const std::size_t end = begin == std::string_view::npos ? begin : received.find('#', begin);

@@ -22,7 +22,8 @@ class GdbClient {
   /// Returns the next packet without `$`, `#` and the checksum. Also throws std::runtime_error if the
   /// emulator sends nothing for `kHang`.
   std::string receive();
-  /// Reads the received bytes without blocking. Returns whether a complete packet is there.
+  /// Reads the bytes that have arrived. Returns whether `receive` can return a packet immediately. Does not
+  /// block.
   bool has_packet();
   [[nodiscard]] const UnixSocket& socket() const { return socket_; }
 

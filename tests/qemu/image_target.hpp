@@ -29,7 +29,7 @@ class ImageTarget final : public play::Target {
   void end() override { module_->verify_led(); }
 
  private:
-  /// Returns the module when its image has had the time to process the bytes that were sent to it.
+  /// Runs the module until its image has had time to process the sent bytes. Returns the module.
   TimedModule& settled();
   void hear();
 

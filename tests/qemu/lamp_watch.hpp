@@ -1,4 +1,4 @@
-// Checks the status LED whenever the machine stops.
+// Detects that a status LED that seems to be on steadily is flashing.
 #pragma once
 
 #include <chrono>
@@ -7,11 +7,11 @@
 
 namespace ex9000::rig {
 
-/// Verifies that a lit LED is on steadily and does not flash. A check that waits until the LED goes dark
-/// would take time, but other steps of the transcript measure the time. Therefore the caller assumes that the
-/// LED is on steadily, and this class compares the assumption with later states. A flashing LED is never lit
-/// for longer than `kPhase`. If the LED is dark less than `kPhase` after the assumption, this class reports
-/// that the LED flashes.
+/// Verifies that a lit LED is on steadily and does not flash. The steps of a transcript do not wait for this
+/// verification, because the wait would change the times that other steps measure. Instead, the caller
+/// assumes that the LED is on steadily, and this class compares the assumption with later states. A flashing
+/// LED is never lit for longer than `kPhase`. If the LED is dark less than `kPhase` after the assumption,
+/// this class reports that the LED flashes.
 class LampWatch {
  public:
   /// How long the LED is lit when it flashes at 2 Hz after a timeout. Flashes for other reasons are shorter.

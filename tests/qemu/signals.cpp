@@ -19,7 +19,8 @@ Pin pin_of(const Groups& groups, unsigned channel) {
     first += group.count;
   }
   throw std::out_of_range("channel " + std::to_string(channel) +
-                          ": the board has no such channel; expected less than " + std::to_string(first));
+                          ": the board has no such channel; expected a number less than " +
+                          std::to_string(first));
 }
 
 /// Returns the path of the GPIO port in QEMU's object tree.

@@ -100,7 +100,8 @@ void TimedModule::verify_led() {
 
 /// Disables the I2C interrupt, or enables it again. A real EEPROM takes milliseconds to store, but the
 /// emulated one takes no time, so a request would never arrive while the image stores. A disabled interrupt
-/// has the same effect as an EEPROM that stretches the clock of its bus. The driver waits 3 ms for a byte.
+/// has the same effect as an EEPROM that stretches the clock of its bus. The image waits for each byte on
+/// this bus for at most 3 ms.
 void TimedModule::hold_memory(bool hold) {
   constexpr std::uint32_t kSetEnable = 0xE000'E100;
   constexpr std::uint32_t kClearEnable = 0xE000'E180;
@@ -150,8 +151,8 @@ void TimedModule::put(const Arrival& arrival) {
   }
   if (!clock_->receiver_empty()) {
     throw std::runtime_error(
-        "UART0: the image has not read a byte before the next one arrives; expected it to read each byte in "
-        "time");
+        "UART0: a byte arrives before the image has read the previous byte; expected the image to read each "
+        "byte in time");
   }
   if (arrival.status == ByteStatus::Good) {
     emulator().uart().send(&arrival.byte, 1);

@@ -23,12 +23,11 @@ class TimedModule : public EmulatedBoard {
 
   explicit TimedModule(const Model& model) : EmulatedBoard(model, nullptr) {}
 
-  /// Replaces the module by a new one with its supply on, see EmulatedBoard::renew. Sets `now()` to 0.
+  /// Replaces the module with a new module whose supply is on; see EmulatedBoard::renew. Sets `now()` to 0.
   void begin_anew(const Settings* settings);
-  /// Switches the supply. No time passes.
+  /// Switches the supply on or off. No time passes.
   void power(bool on);
-  /// Switches the supply off and kills the emulator. Of the machine, only the file of the EEPROM remains. No
-  /// time passes.
+  /// Switches the supply off and kills the emulator. Only the file of the EEPROM remains. No time passes.
   void kill();
   /// Resets the module with the reset pin. Has no effect without power. No time passes.
   void reset();
@@ -45,33 +44,33 @@ class TimedModule : public EmulatedBoard {
   [[nodiscard]] std::chrono::nanoseconds now() const { return now_; }
 
   /// Makes `run_to_store` stop the module before each store to one of the `size` bytes from the bus address
-  /// `address` on. Until `kill`, no other function may run the module.
+  /// `address` on. Until `kill`, only `run_to_store` may run the module.
   void watch_stores(std::uint32_t address, std::uint32_t size) { clock_->watch_stores(address, size); }
   /// Runs until the module is about to execute the next watched store, but not longer than
   /// AlarmClock::run_to_store permits. Returns whether the module has stopped before a store. Does not change
   /// `now()`.
   bool run_to_store(std::chrono::nanoseconds time) { return clock_->run_to_store(time); }
 
-  /// Runs until the watchdog or the image is about to reset the module. `event` is an event that the emulator
-  /// must then send: it sends `WATCHDOG` only for a reset by the watchdog, and `SHUTDOWN` for both resets.
-  /// Throws std::runtime_error if this event does not occur within `time`. `now()` omits up to 50 ms of the
-  /// time before the reset. Call `reset` before the module runs again.
+  /// Runs until the watchdog or the image is about to reset the module. The emulator must then send `event`.
+  /// It sends `WATCHDOG` only for a reset by the watchdog, and `SHUTDOWN` for a reset by the watchdog or by
+  /// the image. Throws std::runtime_error if this event does not occur within `time`. `now()` omits up to
+  /// 50 ms of the time before the reset. Call `reset` before the module runs again.
   void run_to_reset(const std::string& event, std::chrono::nanoseconds time);
 
   /// Waits up to 100 ms until the driver enable is off, then sends bytes in `mode`. Returns when the last
-  /// byte has ended. The module loses bytes that arrive while its driver enable is on. The emulated UART has
-  /// no parity and no framing errors. Therefore a byte in which a receiver in the module's mode finds such an
-  /// error arrives as a break, which is an error too. The rate of `mode` must not be 0.
+  /// byte has ended. The module loses bytes that arrive while its driver enable is on. The only line error
+  /// that the emulated UART supports is a break. Therefore a byte arrives as a break if a receiver in the
+  /// module's mode finds any line error in the byte. The rate of `mode` must not be 0.
   void send(const Bytes& bytes, hal::SerialMode mode);
-  /// Returns the bytes that the module has sent since the last call or since its last start, whichever is
-  /// later, as a receiver in `mode` samples them, including those with errors. Returns no bytes if the supply
-  /// is off. No time passes.
+  /// Returns the bytes that a receiver in `mode` has received from the module since the last call or since
+  /// the last start of the module, whichever is later. Includes bytes with line errors. Returns no bytes if
+  /// the supply is off. No time passes.
   Bytes hear(hal::SerialMode mode);
   /// Returns whether the module is powered and its driver enable was on at the last stop.
   [[nodiscard]] bool speaks() const { return powered() && clock_->driver_on(); }
 
-  /// Assumes that the LED is steadily on. If LampWatch finds later that the LED flashes, the call during
-  /// which it does so throws std::runtime_error.
+  /// Assumes that the LED is steadily on. If LampWatch detects during a later call that the LED flashes, that
+  /// call throws std::runtime_error.
   void assume_led_on() { lamp_.believe(now_); }
   /// Lets time pass until the assumption about the LED is verified. Call this function only if the extra time
   /// does not disturb later steps.
@@ -84,7 +83,8 @@ class TimedModule : public EmulatedBoard {
   void put(const Arrival& arrival);
   void hold_memory(bool hold);
 
-  std::optional<AlarmClock> clock_;  ///< no value before the first power-on, and from `kill` to the next one
+  /// No value before the first power-on, and between `kill` and the next power-on.
+  std::optional<AlarmClock> clock_;
   std::chrono::nanoseconds now_{0};
   LampWatch lamp_;
 };

@@ -10,7 +10,7 @@
 namespace ex9000::rig {
 
 /// The maximum time for which a function waits without receiving a byte. The limit only detects a hang: the
-/// emulator usually replies in milliseconds, or in seconds on a busy machine.
+/// emulator usually replies in milliseconds, or in seconds on a busy host.
 inline constexpr std::chrono::seconds kHang{60};
 
 /// A connection. The functions that send or receive throw std::runtime_error on errors.
@@ -22,7 +22,7 @@ class UnixSocket {
   UnixSocket& operator=(UnixSocket&&) = delete;
 
   [[nodiscard]] int fd() const { return fd_; }
-  /// Sends all bytes, in one piece if the kernel accepts them. Blocks until the kernel has accepted all.
+  /// Sends all bytes. Blocks until the kernel has accepted all of them.
   void send(const std::uint8_t* bytes, std::size_t size);
   void send(const std::string& text);
   /// Waits until bytes arrive and returns them. Returns no bytes if none arrive within `patience`.

@@ -19,7 +19,7 @@ class Board {
     this.flash = new FlashChip(this.time, new Uint8Array(FLASH_SIZE).fill(0xff));
     this.flash.content.set(image);
     this.eeprom = new Eeprom(this.time);
-    // The levels that the rest of the module drives, by pin. If it does not drive a pin, the level is null.
+    // The level to which parts outside the chip drive each pin; null if no such part drives the pin.
     this.outside = new Array(PINS).fill(null);
     this.outside[pins.data] = true; // pull-ups
     this.outside[pins.data + 1] = true;
@@ -71,7 +71,8 @@ class Board {
     this.chip?.resetProcessor();
   }
 
-  // Starts the image as after a copy to the drive RPI-RP2: the boot ROM has reset the chip with the watchdog.
+  // Starts the chip in the state that it has after an image has been copied to the drive RPI-RP2: the boot ROM has
+  // reset the chip with the watchdog.
   startAfterCopy() {
     this.startCold(CHIP_RESET.supply, REASON.timeout);
   }
@@ -128,7 +129,7 @@ class Board {
 
   // --- time ---
 
-  // Lets time pass until `until` (in nanoseconds), or until something sets `stopWanted`.
+  // Lets time pass up to the time `until` (in nanoseconds), or until `stopWanted` becomes true.
   runUntil(until) {
     const { time } = this;
     this.stopWanted = false;
@@ -193,7 +194,7 @@ class Board {
     }
   }
 
-  // Returns the level that the pin has when its pull has had time to change it.
+  // Returns the level that the pin finally reaches. A pull changes the level only after the time PULL.
   target(number) {
     return this.chip.level(number) ?? this.outside[number] ?? this.chip.pull(number) ?? false;
   }

@@ -1,6 +1,6 @@
-// One RP2040, from its start to the next reset or power-off: rp2040js with the models in this folder. Its first
-// instruction is that of the second stage, in the state in which the boot ROM calls the second stage. Source: RP2040
-// data sheet, 2.8.1 (boot sequence).
+// One RP2040, from its start to the next reset or power-off: rp2040js with the models in this folder. It starts
+// at the first instruction of the second stage, in the state in which the boot ROM calls the second stage. Source:
+// RP2040 data sheet, 2.8.1 (boot sequence).
 "use strict";
 const { RP2040, GPIOPinState } = require("rp2040js");
 const { Processor } = require("./core");
@@ -111,7 +111,8 @@ class Chip {
     if (tickFrequency === 0) {
       return "the tick of the watchdog does not run";
     }
-    return this.mcu.clocks.refCtrl === 2 && tickFrequency !== 1e6 ? `the tick has ${tickFrequency} Hz` : "";
+    return this.mcu.clocks.refCtrl === 2 && tickFrequency !== 1e6
+      ? `the tick has ${tickFrequency} Hz; expected 1000000 Hz` : "";
   }
 
   get i2cBitTime() {
@@ -173,7 +174,8 @@ class Chip {
     return pin.pullupEnabled;
   }
 
-  // Sets these blocks to their state after a reset, except I2C.
+  // Sets the system PLL, UART0, the timer, the pins and the pads to their states after a reset, if `blocks` contains
+  // them. Other blocks keep their states.
   resetBlocks(blocks) {
     const { board, mcu } = this;
     if (blocks & BLOCK.pllSys) {
@@ -199,7 +201,7 @@ class Chip {
     }
   }
 
-  // Counts how often the second core has left a reset by software.
+  // Counts how often software releases the second core from reset.
   countSecondCoreResets() {
     const { psm } = this;
     const write = psm.writeUint32.bind(psm);

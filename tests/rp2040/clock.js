@@ -1,5 +1,5 @@
 // Virtual time, in nanoseconds. It continues while the supply is off. The clock of a chip begins at 0 at power-on and
-// at each reset.
+// at each reset of the chip. A reset of only the processor does not change the clock.
 "use strict";
 
 class Alarm {

@@ -8,8 +8,8 @@ const HARD_FAULT = 3;
 // - When an interrupt line becomes asserted, its interrupt becomes pending. The interrupt stays pending until the
 //   processor enters the handler, or until software clears it. If the line is asserted when the handler returns, the
 //   interrupt becomes pending again.
-// - A pending interrupt that the NVIC enables wakes a sleeping processor, even if the interrupt became pending before
-//   the sleep, and even if PRIMASK is set. If PRIMASK is set, the processor does not enter the handler.
+// - A pending interrupt that is enabled in the NVIC wakes a sleeping processor, even if the interrupt became pending
+//   before the sleep, and even if PRIMASK is set. If PRIMASK is set, the processor does not enter the handler.
 // - A pending SysTick wakes the processor too.
 // - The instructions UDF and BKPT enter the HardFault handler. In that handler, they stop the processor (lock-up). If
 //   rp2040js detects another fault, for example an access to an invalid address, it reports an error instead.
@@ -44,7 +44,7 @@ class Processor {
   }
 
   // Sets the registers of the processor and of the NVIC to their values after a reset. Asserted interrupt lines stay
-  // asserted, so their interrupts become pending again.
+  // asserted, so their interrupts are pending after the reset.
   reset() {
     const { core } = this;
     Object.assign(core, { PM: false, IPSR: 0, SPSEL: 0, nPRIV: false, currentMode: 0, waiting: false, VTOR: 0,

@@ -88,8 +88,9 @@ class Eeprom {
     this.changed(0, SIZE);
   }
 
-  // Simulates a power failure. If bytes are being programmed, the first ones are new, and the next byte is corrupted.
-  // The number of new bytes is proportional to the time that has passed.
+  // Simulates a power failure. If bytes are being programmed, the first of these bytes get their new values, the next
+  // byte is corrupted, and the other bytes keep their old values. The number of bytes with new values is proportional
+  // to the time since the programming began.
   losePower() {
     if (this.programs !== null) {
       const part = Math.floor(((this.time.now - this.began) / PROGRAMMING) * this.programs.length);

@@ -17,8 +17,9 @@ const integer = (text) => {
 const hexOf = (bytes) => Buffer.from(bytes).toString("hex");
 const bytesOf = (text) => [...Buffer.from(text ?? "", "hex")];
 
-// Loads a file to `address` of a memory. If the image or a power failure changes these bytes, they are written to the
-// file. A command that changes these bytes does not write them to the file.
+// Copies the content of an open file to a memory, from `address` on. If the image or a power failure later changes
+// these bytes of the memory, the memory writes them to the file. The commands `memory` and `set-flash` do not write to
+// the file.
 function keep(memory, descriptor, address) {
   const { size } = fs.fstatSync(descriptor);
   fs.readSync(descriptor, memory.content, address, size, 0);
@@ -52,7 +53,8 @@ const COMMANDS = {
   reset: () => board.reset(),
   // reset-processor: resets only the processor, as a debug probe does
   "reset-processor": () => board.resetProcessor(),
-  // power-after-copy: switches the supply on; the image starts as after a copy to the drive RPI-RP2
+  // power-after-copy: switches the supply on. The chip starts in the state that it has after an image has been copied
+  // to the drive RPI-RP2.
   "power-after-copy": () => board.startAfterCopy(),
   echo(on) {
     board.echoes = on === "on";
@@ -67,7 +69,7 @@ const COMMANDS = {
       board.runUntil(Infinity);
     }
   },
-  // await-release NANOSECONDS: lets time pass until the module's driver is off, at most this time
+  // await-release NANOSECONDS: lets time pass until the module's driver is off, but at most NANOSECONDS
   "await-release"(nanoseconds) {
     const until = board.time.now + integer(nanoseconds);
     while (board.driverOn && board.time.now < until) {
@@ -76,8 +78,8 @@ const COMMANDS = {
   },
   // queue HEX: begins to send bytes from the master, and returns immediately
   queue: (hex) => board.send(bytesOf(hex)),
-  // receive COUNT PATIENCE: lets time pass until COUNT bytes have arrived that no earlier command has returned, or
-  // until no byte has arrived for PATIENCE nanoseconds. Returns these bytes, at most COUNT of them.
+  // receive COUNT PATIENCE: returns up to COUNT bytes that have arrived and that no earlier command has returned. First
+  // lets time pass until there are COUNT such bytes, or until no byte has arrived for PATIENCE nanoseconds.
   receive(count, patience) {
     let had = board.heard.length;
     let until = board.time.now + integer(patience);
@@ -96,7 +98,8 @@ const COMMANDS = {
   arrivals: () => board.takeHeard().map(({ byte, at }) => `${byte}@${Math.round(at)}`).join(" "),
   // pin NUMBER high|low|open: drives a pin from outside the chip, or stops driving it
   pin: (number, level) => board.setOutside(integer(number), level === "open" ? null : level === "high"),
-  // pulses NUMBER COUNT NANOSECONDS: inverts the level of a pin twice, COUNT times, with this time between the edges
+  // pulses NUMBER COUNT NANOSECONDS: makes COUNT pulses on a pin. Each pulse has two edges: the first edge inverts the
+  // level of the pin, and the second edge restores it. After each edge, NANOSECONDS pass.
   pulses(number, count, nanoseconds) {
     const pin = integer(number);
     const period = integer(nanoseconds);
@@ -108,7 +111,7 @@ const COMMANDS = {
       }
     }
   },
-  // train NUMBER COUNT NANOSECONDS: begins pulses like those of `pulses`, and returns immediately
+  // train NUMBER COUNT NANOSECONDS: returns immediately. The same pulses as those of `pulses` begin after NANOSECONDS.
   train(number, count, nanoseconds) {
     const pin = integer(number);
     let left = 2 * integer(count);
@@ -127,8 +130,8 @@ const COMMANDS = {
   // driven: returns the pins that the chip drives. Bit n is GPIOn.
   driven: () => board.levels.reduce(
     (mask, _, number) => mask + (board.chip.level(number) === null ? 0 : 2 ** number), 0),
-  // watch NUMBER NANOSECONDS: lets time pass until the level of a pin changes, at most this time. Returns 1 if the
-  // level has changed, otherwise 0.
+  // watch NUMBER NANOSECONDS: lets time pass until the level of a pin changes, but at most NANOSECONDS. Returns 1 if
+  // the level has changed, otherwise 0.
   watch(number, nanoseconds) {
     const pin = integer(number);
     const level = board.levels[pin];
@@ -153,10 +156,11 @@ const COMMANDS = {
   flash: (address, size) => hexOf(board.flash.content.subarray(integer(address), integer(address) + integer(size))),
   // set-flash ADDRESS HEX: changes bytes of the flash chip
   "set-flash": (address, hex) => board.flash.content.set(bytesOf(hex), integer(address)),
-  // keep-flash DESCRIPTOR ADDRESS: loads an open file to the flash chip from ADDRESS on. Later changes of these
-  // bytes are written to the file, see `keep`.
+  // keep-flash DESCRIPTOR ADDRESS: copies an open file to the flash chip, from ADDRESS on. The function `keep` states
+  // which later changes are written to the file.
   "keep-flash": (descriptor, address) => keep(board.flash, integer(descriptor), integer(address)),
-  // keep-eeprom DESCRIPTOR: loads an open file to the EEPROM. Later changes are written to the file, see `keep`.
+  // keep-eeprom DESCRIPTOR: copies an open file to the EEPROM. The function `keep` states which later changes are
+  // written to the file.
   "keep-eeprom": (descriptor) => keep(board.eeprom, integer(descriptor), 0),
   // flash-times ERASE PROGRAM: sets the durations of an erase and of a page program, in nanoseconds
   "flash-times"(erase, program) {
@@ -185,8 +189,8 @@ const COMMANDS = {
   },
   // note TEXT: writes a line to the file of the trace
   note: (...words) => board.trace.note(words.join(" ")),
-  // cycles: returns the cycles of the instructions that the chip has executed since power-on or its last reset. Returns
-  // 0 while the supply is off.
+  // cycles: returns the cycles of the instructions that the chip has executed since power-on or its last reset. The
+  // command `reset-processor` does not restart this count. Returns 0 while the supply is off.
   cycles: () => board.chip?.mcu.core.cycles ?? 0,
 };
 

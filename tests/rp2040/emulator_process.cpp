@@ -86,7 +86,7 @@ std::string EmulatorProcess::execute(const std::string& command) {
 }
 
 std::string EmulatorProcess::read_line() {
-  constexpr int kHangMilliseconds = 60'000;  // only detects a program that hangs
+  constexpr int kHangMilliseconds = 60'000;  // this limit only detects an emulator that hangs
   std::size_t end = unread_.find('\n');
   while (end == std::string::npos) {
     std::array<char, 4096> buffer{};

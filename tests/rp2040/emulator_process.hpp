@@ -13,9 +13,9 @@ class EmulatorProcess {
   EmulatorProcess(const EmulatorProcess&) = delete;
   EmulatorProcess& operator=(const EmulatorProcess&) = delete;
 
-  /// Executes a command, see emulator.js, and returns its result. Throws std::runtime_error with the reason
-  /// if the command fails, for example because the image does something that is an error on a real chip, or
-  /// if no reply arrives.
+  /// Executes a command of emulator.js and returns its result. Throws std::runtime_error with the reason if
+  /// the command fails, or if no reply arrives. For example, a command fails if the image does something
+  /// that is an error on a real chip.
   std::string execute(const std::string& command);
 
  private:

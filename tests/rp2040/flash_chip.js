@@ -38,8 +38,8 @@ class FlashChip {
     this.bytes = [];
   }
 
-  // Simulates a reset of the microcontroller, which releases chip select. Only a complete erase or program command
-  // takes effect.
+  // Simulates a reset of the microcontroller, which releases chip select. The command that the chip is receiving takes
+  // effect only if it is a complete erase or program command.
   interrupt() {
     const [command] = this.bytes;
     if (this.selected && (this.bytes.length > 4 || (command === 0x20 && this.bytes.length === 4))) {
@@ -57,7 +57,8 @@ class FlashChip {
     this.bytes.push(byte);
     const [command] = this.bytes;
     if (this.busy && ![0x05, 0x75, 0x7a].includes(command)) {
-      throw new Error(`flash: command ${command.toString(16)} while it is busy`);
+      throw new Error(`flash: command 0x${command.toString(16)} arrives while the flash is busy; `
+        + "expected 0x5, 0x75 or 0x7a");
     }
     if (command === 0x05) {
       return (this.busy ? 1 : 0) | (this.writeEnabled ? 2 : 0);
@@ -97,7 +98,7 @@ class FlashChip {
       this.resume();
       break;
     default:
-      throw new Error(`flash: command ${command.toString(16)} is not in this model`);
+      throw new Error(`flash: command 0x${command.toString(16)} is not in this model`);
     }
   }
 
@@ -164,7 +165,7 @@ class FlashChip {
   resume() {
     if (this.suspended !== null) {
       if (this.busy) {
-        throw new Error("flash: resume while it is busy");
+        throw new Error("flash: resume while the flash is busy");
       }
       this.run(this.suspended);
       this.suspended = null;
@@ -173,7 +174,7 @@ class FlashChip {
   }
 
   // Simulates a power failure. On a real chip, the bytes of an unfinished operation are then undefined. In this model,
-  // every second of these bytes has its new value.
+  // the bytes 0, 2, 4 and so on of the operation get their new values, and its other bytes keep their old values.
   losePower() {
     for (const unfinished of [this.operation, this.suspended].filter((each) => each !== null)) {
       const { kind, address, bytes, sector } = unfinished;

@@ -65,8 +65,8 @@ class Sender {
 
 class Receiver {
   // Calls `receive({ byte, good, rightParity, isBreak })` in the middle of the first stop bit of each character.
-  // `good` is true if this stop bit is high. `rightParity` is also true if the format has no parity bit. `isBreak` is
-  // true if all bits of the character are low, and this stop bit is low too.
+  // `good` is true if this stop bit is high. `rightParity` is true if the parity bit is correct, or if the format has
+  // no parity bit. `isBreak` is true if all bits from the start bit to this stop bit are low.
   constructor(clock, receive) {
     this.receive = receive;
     this.bitTime = 0; // 0: off

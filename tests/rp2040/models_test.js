@@ -229,7 +229,7 @@ test("the flash takes time to erase, suspend and write, and rejects commands tha
   send(0x06);
   send(0x20, 0x1f, 0, 0);
   assert.equal(send(0x05, 0)[1] & 1, 1);
-  assert.throws(() => send(0x03, 0, 0, 0, 0), /while it is busy/);
+  assert.throws(() => send(0x03, 0, 0, 0, 0), /while the flash is busy/);
   flash.selected = false;
   time.advanceTo(20e6);
   send(0x75);
@@ -246,7 +246,7 @@ test("the flash takes time to erase, suspend and write, and rejects commands tha
   assert.throws(() => send(0x20, 0, 0, 0), /erase while another one is suspended/);
   flash.content[0x1e0000] = 0xff;
   send(0x02, 0x1e, 0, 0, 0x5a);
-  assert.throws(() => send(0x7a), /resume while it is busy/);
+  assert.throws(() => send(0x7a), /resume while the flash is busy/);
   time.advanceTo(time.now + 399e3);
   assert.equal(send(0x05, 0)[1] & 1, 1, "writing a page takes 400 us");
   time.advanceTo(time.now + 1e3);

@@ -46,8 +46,9 @@ unsigned pin_of(const Groups& groups, unsigned channel) {
   throw std::out_of_range("channel: the board has no pin for it; expected a channel of kInputs or kOutputs");
 }
 
-/// Returns a sector of a page store, with `entries` entries, which contain the pages of `memory` in turn.
-/// `sequence` is the sequence number of the first entry.
+/// Returns a sector of a page store with `entries` entries. The first entry contains page 0 of `memory`, and
+/// each further entry contains the next page. After the last page, the next page is page 0. `sequence` is the
+/// sequence number of the first entry.
 Bytes sector_with(const Bytes& memory, std::uint32_t sequence, std::size_t entries) {
   using namespace hal::flash;
   Bytes sector(hal::kFlashSector, 0xFF);

@@ -28,16 +28,17 @@ class PicoBench {
   /// erased.
   void begin_anew(const Model& model, const Settings* settings);
   /// Provides a new board in the same way, but with `memory` as the content of its memory. `memory` has at
-  /// least 384 bytes, or is empty. If it is empty, the memory holds no settings.
+  /// least 384 bytes, or is empty. If `memory` is empty, the board has no stored settings.
   void begin_anew(const Model& model, const play::Bytes& memory);
-  /// Removes the marks of erased sectors from all sectors except the first, which contains the settings. The
-  /// store in the flash then erases the other sectors, as on the first start of a module. First call
-  /// `begin_anew` with settings.
+  /// Removes the marks of erased sectors from all sectors except the first, which contains the settings.
+  /// After the next start, the store in the flash erases these sectors, as after the first start of a module.
+  /// Call `begin_anew` with settings before you call this function.
   void forget_erased_sectors();
   /// Fills the log of the page store: all sectors are full of entries with these settings. Call `begin_anew`
   /// first.
   void fill_log(const Settings& settings);
-  /// Provides a new board with the content of its flash from a file, and an erased EEPROM. Its supply is off.
+  /// Provides a new board. Its flash begins with the content of `file`, its EEPROM is erased, and its supply
+  /// is off.
   void begin_with(const std::string& file);
 
   void power(bool on);
@@ -54,8 +55,8 @@ class PicoBench {
   void set_format(LineFormat format);
   /// Sends bytes without a gap. Returns when the last stop bit has ended.
   void send(const play::Bytes& bytes);
-  /// Lets time pass until `count` bytes have arrived that no earlier call has returned, or until no byte has
-  /// arrived for `patience`. Returns these bytes, at most `count` of them.
+  /// Returns up to `count` bytes that have arrived and that no earlier call has returned. First lets time
+  /// pass until there are `count` such bytes, or until no byte has arrived for `patience`.
   play::Bytes receive(std::size_t count, std::chrono::nanoseconds patience);
   /// Returns the bytes that have arrived and that no earlier call has returned.
   play::Bytes heard();
@@ -63,14 +64,15 @@ class PicoBench {
   void set_init(bool asserted);
   /// Drives an input. Until the first call for a channel of a new board, the input is open.
   void set_input(unsigned channel, bool level);
-  /// Inverts an input and restores it, `count` times, with `between` from edge to edge.
+  /// Makes `count` pulses on an input. Each pulse has two edges: the first inverts the level, and the
+  /// second restores it. After each edge, the time `between` passes.
   void pulse_input(unsigned channel, std::uint32_t count, std::chrono::nanoseconds between);
   /// Returns the energised channels: bit n is channel n. Returns 0 while the supply is off.
   std::uint16_t outputs();
   bool led();
   /// Returns the levels of all pins. Bit n is GPIOn.
   std::uint32_t levels();
-  /// Lets time pass until the LED changes, at most `patience`. Returns whether it has changed.
+  /// Lets time pass until the LED changes, but at most `patience`. Returns whether it has changed.
   bool led_changes(std::chrono::nanoseconds patience);
 
   /// Returns the event counts since `begin_anew` or `begin_with`, and other values, by name; see the command

@@ -28,8 +28,8 @@ class PicoTarget final : public play::Target {
   std::uint16_t outputs() override;
   play::step::Led::Shows led(play::step::Led::Shows expected) override;
   /// Throws std::runtime_error if a character began while the driver was off, if the driver was switched off
-  /// too early or too late, if the chip and another part drove a pin, other than the pins of I2C, to
-  /// different levels, or if the watchdog has reset the chip.
+  /// too early or too late, if the chip and another part drove a pin to different levels, or if the watchdog
+  /// has reset the chip. Ignores different levels on the pins of I2C.
   void end() override;
 
   /// Returns the total virtual time of the transcripts for which `end` has been called.

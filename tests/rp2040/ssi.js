@@ -116,7 +116,7 @@ class Ssi extends BasePeripheral {
       break;
     case 0x14:
       if (value < 2 || value % 2 !== 0) {
-        this.error(`the divider is ${value}; expected an even number from 2 on`);
+        this.error(`the divider is ${value}; expected an even number of at least 2`);
       }
       this.divider = value;
       break;
@@ -139,8 +139,8 @@ class Ssi extends BasePeripheral {
       this.pins.requestSelect(false);
     } else if (![BOTH_WAYS, EEPROM_READ].includes(this.mode) || ![8, 32].includes(this.frameBits)
       || (this.control & ~0x1f0300) !== 0) {
-      this.error(`control 0x${this.control.toString(16)} is not in this model; expected 8 or 32 bits, `
-        + "in both directions or as EEPROM read");
+      this.error(`control 0x${this.control.toString(16)} is not in this model; expected frames of `
+        + "8 or 32 bits, and the transfer mode 'both directions' or 'EEPROM read'");
     }
   }
 

@@ -49,7 +49,8 @@ class Resets extends BasePeripheral {
   }
 }
 
-// A block that rejects each access while it cannot be used. `problem()` returns the reason, or an empty text.
+// A block that rejects each access while it cannot be used. `problem()` returns the reason why the block cannot be
+// used, or an empty text if it can be used.
 class Guarded {
   constructor(inner, name, problem) {
     this.inner = inner;

@@ -1,5 +1,6 @@
-// Writes what a chip executes to a file: lines for each interrupt, for each access to the data register of the UART
-// and, if requested, for each instruction, in the form that tests/bench/instruction_counts reads.
+// Writes a trace of a chip to a file, in the form that tests/bench/instruction_counts reads. The trace contains a line
+// for each entry to an interrupt handler, for each return from a handler, and for each access to the data register of
+// the UART. If requested, it also contains a line for each instruction.
 "use strict";
 const fs = require("fs");
 
@@ -11,8 +12,8 @@ const hexOf = (word) => (word >>> 0).toString(16).padStart(8, "0");
 class Trace {
   constructor(descriptor) {
     this.descriptor = descriptor;
-    this.instructions = false; // whether instructions are written too
-    this.executing = null; // address of the instruction that is executed and not yet written, or null
+    this.instructions = false; // whether the trace also contains each instruction
+    this.executing = null; // address of the instruction that `executed` processes next, or null
     this.lines = [];
   }
 
@@ -31,7 +32,8 @@ class Trace {
     wrap(core, "exceptionEntry", (enter, exception) => {
       enter(exception);
       this.note(`nvic_acknowledge_irq IRQ: ${exception} now active`);
-      this.executing = core.PC; // rp2040js enters an interrupt before it executes an instruction
+      // `execute` first enters a pending interrupt, and then executes the first instruction of the handler.
+      this.executing = core.PC;
     });
     wrap(core, "exceptionReturn", (leave, code) => {
       const exception = core.IPSR;

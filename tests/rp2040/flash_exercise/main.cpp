@@ -1,5 +1,5 @@
-// A program for the emulator: it erases, programs and reads the flash in an endless loop, while the
-// interrupt handler of the UART receives bytes. The program runs from RAM, like an image.
+// A program that runs in the emulator. It erases the flash, writes to it and reads it in an endless loop,
+// while the interrupt handler of the UART receives bytes. The program runs from RAM, as the images do.
 #include <array>
 #include <cstdint>
 
@@ -31,12 +31,13 @@ using LineEndTimer = OneShotTimer<1>;
 using Line = hal::pl011::Uart<0x4003'4000, kHertz, DriverEnablePin<kDriverEnable>, LineEndTimer>;
 using Watchdog = HardwareWatchdog<kClock.crystal / 1'000'000>;
 
-/// tests/boards/pico_flash_test.cpp reads these words. Images have no variables in this bank of RAM.
+/// tests/boards/pico_flash_test.cpp reads these words. They are in a bank of RAM that contains no variables
+/// of an image.
 struct Results {
-  std::uint32_t received;    ///< bytes
-  std::uint32_t unexpected;  ///< bytes with an error, or out of sequence
-  std::uint32_t rounds;      ///< a round erases the first sector and programs all its records
-  std::uint32_t wrong;       ///< bytes that differ from the expected ones when they are read
+  std::uint32_t received;    ///< number of bytes
+  std::uint32_t unexpected;  ///< number of bytes with an error, or out of sequence
+  std::uint32_t rounds;      ///< number of rounds; a round erases the first sector and writes all its records
+  std::uint32_t wrong;       ///< number of bytes from the flash that differ from the expected bytes
   std::uint32_t erasing;     ///< 1 during an erase, otherwise 0
   std::uint32_t reason;      ///< ResetReason
 };

@@ -82,7 +82,7 @@ TEST(Arguments, HelpContainsFaultsAndControlCommands) {
   EXPECT_NE(text.find(control_commands()), std::string::npos);
 }
 
-TEST(Arguments, ModelsPrintsOneLineForEachModelAndMentionsModbusRtu) {
+TEST(Arguments, TheListOfModelsHasOneLineForEachModelAndMentionsModbusRtu) {
   const std::string text = printed({"--models"});
   for (const Model& model : kModels) {
     EXPECT_NE(("\n" + text).find("\n" + std::string(model.designation) + " "), std::string::npos)
@@ -142,9 +142,9 @@ TEST(Arguments, DescribeHasItsOwnHelp) {
   EXPECT_EQ(text.find("--pty"), std::string::npos);
 }
 
-TEST(Arguments, VersionIsThatOfTheFirmware) { EXPECT_EQ(printed({"--version"}), "ex9000-sim D01.00\n"); }
+TEST(Arguments, PrintsTheVersionOfTheFirmware) { EXPECT_EQ(printed({"--version"}), "ex9000-sim D01.00\n"); }
 
-TEST(Arguments, ModelsExampleAndSchemaRejectOtherArgumentsButVersionDoesNot) {
+TEST(Arguments, TheOptionsModelsExampleAndSchemaRejectOtherArgumentsButVersionDoesNot) {
   EXPECT_EQ(printed({"EX9042D", "--version"}), printed({"--version"}));
   expect_error({"--models", "EX9042D"}, "--models: only prints text", "leave out EX9042D");
   expect_error({"--example", "--log"}, "--example: only prints text", "leave out --log");

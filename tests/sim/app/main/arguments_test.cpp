@@ -74,7 +74,7 @@ TEST(Arguments, TheLogFormatIsTextOrJson) {
   expect_error({"EX9042D", "--log="}, "--log", "--help");
 }
 
-TEST(Arguments, ThePanelTakesAnOptionalPortAndExcludesSpeedMax) {
+TEST(Arguments, PanelTakesAnOptionalPortAndCannotBeCombinedWithSpeedMax) {
   EXPECT_FALSE(all_accepted({"EX9042D"}).panel);
   for (const std::vector<const char*>& words : {std::vector<const char*>{"EX9042D", "--panel"},
                                                 {"--panel", "EX9042D"},
@@ -123,7 +123,7 @@ TEST(Arguments, CaptureTakesAPath) {
   EXPECT_EQ(all_accepted({"EX9042D", "--capture", "line.pcapng"}).capture, "line.pcapng");
 }
 
-TEST(Arguments, ThePseudoTerminalsLinkCanBeChosen) {
+TEST(Arguments, TheLinkToThePseudoTerminalCanBeChosen) {
   EXPECT_EQ(accepted({"EX9042D", "--pty", "line.tty"}).pty, "line.tty");
   EXPECT_EQ(accepted({"EX9042D", "--pty=line.tty"}).pty, "line.tty");
 }
@@ -168,7 +168,7 @@ TEST(Arguments, ModbusTcpTakesAnAddressAndReplacesTheDefaultPseudoTerminal) {
                "max cannot be combined with --modbus-tcp, because masters follow the wall clock");
 }
 
-TEST(Arguments, LineIsPacedOrInstantAndStrictGapsRequirePaced) {
+TEST(Arguments, TheLineIsPacedOrInstantAndStrictGapsRequireAPacedLine) {
   EXPECT_FALSE(accepted({"EX9042D", "--line", "paced"}).instant);
   EXPECT_TRUE(accepted({"EX9042D", "--line", "instant"}).instant);
   expect_error({"EX9042D", "--line", "fast"}, "--line: 'fast'", "instant or paced");
@@ -232,7 +232,7 @@ TEST(Arguments, TheMessageAboutAWrongRateNamesAValidRate) {
   }
 }
 
-TEST(Arguments, TheFormatOfTheLineIsOneOfFour) {
+TEST(Arguments, TheFormatOfTheLineIsOneOfFourFormats) {
   EXPECT_EQ(accepted({"EX9042D", "--format", "8N2"}).format, LineFormat::k8N2);
   EXPECT_EQ(accepted({"EX9042D", "--format", "8O1"}).format, LineFormat::k8O1);
   expect_error({"EX9042D", "--format", "8M1"}, "--format", "8N1, 8N2, 8E1 or 8O1");
@@ -325,7 +325,7 @@ TEST(Arguments, ASeedIsAWholeNumber) {
   }
 }
 
-TEST(Arguments, ThreadsAreANumberFrom1To64) {
+TEST(Arguments, TheNumberOfThreadsIsFrom1To64) {
   EXPECT_EQ(all_accepted({"EX9042D"}).threads, std::nullopt);
   EXPECT_EQ(all_accepted({"EX9042D", "--threads", "64"}).threads, 64U);
   for (const char* threads : {"0", "65", "two", ""}) {
@@ -334,7 +334,7 @@ TEST(Arguments, ThreadsAreANumberFrom1To64) {
   }
 }
 
-TEST(Arguments, SpeedIsAFactorWithinLimitsMaxOrStep) {
+TEST(Arguments, SpeedIsMaxOrStepOrAFactorWithinLimits) {
   EXPECT_TRUE(all_accepted({"EX9042D"}).speed.paced());
   EXPECT_EQ(all_accepted({"EX9042D"}).speed.factor, 1.0);
   for (const auto& [text, speed] :
@@ -352,7 +352,7 @@ TEST(Arguments, SpeedIsAFactorWithinLimitsMaxOrStep) {
   }
 }
 
-TEST(Arguments, SteppedTimeRequiresTheControlSocketAndExcludesPanelAndSerial) {
+TEST(Arguments, SteppedTimeRequiresTheControlSocketAndCannotBeCombinedWithPanelOrSerial) {
   const struct Setup setup = all_accepted({"EX9042D", "--speed", "step", "--control", "c"});
   EXPECT_TRUE(setup.speed.stepped());
   EXPECT_EQ(setup.lines[0].pty, "ex9000.tty");

@@ -61,8 +61,8 @@ class Stores {
     std::generate(name.begin(), name.end(), [this] { return static_cast<char>(0x20U + below(0x5F)); });
     return {"", "~01O" + name, "$01M", "!01" + name};
   }
-  /// Returns a store of the host watchdog's settings. An enabled watchdog has a timeout of 20 s or more, so
-  /// that it does not expire during these tests.
+  /// Returns a command that stores the host watchdog's settings. An enabled watchdog has a timeout of 20 s or
+  /// more, so that it does not expire during these tests.
   Store host_watchdog() {
     const bool on = below(2) == 0;
     const std::string value = (on ? "1" : "0") + reference::hex(on ? 200 + below(56) : 1 + below(255), 2);
@@ -83,8 +83,9 @@ class PowerFailureChecker {
 
   [[nodiscard]] std::string module() const { return "EX9042D" + image_in(directory_); }
 
-  /// Expects that the last command that stores has taken effect either completely or not at all, and
-  /// completely if the test has received the reply. Call this function after each start of the module.
+  /// Expects that the command that `begin_cut` sent last has taken effect either completely or not at all. If
+  /// the test has received the reply to this command, the command must have taken effect completely. Call
+  /// this function after each start of the module.
   void check(Simulator& simulator) {
     Answers answers;
     for (const auto& [question, answer] : before_) {
@@ -101,8 +102,8 @@ class PowerFailureChecker {
     acknowledged_ = true;
   }
 
-  /// Sends up to two stores and waits for their replies. Then sends another store and waits for its reply,
-  /// but only for a random time that may be too short.
+  /// Sends up to two commands that store, and waits for the reply to each. Then sends another command that
+  /// stores. Waits for the reply to this command for a random time, which may be too short.
   void begin_cut(Simulator& simulator) {
     for (unsigned i = stores_.below(3); i > 0; --i) {
       const Store store = begin(simulator);
@@ -119,7 +120,7 @@ class PowerFailureChecker {
   bool toss() { return stores_.below(2) == 0; }
 
   void report(const char* what) const {
-    std::printf("%s: %d acknowledged, %d done before the reply, %d not done\n", what, acknowledged_count_,
+    std::printf("%s: %d acknowledged, %d done but not acknowledged, %d not done\n", what, acknowledged_count_,
                 done_count_, not_done_count_);
   }
 
@@ -148,7 +149,7 @@ class PowerFailureChecker {
   int not_done_count_ = 0;
 };
 
-TEST(Persistence, AKillAtAnyTimeLeavesStoresAtomicAndKeepsAcknowledgedOnes) {
+TEST(Persistence, AKillNeverLeavesACommandHalfStoredOrLosesAnAcknowledgedCommand) {
   PowerFailureChecker checker(1);
   for (int round = 0; round < 60 && !HasFailure(); ++round) {
     Simulator simulator({checker.module()});
@@ -161,7 +162,7 @@ TEST(Persistence, AKillAtAnyTimeLeavesStoresAtomicAndKeepsAcknowledgedOnes) {
   checker.report("SIGKILL");
 }
 
-TEST(Persistence, APowerCutAtAnyTimeLeavesStoresAtomicAndKeepsAcknowledgedOnes) {
+TEST(Persistence, APowerCutNeverLeavesACommandHalfStoredOrLosesAnAcknowledgedCommand) {
   PowerFailureChecker checker(2);
   Simulator simulator({checker.module()});
   for (int round = 0; round < 40 && !HasFailure(); ++round) {
@@ -173,7 +174,7 @@ TEST(Persistence, APowerCutAtAnyTimeLeavesStoresAtomicAndKeepsAcknowledgedOnes) 
   checker.report("power off");
 }
 
-TEST(Persistence, APowerCutFollowedByAKillLeavesStoresAtomic) {
+TEST(Persistence, APowerCutBeforeAKillNeverLeavesACommandHalfStored) {
   PowerFailureChecker checker(3);
   for (int round = 0; round < 15 && !HasFailure(); ++round) {
     Simulator simulator({checker.module()});

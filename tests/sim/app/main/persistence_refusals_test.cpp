@@ -1,5 +1,5 @@
-// Tests which files the program rejects as the EEPROM of a module, and that it creates no such file if it
-// rejects an argument.
+// Tests which files the program rejects as the EEPROM of a module. If the program rejects an argument, it
+// must not create the file of an EEPROM.
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
@@ -18,8 +18,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Expects that the program ends with status 2, prints one line on standard error, which names `file`, and
-/// nothing on standard output, and changes nothing in `directory`.
+/// Expects that the program ends with status 2, prints nothing on standard output, and changes nothing in
+/// `directory`. The program must print one line on standard error, and this line must name `file`.
 void expect_refused(const Arguments& modules, const std::string& file, const Directory& directory) {
   const auto before = directory.contents();
   Arguments command{"timeout", "60", simulator_path(), "--control", "control"};
@@ -65,7 +65,7 @@ TEST(BadFile, DirectoriesPipesAndDevicesAreRefusedWithoutBlocking) {
   }
 }
 
-TEST(BadFile, AFileThatCannotBeCreatedIsRefusedAndNoOtherIsCreated) {
+TEST(BadFile, AFileThatCannotBeCreatedIsRefusedAndNoOtherFileIsCreated) {
   const Directory directory;
   fs::create_symlink("missing/image", directory / "dangling");
   for (const char* file : {"missing/image", "dangling", "/proc/image"}) {

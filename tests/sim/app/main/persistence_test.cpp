@@ -42,7 +42,7 @@ TEST(Persistence, AMissingFileIsCreatedFromThePresetsAndKeptAfterTheProgramEnds)
 }
 
 // Each image contains what this firmware or an earlier version of it has stored.
-TEST(Persistence, AFileOfThisOrEarlierFirmwareGivesItsAddressRateAndProtocolAndIsNotWritten) {
+TEST(Persistence, AModuleUsesTheSettingsInAFileOfThisOrEarlierFirmwareAndDoesNotWriteTheFile) {
   for (const StoredBytes& stored : all_stored_bytes()) {
     const Directory directory;
     std::string image(kImageSize, '\xFF');

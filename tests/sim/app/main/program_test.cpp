@@ -55,7 +55,7 @@ TEST(Program, EndsCleanlyAfterTheReaderOfItsLogClosesThePipe) {
   EXPECT_FALSE(fs::is_symlink(directory.path() + "/ex9000.tty"));
 }
 
-TEST(Program, ASignalIgnoredAtStartStaysIgnored) {
+TEST(Program, ASignalThatIsIgnoredAtStartStaysIgnored) {
   const Directory directory;
   ChildProcess process({"sh", "-c", "trap '' HUP; exec " + simulator_path() + " EX9042D"}, directory.path());
   ASSERT_TRUE(process.wait_for("press Ctrl-C to end"));
@@ -199,7 +199,7 @@ TEST(Program, AFileSizeLimitForStandardOutputIsReported) {
   EXPECT_EQ(finished.error, "ex9000-sim: standard output: File too large\n");
 }
 
-TEST(Program, ALinkInUseByAnotherUsersSimulatorIsNotTakenOver) {
+TEST(Program, ALinkThatTheSimulatorOfAnotherUserUsesIsNotTakenOver) {
   if (geteuid() != 0) {
     GTEST_SKIP() << "only root can start a simulator as another user";
   }
@@ -285,9 +285,9 @@ TEST(Program, WrongArgumentsGiveAOneLineErrorAndStatus2AndCreateNoFiles) {
 }
 
 TEST(Program, WaitingForAnEventInTheFarFutureUsesLittleProcessorTime) {
-  // At the lowest speed, a year takes a thousand years. A signed 64-bit count of nanoseconds covers only 292
-  // years. In the first run, the fault "gone" switches off the module's power, so the module causes no
-  // earlier event.
+  // At the lowest speed, a year of line time takes 1000 years on the wall clock. A signed 64-bit count of
+  // nanoseconds covers only 292 years. In the first run, the fault "gone" switches off the module's power, so
+  // the module causes no earlier event.
   for (const std::vector<std::string>& far :
        {std::vector<std::string>{"--fault", "gone", "--fault", "gone at 8760h"}, {"--for", "8760h"}}) {
     std::vector<std::string> arguments{"EX9042D", "--speed", "0.001"};
@@ -326,7 +326,7 @@ TEST(Program, RunDurationIsMeasuredInLineTime) {
   // Load on the machine can extend a run, but nothing can shorten it.
   EXPECT_GE(seconds_of_a_run("0.01", "5ms"), 0.5);
   EXPECT_GE(seconds_of_a_run("1", "400ms"), 0.4);
-  // At 1000 times the speed, 30 minutes of line time take 1.8 s on the wall clock.
+  // With --speed 1000, 30 minutes of line time take 1.8 s on the wall clock.
   EXPECT_GE(seconds_of_a_run("1000", "30min"), 1.8);
 }
 
@@ -341,7 +341,7 @@ TEST(Program, DescribesAModelInEveryFormat) {
   }
 }
 
-TEST(Program, AFileAtTheLinksPathIsNotReplaced) {
+TEST(Program, AFileAtThePathOfTheLinkIsNotReplaced) {
   Directory directory;
   std::ofstream(directory.path() + "/ex9000.tty") << "precious";
   const Finished finished = simulator({"EX9042D"}, directory.path());
@@ -365,7 +365,7 @@ TEST(Program, ALinkInUseIsRefusedAndAStaleOneIsTakenOver) {
   EXPECT_FALSE(fs::is_symlink(process.tty()));
 }
 
-TEST(Program, AStaleLinkToAnotherSimulatorsTerminalIsTakenOver) {
+TEST(Program, AStaleLinkToTheTerminalOfAnotherSimulatorIsTakenOver) {
   SimulatorProcess other({"EX9042D-M"});
   const Directory directory;
   const std::string link = directory.path() + "/left.tty";

@@ -39,7 +39,7 @@ struct Pipe {
   FileDescriptor writer;
 };
 
-TEST(StandardStream, WritesATextThatIsLongerThanOnePieceCompletely) {
+TEST(StandardStream, WritesAllOfATextThatIsLongerThanOnePiece) {
   const Pipe pipe;
   const std::string text = std::string(PIPE_BUF, 'a') + std::string(PIPE_BUF, 'b') + "c";
   EXPECT_TRUE(StandardStream(pipe.writer.get(), "the pipe").write(text));
@@ -68,7 +68,7 @@ TEST(StandardStream, DiscardsAllTextsAfterTheReaderHasClosedThePipe) {
   EXPECT_FALSE(stream.write("second"));
 }
 
-TEST(StandardStream, ReportsAnotherErrorOnce) {
+TEST(StandardStream, ReportsAnErrorOtherThanAClosedPipeOnlyOnce) {
   const FileDescriptor only_to_read(open("/dev/null", O_RDONLY | O_CLOEXEC));
   StandardStream stream(only_to_read.get(), "the stream");
   try {

@@ -14,11 +14,13 @@ import yaml
 from line import Line
 from program import describe, models_with_modbus
 
-# Map the terms of Node-RED and wb-mqtt-serial to the terms of Line: coil, discrete_input, holding and input.
+# These dictionaries map the terms of Node-RED and wb-mqtt-serial to the terms of Line: coil, discrete_input, holding
+# and input.
 NODE_RED = {"Coil": "coil", "Input": "discrete_input", "HoldingRegister": "holding", "InputRegister": "input"}
 WIREN_BOARD = {"coil": "coil", "discrete": "discrete_input", "holding": "holding", "input": "input"}
 
-# The names of Home Assistant and Node-RED for the frames that each option of the program selects.
+# Each of these options of the program selects a type of frame. The dictionaries map the options to the names that Home
+# Assistant and Node-RED use for these types.
 HOME_ASSISTANT = {"--tcp": "rtuovertcp", "--modbus-tcp": "tcp"}
 NODE_RED_CLIENTS = {"--tcp": "TELNET", "--modbus-tcp": "DEFAULT"}
 
@@ -36,7 +38,7 @@ CHANNELS = {
 
 
 def coils_to_write(model):
-    """Returns the address and the value of each coil write that each of these exports must offer (wire.md section 7).
+    """Returns the address and the value of each coil write that all three exports must contain (wire.md section 7).
 
     These writes switch the outputs, and clear latches, counters and the timeout status.
     """

@@ -6,8 +6,8 @@
 namespace ex9000::sim {
 namespace {
 
-/// wire.md section 1: the data byte First of a model with more than eight outputs contains the outputs from
-/// DO8 on. First is byte 0.
+/// wire.md section 1: if a model has more than eight outputs, its data byte First contains DO8 and the higher
+/// outputs. First is byte 0.
 TEST(DataByte, ASingleChannelIsNotShownAsARange) {
   Model model = *find_model("EX9042D-M");
   model.outputs = 9;

@@ -46,7 +46,8 @@ std::vector<Cells> rows_of(const std::string& text) {
 
 std::vector<Cells> table_of(const char* designation) { return rows_of(csv_of({find_model(designation)})); }
 
-/// Returns the row with this table and this address or command; empty if there is none.
+/// Returns the first row with this table, and with `which` as its address or command. Returns an empty row if
+/// there is none.
 Cells row(const char* designation, const std::string& table, const std::string& which) {
   for (const Cells& cells : table_of(designation)) {
     if (cells[1] == table && (cells[2] == which || cells[6] == which)) {
@@ -66,11 +67,12 @@ TEST(DescribeCsv, HasAHeaderAndAllCellsInEveryRow) {
 }
 
 TEST(DescribeCsv, HasOneRowPerCommandCoilAndRegister) {
-  // 25 commands, 3 x 13 coils for outputs, 3 general coils, 5 holding registers; host OK and the extensions
-  // (2 settings, 13 timed outputs, 15 others) in two tables
+  // 25 commands, 3 x 13 coils for outputs, 3 general coils and 5 holding registers. The tables of the holding
+  // registers and of the input registers both contain the host OK and the extensions: 2 settings, 13 timed
+  // outputs and 15 others.
   EXPECT_EQ(table_of("EX9042D-M").size(), 1U + 25 + 39 + 3 + 5 + 2 * (1 + 2 + 13 + 15));
-  // 27 commands, because the model has inputs and outputs; no coils or registers, because it does not
-  // support Modbus
+  // 27 commands, because the model has inputs and outputs. The table contains no coils or registers, because
+  // the model does not support Modbus.
   EXPECT_EQ(table_of("EX9055D").size(), 1U + 27);
 }
 

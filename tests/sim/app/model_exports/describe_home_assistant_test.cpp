@@ -81,7 +81,7 @@ TEST(DescribeHomeAssistant, InputsAndLatchesAreBinarySensors) {
                        "      input_type: coil\n"));
 }
 
-TEST(DescribeHomeAssistant, CountersAreTotalIncreasingSensors) {
+TEST(DescribeHomeAssistant, CountersAreSensorsWithTheStateClassTotalIncreasing) {
   EXPECT_TRUE(has_once(configuration_of("EX9052D-M"),
                        "    - name: EX9052D-M 01 Counter 7\n"
                        "      unique_id: ex9052d_m_01_counters_7\n"
@@ -126,8 +126,8 @@ TEST(DescribeHomeAssistant, ClearCommandsAreListedAsActions) {
   EXPECT_EQ(times(configuration_of("EX9042D-M"), "Clear "), 1);
 }
 
-// wire.md section 7, Map: coils 0x0104 and 0x010D; firmware/extensions.md: register 0x0251.
-TEST(DescribeHomeAssistant, ExplainsHowPollsRestartTheHostWatchdogAndWhatClearsATimeout) {
+// Coils 0x0104 and 0x010D are in wire.md section 7, Map. Register 0x0251 is in firmware/extensions.md.
+TEST(DescribeHomeAssistant, ExplainsHowPollsRestartTheHostWatchdogAndWhatClearsTheTimeoutStatus) {
   const std::string text = configuration_of("EX9042D-M", {{}, 0x02});
   const std::string to = " with hub: ex9042d_m_02, slave: 2, address: ";
   const std::size_t feed = text.find("#   modbus.write_register" + to +
@@ -142,7 +142,7 @@ TEST(DescribeHomeAssistant, ExplainsHowPollsRestartTheHostWatchdogAndWhatClearsA
   EXPECT_LT(feed, after);
 }
 
-TEST(DescribeHomeAssistant, DoesNotPollHostOkCommunicationSettingsOrCoilsThatClearCounters) {
+TEST(DescribeHomeAssistant, DoesNotPollHostOkOrCommunicationSettingsOrCoilsThatClearCounters) {
   for (const char* model : {"EX9043D-M", "EX9052D-M"}) {
     for (const char* address :
          {"12344", "256", "484", "485", "512"}) {  // host OK, protocol, address, baud rate, clear counter 0

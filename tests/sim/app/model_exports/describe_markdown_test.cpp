@@ -148,8 +148,9 @@ std::optional<std::string> generated_section() {
   return document.substr(from + begin.size(), to - from - begin.size());
 }
 
-/// Returns the first line that differs, from both texts; empty if the texts are equal. If the texts differ
-/// only in the newlines at their ends, returns a note. The whole texts would be too long for a message.
+/// Returns a message with the first line of `stands` that differs and the line of `wanted` in its place;
+/// empty if the texts are equal. If the texts differ only in the newlines at their ends, the message states
+/// only this difference. The whole texts would be too long for a message.
 std::string difference(const std::string& stands, const std::string& wanted) {
   if (stands == wanted) {
     return "";
@@ -159,7 +160,7 @@ std::string difference(const std::string& stands, const std::string& wanted) {
   is.resize(std::max(is.size(), ought.size()));
   ought.resize(is.size());
   const auto line = std::mismatch(is.begin(), is.end(), ought.begin());
-  return line.first == is.end() ? "other newlines at its end"
+  return line.first == is.end() ? "more or fewer newlines at the end of the section than the program prints"
                                 : "'" + *line.first + "'\nbut the program prints\n'" + *line.second + "'";
 }
 
@@ -209,7 +210,7 @@ TEST(DescribeMarkdown, ShowsThePropertiesOfAModel) {
       "00, 04 |");
 }
 
-TEST(DescribeMarkdown, OfOneModelListsOnlyThatModel) {
+TEST(DescribeMarkdown, ADescriptionOfOneModelListsOnlyThisModel) {
   for (const Model& model : kModels) {
     const std::string text = markdown_of({&model});
     EXPECT_EQ(
@@ -244,7 +245,7 @@ TEST(DescribeMarkdown, AModelWithInputsAndModbusHasItsCommands) {
              "~AA1",        "~AA2",  "~AA3EVV", "~AARD", "~AARDVV", "~AAXRRRR", "~AAXRRRRVVVV"}));
 }
 
-TEST(DescribeMarkdown, AnAsciiModelWithInputsAndOutputsHasAllButTheProtocolCommands) {
+TEST(DescribeMarkdown, AnAsciiModelWithInputsAndOutputsHasAllCommandsExceptTheProtocolCommands) {
   const Lines wanted{"%AANNTTCCFF", "#**",        "#AABBDD", "#AAN",    "$AA2",     "$AA4",        "$AA5",
                      "$AA6",        "$AAF",       "$AAM",    "$AAC",    "$AACN",    "$AALS",       "@AA",
                      "@AA(Data)",   "~AAO(Name)", "~**",     "~AA0",    "~AA1",     "~AA2",        "~AA3EVV",
@@ -262,7 +263,7 @@ TEST(DescribeMarkdown, SaysWhichModelsHaveACommand) {
   EXPECT_TRUE(ends(row_beginning("`$AAP`"), " | -M |"));
 }
 
-TEST(DescribeMarkdown, ShowsReplyAccessAndInitRequirementOfACommand) {
+TEST(DescribeMarkdown, ShowsTheReplyTheAccessAndTheInitRequirementOfACommand) {
   EXPECT_EQ(row_beginning("`$AAM`"),
             "| `$AAM` | `!AA(Name)` | read the module's name | - | read | - | all |");
   EXPECT_TRUE(has(row_beginning("`#**`"), "| `#**` | - |"));
@@ -300,7 +301,8 @@ const Lines kAddress{"holding register", "0x01E4", "40485", "03, 06, 10", "read,
 const Lines kBaud{"holding register", "0x01E5", "40486", "03, 06, 10", "read, write"};
 const Lines kTimeout{"holding register", "0x01E8", "40489", "03, 06, 10", "read, write"};
 
-/// One row of the Modbus map with extension registers (firmware/extensions.md).
+/// A range of extension registers (firmware/extensions.md). The Modbus map has two rows for each range: one
+/// of input registers and one of holding registers.
 struct Extension {
   unsigned first;
   unsigned last;

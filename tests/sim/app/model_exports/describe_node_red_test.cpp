@@ -56,7 +56,7 @@ TEST(DescribeNodeRed, OverModbusTcpOnlyTheTypeOfTheClientDiffers) {
   EXPECT_EQ(flow, flow_of("EX9042D-M", {{"gateway", 502}, 0x0A}));
 }
 
-TEST(DescribeNodeRed, ReadsOutputsSafeAndPowerOnValuesAndTheHostWatchdog) {
+TEST(DescribeNodeRed, ReadsOutputsAndSafeValuesAndPowerOnValuesAndTheHostWatchdog) {
   EXPECT_EQ(asked(flow_of("EX9042D-M"), "modbus-read"),
             (std::vector<std::string>{"Coil 0 13", "Coil 128 13", "Coil 160 13", "Coil 260 1", "Coil 269 1",
                                       "HoldingRegister 488 1"}));

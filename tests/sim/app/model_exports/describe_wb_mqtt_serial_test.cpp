@@ -33,7 +33,7 @@ TEST(DescribeWbMqttSerial, IsNamedAfterItsModel) {
   EXPECT_EQ(all.at("device").at("id"), "ex9068ad_m");
 }
 
-TEST(DescribeWbMqttSerial, SetsTheLargestReadAndTheGuardInterval) {
+TEST(DescribeWbMqttSerial, SetsMaxReadRegistersAndTheGuardInterval) {
   EXPECT_EQ(template_of("EX9043D-M").at("device").at("max_read_registers"), 16);
   EXPECT_EQ(template_of("EX9052D-M").at("device").at("max_read_registers"), 8);
   EXPECT_EQ(template_of("EX9052D-M").at("device").at("guard_interval_us"), 4010);  // 38.5 bits at 9600 baud

@@ -1,4 +1,4 @@
-"""A simulated module, and a master that sends requests as Home Assistant, Node-RED and wb-mqtt-serial do."""
+"""A simulated module, and a master that reads its coils, discrete inputs and registers, and writes its coils."""
 
 import re
 import socket
@@ -23,7 +23,7 @@ class Line:
     """One module at address 01, which a master reaches over TCP.
 
     The option of the program selects the frames: --tcp selects Modbus RTU, --modbus-tcp selects Modbus TCP.
-    A request raises OSError if the simulator has ended or sends nothing for 60 s.
+    `read` and `write_coil` raise OSError if the simulator has ended or sends nothing for 60 s.
     """
 
     def __init__(self, model, option="--tcp"):
@@ -95,7 +95,8 @@ class Line:
         request = struct.pack(">BBHH", 1, function, first, value)
         reply = self._ask_modbus_tcp(request) if self.option == "--modbus-tcp" else self._ask_rtu(request)
         if reply[:2] != request[:2]:
-            raise ValueError(f"{reply.hex(' ')} in reply to {request.hex(' ')}")
+            expected = f"expected a reply that begins with {request[:2].hex(' ')}, in hex"
+            raise ValueError(f"request {request.hex(' ')}: wrong reply {reply.hex(' ')}; {expected}")
         return reply[2:]
 
     def read(self, kind, first, count=1):
@@ -110,4 +111,5 @@ class Line:
         value = 0xFF00 if on else 0x0000
         reply = self._ask(5, address, value)
         if reply != struct.pack(">HH", address, value):
-            raise ValueError(f"{reply.hex(' ')} in reply to a write of {value:04X} to coil {address:04X}")
+            expected = "expected the coil address and the value, in hex"
+            raise ValueError(f"write of {value:04X} to coil {address:04X}: wrong reply {reply.hex(' ')}; {expected}")

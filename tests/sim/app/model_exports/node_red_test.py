@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Checks the Node-RED flows of `ex9000-sim describe`. node_red_contrib_modbus.json lists the properties of nodes.
+"""Checks the properties, ids, wires and positions of the nodes in the Node-RED flows of `ex9000-sim describe`.
 
-Also checks the ids, wires and positions of the nodes.
+node_red_contrib_modbus.json lists the valid properties of the types of nodes that the flows use.
 """
 
 import copy

@@ -21,5 +21,5 @@ def models_with_modbus():
     models = [line.split()[0] for line in run("--models").splitlines() if "Modbus RTU" in line]
     missing = {"EX9042D-M", "EX9043D-M", "EX9052D-M", "EX9068D-M", "EX9068AD-M"} - set(models)
     if missing:
-        raise LookupError(f"--models lacks {', '.join(sorted(missing))}; it prints each model with its protocols")
+        raise LookupError(f"--models: no 'Modbus RTU' in the line of {', '.join(sorted(missing))}; expected it in each")
     return models

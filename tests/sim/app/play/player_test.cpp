@@ -1,5 +1,5 @@
-// Tests that the player reports wrong, missing and unexpected replies and wrong states of the outputs and the
-// LED, and that wrong files are rejected.
+// Tests that the player reports wrong, missing and unexpected replies, and wrong states of the outputs and
+// the LED. Also tests that `load_transcripts` rejects invalid files.
 #include "sim/app/play/player.hpp"
 
 #include <gtest/gtest.h>

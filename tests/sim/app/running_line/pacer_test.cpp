@@ -92,7 +92,7 @@ class PacedLine : public testing::Test {
 
 const FrameBytes kName3{'$', '0', '3', 'M', '\r'};
 
-TEST_F(PacedLine, DelaysABroadcastAfterAnAsciiReplyUntilItIsASeparateModbusFrame) {
+TEST_F(PacedLine, DelaysABroadcastAfterAnAsciiReplyUntilTheBroadcastIsASeparateModbusFrame) {
   ask(kName3, 9);
   send(kAllFirstOn);
   rest();
@@ -114,7 +114,7 @@ TEST_F(PacedLine, DelaysABroadcastAfterAModbusReplyUntilT35HasPassed) {
   EXPECT_TRUE(first_are_on());
 }
 
-TEST_F(PacedLine, DelaysABroadcastAfterForeignTrafficUntilItIsASeparateModbusFrame) {
+TEST_F(PacedLine, DelaysABroadcastAfterForeignTrafficUntilTheBroadcastIsASeparateModbusFrame) {
   pacer_->now([this] { line_.faults().add(parse_fault("foreign-traffic 2430394D0D")); });
   while (recorder_.bytes.size() < kName3.size()) {
     ASSERT_GT(io_.run_one(), 0U);

@@ -66,7 +66,7 @@ TEST(LateHost, ALateHostIsReportedWithItsDelay) {
   }
 }
 
-TEST(LateHost, TwoRequestsReadInOnePieceAreReported) {
+TEST(LateHost, TwoRequestsThatAreReadInOnePieceAreReported) {
   SimulatorProcess simulator({"EX9042D-M@01,protocol=modbus", "--tcp", "0", "--log"});
   SocketClient client(simulator.tcp_port());
   client.send(text_of(request(1)));

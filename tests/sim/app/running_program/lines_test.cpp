@@ -126,7 +126,7 @@ TEST(Lines, ALineDoesNotReceiveTheBytesOfAnotherLine) {
   EXPECT_EQ(ask(hall, "$02M"), "!029055");
   EXPECT_TRUE(
       hall.read(milliseconds(50))
-          .empty());  // on a busy machine this check can miss an error, but it cannot fail without one
+          .empty());  // on a busy machine this check can miss an error; it fails only if there is an error
 }
 
 TEST(Lines, EachLineHasItsOwnBaudRateAndItsNameInTheLog) {
@@ -180,7 +180,7 @@ TEST(Lines, FaultsAffectOnlyTheirOwnLine) {
   EXPECT_TRUE(lines.process().wait_for("  > master  $01M", 2));
   EXPECT_TRUE(
       yard.read(milliseconds(100))
-          .empty());  // on a busy machine this check can miss an error, but it cannot fail without one
+          .empty());  // on a busy machine this check can miss an error; it fails only if there is an error
   EXPECT_TRUE(hall.read(milliseconds(100)).empty());
   EXPECT_EQ(lines.control().ask("line yard fault off 2"), "ok");
   EXPECT_EQ(lines.control().ask("line hall fault off all"), "ok");
@@ -191,7 +191,7 @@ TEST(Lines, FaultsAffectOnlyTheirOwnLine) {
   EXPECT_EQ(ask(hall, "$02M"), "!029055");
 }
 
-TEST(Lines, RunOnAtMostOneTwoOrEightThreadsWithLogCaptureAndCommands) {
+TEST(Lines, TheRepliesAndTheLogAreCorrectIfTheThreadLimitIsOneTwoOrEight) {
   constexpr int kRequests = 50;
   for (const char* threads : {"1", "2", "8"}) {
     Lines lines(R"({"lines": [
@@ -348,13 +348,15 @@ TEST(LineOfTheCommandLine, RunsTheFaultsAndInputProgramsOfItsOptions) {
   ControlClient control(simulator.directory() + "/control");
   EXPECT_EQ(control.ask("faults"), "ok 2 faults: 1* x1 1 late-reply 20ms; 2 x0 2 gone at 1h");
   Terminal terminal(simulator.tty(), 9600);
-  EXPECT_EQ(ask(terminal, "$01M"), "!019042D");  // during this delay of 20 ms the square wave has ten periods
+  EXPECT_EQ(ask(terminal, "$01M"),
+            "!019042D");  // the square wave has ten periods in the 20 ms before the reply
   const std::string some = ask(terminal, "#025");
   EXPECT_EQ(some.rfind("!02", 0), 0U);
   EXPECT_GT(std::stoul(some.substr(3)), 5U);
 }
 
-/// Sends 30 commands. Returns, as text, how often a fault has taken effect after each command.
+/// Sends 30 commands. After each command, asks how many times the fault has occurred so far. Returns these
+/// numbers as text.
 std::string occurrences(const std::string& seed) {
   SimulatorProcess simulator({"EX9042D@01", "--line", "instant", "--control", "control", "--fault",
                               "lost-reply with probability 0.5", "--seed", seed});
@@ -380,8 +382,7 @@ TEST(LineOfTheCommandLine, TheSeedDeterminesWhichRepliesAFaultAffects) {
   EXPECT_NE(occurrences("8"), of_seed);
 }
 
-// Faults attach stations to the bus after the stations of the modules. The log has no names for the stations
-// of faults.
+// Some faults attach their own stations to the bus. The log has no names for these stations.
 TEST(LineOfTheCommandLine, BytesOfFaultsReachTheMasterAndForeignTrafficIsLogged) {
   SimulatorProcess simulator({"EX9042D-M@01", "--control", "control", "--log"});
   ControlClient control(simulator.directory() + "/control");

@@ -1,4 +1,4 @@
-// Tests the program in stepped time, as a test of a master uses the program.
+// Tests the program in stepped time through its ports and its control socket.
 #include <gtest/gtest.h>
 
 #include <csignal>
@@ -35,7 +35,7 @@ class Stepped {
 TEST(SteppedProgram, TheHostWatchdogExpiresWhenOneCommandAdvancesADay) {
   Stepped stepped({"EX9042D"});
   Terminal master(stepped.simulator.tty(), 9600);
-  master.type("~0131FF\r");  // enabled, 25.5 s
+  master.type("~0131FF\r");  // enables the host watchdog, timeout 25.5 s
   EXPECT_EQ(stepped.control.ok("advance 1s after 8 quiet").rfind("0.1", 0), 0U);
   EXPECT_EQ(master.read_line(), "!01\r");
   stepped.control.ok("advance 24h");
@@ -73,7 +73,7 @@ TEST(SteppedProgram, AMasterThatResetsItsConnectionDoesNotStopTheProgram) {
       crashing.send("$01M\r");
     }
     crashing.abort();
-    // The abort may have discarded the requests of `crashing`, but `advance` waits for 5 bytes.
+    // The abort can discard all bytes of `crashing`. `advance` waits for 5 bytes, so `other` sends some.
     other.send("\r$01M\r");
     EXPECT_EQ(stepped.control.line().rfind("ok ", 0), 0U);
     EXPECT_EQ(stepped.simulator.end(SIGTERM), 0);

@@ -148,9 +148,10 @@ TEST_F(StepperTest, WithoutAnAdvanceNoTimePassesAndNoReplyArrives) {
   EXPECT_EQ(line_.port->take_read(), "");
 }
 
-TEST_F(StepperTest, WrittenBytesAreSentOnTheLineAndTheReplyTakesItsTime) {
+TEST_F(StepperTest, ARequestAndItsReplyTakeTimeOnTheLine) {
   line_.port->write("$01M\r");
-  // The request of five characters at 9600 baud ends after 5.208 ms; the reply begins one character later.
+  // The request of five characters at 9600 baud ends after 5.208 ms. The reply begins one character time
+  // later.
   advance("6ms");
   EXPECT_EQ(line_.port->take_read(), "");
   advance("20ms");
@@ -182,7 +183,7 @@ TEST_F(StepperTest, WaitsForTheGivenNumberOfBytes) {
 TEST_F(StepperTest, CountsTheNewBytesOfAllLines) {
   line_.port->write("$01M\r");
   EXPECT_EQ(advance("50ms after 5"), "ok 0.15");
-  EXPECT_EQ(advance("50ms after 10"), "");  // the five bytes before do not count again
+  EXPECT_EQ(advance("50ms after 10"), "");  // the first five bytes do not count again
   line_.port->write("$01M\r");
   line_.port->tell();
   EXPECT_TRUE(answers_.empty());
@@ -209,7 +210,7 @@ TEST_F(StepperTest, BytesThatArriveBeforeTheSameAdvanceFollowEachOtherWithoutAGa
   EXPECT_EQ(line_.port->take_read().size(), 7U);
 }
 
-TEST_F(StepperTest, BytesOfTwoAdvancesAreSeparatedByTheAdvancedTime) {
+TEST_F(StepperTest, TheTimeOfAnAdvanceSeparatesBytesThatArriveBeforeAndAfterIt) {
   const std::vector<std::uint8_t> request = with_crc({2, 1, 0, 0, 0, 13});
   line_.port->write(FrameOfBytes(request.begin(), request.begin() + 3));
   advance("20ms after 3");
@@ -222,8 +223,9 @@ TEST_F(StepperTest, QuietEndsWhenTheReplyIsComplete) {
   other_.port->write("$01M\r");
   const std::string answer = advance("10s after 5 quiet");
   EXPECT_EQ(other_.port->take_read(), "!019052\r");
-  // 5 + 1 + 8 characters of 1.0417 ms, and the time to switch the driver. No module of this line uses Modbus,
-  // so `quiet` does not wait for the silence after a Modbus frame.
+  // The advance takes 5 + 1 + 8 characters (request, turn-around, reply) of 1.0417 ms, and the time to switch
+  // the driver. No module of this line uses Modbus, so `quiet` does not wait for the silence after a Modbus
+  // frame.
   const double took = std::stod(answer.substr(3)) - 0.1;
   EXPECT_GT(took, 0.0145);
   EXPECT_LT(took, 0.0147);
@@ -237,7 +239,7 @@ TEST_F(StepperTest, QuietWaitsForTheSilenceThatEndsAModbusFrame) {
   EXPECT_EQ(line_.port->take_read(), "");
 }
 
-TEST_F(StepperTest, QuietWaitsForAStore) {
+TEST_F(StepperTest, QuietWaitsUntilASettingIsStored) {
   line_.port->write("~01OPUMP\r");
   advance("10s after 9 quiet");
   EXPECT_EQ(line_.port->take_read(), "!01\r");
@@ -265,7 +267,7 @@ TEST_F(StepperTest, QuietDoesNotAdvanceIfNothingIsPending) {
 }
 
 TEST_F(StepperTest, QuietDoesNotWaitForAHostWatchdog) {
-  line_.port->write("~013101\r");  // enabled, 0.1 s
+  line_.port->write("~013101\r");  // enables the host watchdog, timeout 0.1 s
   advance("10s after 8 quiet");
   EXPECT_EQ(line_.port->take_read(), "!01\r");
   line_.port->write("~010\r");
@@ -296,7 +298,7 @@ TEST_F(StepperTest, TheSameCommandsHaveTheSameEffectsAtTheSameTimes) {
   EXPECT_NE(first.find(">0000"), std::string::npos);
 }
 
-TEST_F(StepperTest, TheLineTakesThePortsBaudRateWhenItsBytesAreSent) {
+TEST_F(StepperTest, TheLineTakesTheBaudRateOfAPortBeforeItSendsTheBytesOfThePort) {
   line_.port->rate_ = 19200;
   line_.port->write("$01M\r");
   advance("50ms");

@@ -1,4 +1,5 @@
-// Tests lines that are created from a setup: their input programs, their faults and the time of a byte.
+// Tests lines that are created from a setup: their input programs, their faults and the transmission
+// time of a byte.
 #include "sim/app/setup/line_factory.hpp"
 
 #include <gtest/gtest.h>

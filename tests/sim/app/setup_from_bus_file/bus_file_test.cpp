@@ -404,7 +404,7 @@ Parsed parse(const std::vector<std::string>& words) {
   return parse_arguments(static_cast<int>(argv.size()), argv.data());
 }
 
-TEST(BusFile, ALineWithoutAPortGetsAPseudoTerminalNamedAfterIt) {
+TEST(BusFile, ALineWithoutAPortGetsAPseudoTerminalNamedAfterTheLine) {
   const system::Directory directory;
   const std::string path = directory / "bus.json";
   system::write_file(path, R"({"lines": [{"modules": [{"model": "EX9042D"}]},
@@ -416,7 +416,7 @@ TEST(BusFile, ALineWithoutAPortGetsAPseudoTerminalNamedAfterIt) {
   EXPECT_FALSE(with.setup->lines[2].pty);
 }
 
-TEST(BusFile, AnErrorFoundAfterTheFileIsParsedIsReported) {
+TEST(BusFile, AnErrorThatIsFoundAfterParsingIsReported) {
   const system::Directory directory;
   const std::string path = directory / "bus.json";
   system::write_file(path,

@@ -1,5 +1,5 @@
-// Tests that the JSON Schema of bus files has exactly the keys of the reader, with their meanings, and which
-// keys the schema requires.
+// Tests that the JSON Schema of bus files has exactly the keys of the reader, each with its meaning. Also
+// tests which keys the schema requires.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -25,7 +25,7 @@ void expect_keys(const json& object, const Keys& keys) {
     ASSERT_TRUE(object.at("properties").contains(key.name));
     EXPECT_FALSE(key.meaning.empty());
     EXPECT_EQ(key.meaning.find('|'), std::string::npos)
-        << "this character would break the table in bus-files.md";
+        << "leave out '|', because it would end a cell of the table in bus-files.md";
     json property = json::parse(key.schema);
     EXPECT_TRUE(property.is_object());
     property["description"] = key.meaning;

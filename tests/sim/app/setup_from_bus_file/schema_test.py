@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Tests with examples that the JSON Schema of bus files and the program agree on keys and on types of values."""
+"""Tests that the JSON Schema of bus files and the program agree on keys and on types of values. Uses examples."""
 
 import copy
 import json

@@ -87,7 +87,7 @@ TEST(EepromFile, CreateWritesOnlyTheImage) {
   EXPECT_EQ(directory.contents().size(), 1U);
 }
 
-TEST(EepromFile, CreateMakesNoTemporaryFileThatCouldRemainAfterAKill) {
+TEST(EepromFile, CreateMakesNoTemporaryFileThatCouldRemainIfTheProgramIsKilled) {
   const Directory directory;
   const int changes = inotify_init1(IN_NONBLOCK);
   ASSERT_GE(inotify_add_watch(changes, directory.path().c_str(), IN_CREATE | IN_MOVED_TO), 0);
@@ -139,7 +139,7 @@ TEST(EepromFile, AnExistingFileIsReadByteForByteAndNotChanged) {
   EXPECT_EQ(directory.contents(), before);
 }
 
-TEST(EepromFile, AWriteChangesOnlyItsOwnAddress) {
+TEST(EepromFile, AWriteChangesOnlyTheByteAtTheGivenAddress) {
   const Directory directory;
   Image image = some_image();
   EepromFile made(directory / "a");

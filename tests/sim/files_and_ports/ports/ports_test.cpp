@@ -1,4 +1,4 @@
-// Tests the program's ports other than the pseudo-terminal: TCP ports and serial ports.
+// Tests the TCP ports and the serial ports of the program.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <poll.h>
@@ -82,8 +82,8 @@ TEST_P(Tcp, AHalfClosedClientGetsItsReplyAndIsThenDisconnected) {
 }
 
 /// Sends the request, and reads until `reply` arrives. Sends the request again if nothing has arrived for a
-/// second, at most 60 times in total. Returns the bytes that have arrived; bytes after the reply may be
-/// missing.
+/// second. Sends at most 60 requests in total. Returns the bytes that have arrived; bytes after the reply may
+/// be missing.
 std::string heard_by_asking_again(SocketClient& client, const std::string& request,
                                   const std::string& reply) {
   // A busy machine can only cause more requests. The limit of 60 only detects a program that hangs.
@@ -169,7 +169,8 @@ TEST(TcpPort, ListensOnAnIpv6Address) {
   EXPECT_NE(simulator.output().find("  TCP " + host + ":"), std::string::npos) << simulator.output();
 }
 
-// The program must not poll clients that have to wait because many bytes already wait for the line.
+// If too many bytes already wait for the line, the program stops reading from the client until the line has
+// room. During this time, the program must not poll the client.
 TEST(TcpPort, AWaitingClientUsesLittleProcessorTime) {
   SimulatorProcess simulator({"EX9042D@05,baud=1200", "--tcp", "0"});
   SocketClient flooder(simulator.tcp_port());
@@ -260,8 +261,8 @@ class Cable {
     tcgetattr(far_, &settings);
     return settings;
   }
-  /// Gives the port settings that another program may have left. Most of them are unsuitable for a line of
-  /// modules. A pseudo-terminal always has 8 data bits.
+  /// Changes the settings of the port, as another program could do. Most of the new settings are unsuitable
+  /// for a line of modules. The number of data bits stays 8, because a pseudo-terminal has no other number.
   void leave_set_for_something_else() const {
     termios settings{};
     tcgetattr(far_, &settings);
@@ -312,9 +313,9 @@ TEST(SerialPort, ConnectsTheModulesToItsLine) {
   EXPECT_EQ(simulator.end(SIGTERM), 0);
 }
 
-// Adapters have control signals that modules do not have. CTS and carrier detect may never become active, so
-// the program must ignore them.
-TEST(SerialPort, IsSetToTheLinesBaudRateAndRawModeWithoutFlowControl) {
+// Adapters have control signals that modules do not have. With some adapters, CTS and carrier detect are
+// never active, so the program must ignore these signals.
+TEST(SerialPort, IsSetToTheBaudRateOfTheLineAndToRawModeWithoutFlowControl) {
   const Cable cable;
   cable.leave_set_for_something_else();
   SimulatorProcess simulator(
@@ -360,7 +361,8 @@ TEST(SerialPort, ALongReplyIsSentCompletely) {
   EXPECT_EQ(cable.read(echo.size()), echo);
 }
 
-// Without --echo, the module would treat the echo of its reply as the same request again.
+// In this test, the reply equals the request. Without --echo, the module would therefore receive the echo of
+// its reply as a new request.
 TEST(SerialPort, TheEchoOfAnAdapterIsIgnoredWithTheEchoOption) {
   const Cable cable;
   SimulatorProcess simulator({"EX9042D-M@01", "--serial", cable.device(), "--echo"});

@@ -19,8 +19,8 @@ using boost::asio::ip::tcp;
 
 constexpr std::size_t kMostMasters = 64;
 
-/// Waits for a handler and runs it. Returns false if no handler is ready within 60 s. This limit only detects
-/// a port that hangs.
+/// Waits for a handler and runs it. Returns false if no handler is ready within 60 s. Only a port that
+/// hangs reaches this limit.
 bool run_one(boost::asio::io_context& io) { return io.run_one_for(std::chrono::seconds(60)) == 1; }
 
 tcp::socket connected(boost::asio::io_context& io, const TcpPort& port) {
@@ -47,13 +47,13 @@ class TcpPortClients : public testing::Test {
   std::string received_;
 };
 
-TEST_F(TcpPortClients, AHalfClosedClientMakesRoomForTheNextIfTheLingerTimeHasNoLimit) {
+TEST_F(TcpPortClients, AtTheMaximumNumberOfClientsANewClientReplacesAHalfClosedClient) {
   std::vector<tcp::socket> clients;
   for (std::size_t i = 0; i < kMostMasters; ++i) {
     clients.push_back(connect());
     ASSERT_TRUE(run_one(io_));  // accepts the client
     clients.back().shutdown(tcp::socket::shutdown_send);
-    ASSERT_TRUE(run_one(io_));  // reads the end of its bytes
+    ASSERT_TRUE(run_one(io_));  // detects that the client has closed its sending side
   }
   tcp::socket next = connect();
   boost::asio::write(next, boost::asio::buffer(std::string_view("$01M\r")));
@@ -72,7 +72,7 @@ TEST(TcpPort, CanBeDestroyedAfterALingerTimeHasExpired) {
   tcp::socket client = connected(io, *port);
   ASSERT_TRUE(run_one(io));  // accepts the client
   client.shutdown(tcp::socket::shutdown_send);
-  ASSERT_TRUE(run_one(io));  // reads the end of its bytes, and starts the linger time
+  ASSERT_TRUE(run_one(io));  // detects that the client has closed its sending side; starts the linger time
   boost::asio::post(io, [&] { port.reset(); });
   EXPECT_GE(io.poll(), 2U);
 }

@@ -37,7 +37,7 @@ TEST(Dcon, TheNextMasterDoesNotReceiveAnUnreadReply) {
     control.ok("list");
   }
   // The program may answer the first of these two commands before it notices that `impatient` has closed the
-  // pseudo-terminal. It answers the second command only after that.
+  // pseudo-terminal. It always notices this before it answers the second command.
   control.ok("list");
   control.ok("list");
   Terminal terminal(simulator.tty(), 9600);
@@ -55,7 +55,7 @@ TEST(Dcon, AMasterThatDisconnectsDoesNotDisconnectAnotherMaster) {
   }
 }
 
-TEST(Dcon, TheLineTakesTheMastersBaudRateAndReportsAMismatch) {
+TEST(Dcon, TheLineUsesTheBaudRateOfTheMasterAndTheProgramReportsAMismatch) {
   SimulatorProcess simulator({"EX9042D@05,baud=19200", "--baud", "9600"});
   EXPECT_TRUE(simulator.wait_for("the line is at 9600 baud 8N1, EX9042D at 05 listens at 19200 baud 8N1"))
       << simulator.output();
@@ -68,7 +68,7 @@ TEST(Dcon, TheLineTakesTheMastersBaudRateAndReportsAMismatch) {
   terminal.type("$052\r");
   EXPECT_TRUE(simulator.wait_for("the line is at 1200 baud 8N1, EX9042D at 05 listens at 19200 baud 8N1"))
       << simulator.output();
-  // On a busy machine this check can miss an error, but it cannot fail without one.
+  // On a busy machine, this check can miss an error. It fails only if there is an error.
   EXPECT_EQ(terminal.read_line(std::chrono::milliseconds(500)), "");
 }
 

@@ -32,7 +32,7 @@ TEST(TermiosRates, EachRateHasTheSpeedConstantOfTheCLibrary) {
   }
 }
 
-TEST(TermiosRates, AStoredRateIsReadBack) {
+TEST(TermiosRates, TermiosRateReturnsTheRateThatTheCLibraryHasStored) {
   for (const std::uint32_t rate : kRates) {
     EXPECT_EQ(termios_rate(settings_at(rate)), rate);
   }

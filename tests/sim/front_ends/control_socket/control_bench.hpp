@@ -53,7 +53,7 @@ class ControlBench : public ModuleBench {
   }
 
   /// Returns a text with the status, the inputs, the outputs and the LED of the module. If the module has
-  /// power, the text also contains its reset status, its INIT* input and its counters.
+  /// power, the text also contains the reset status, the state of INIT* and the counters.
   std::string snapshot() {
     std::string text = tell("1 status") + tell("1 inputs") + tell("1 outputs") + tell("1 led");
     if (module().powered()) {
@@ -67,7 +67,8 @@ class ControlBench : public ModuleBench {
     return text;
   }
 
-  /// Expects that the command is rejected, and that `snapshot` returns the same text 20 ms later.
+  /// Expects that the command is rejected, and that `snapshot` returns the same text before the command and
+  /// 20 ms after it.
   void expect_refused(const std::string& command) {
     run(std::chrono::milliseconds(20));
     const std::string before = snapshot();

@@ -25,7 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kMostClients = 64;
-/// The timeout for a reply on the line. Only a program that hangs reaches it.
+/// The timeout for a reply on the line. It expires only if the program hangs.
 constexpr std::chrono::seconds kReplyTimeout{60};
 
 /// Runs the program with a control socket and an instant line.
@@ -44,8 +44,8 @@ class Simulator : public SimulatorProcess {
 
 bool starts_with(const std::string& text, const std::string& start) { return text.rfind(start, 0) == 0; }
 
-/// Runs the program in `directory` until it ends. If the program starts unexpectedly, the command `timeout`
-/// ends it after 60 s, and the status is 124.
+/// Runs the program in `directory` until the program ends. If it still runs after 60 s, the command `timeout`
+/// ends it, and the status is 124.
 Finished finish(std::vector<std::string> arguments, const std::string& directory) {
   arguments.insert(arguments.begin(), {"timeout", "60", simulator_path()});
   return run(arguments, directory);
@@ -172,7 +172,7 @@ TEST(ControlSocket, ACommandMayArriveInPieces) {
   EXPECT_EQ(other.ask("1 inputs"), "ok 0010");
 }
 
-TEST(ControlSocket, EachOfSeveralClientsGetsAReplyToEachCommand) {
+TEST(ControlSocket, EachOfSeveralClientsGetsTheRepliesToItsCommands) {
   Simulator simulator({"EX9055D", "EX9052D@02"});
   const auto clients = connect(simulator.socket(), 8);
   for (int round = 0; round < 20; ++round) {
@@ -257,8 +257,8 @@ TEST(ControlSocket, AClientThatDoesNotReadIsThrottledAndOthersGetTheirReplies) {
   {
     ControlClient deaf(simulator.socket());
     std::size_t refusals = 0;
-    // While the test waits for the reply to `other`, the program has time to read from `deaf`. Therefore, 100
-    // refusals mean that the program has stopped reading from `deaf`.
+    // While the test waits for the reply to `other`, the program has time to read from `deaf`. Therefore, if
+    // `deaf` could not send a byte at 100 attempts, the program has stopped reading from `deaf`.
     while (refusals < 100) {
       const std::size_t taken = deaf.offer(command);
       sent += taken / command.size();
@@ -373,7 +373,7 @@ TEST(ControlSocket, ASocketInUseIsRefusedAndContinuesToWork) {
   EXPECT_TRUE(is_answered(*clients[0]));
 }
 
-TEST(ControlSocket, AFileAtThePathThatIsNotASocketIsRefusedAndNotRemoved) {
+TEST(ControlSocket, AFileThatIsNotASocketIsRefusedAndNotRemoved) {
   const Directory directory;
   write_file(directory / "file", "precious");
   write_file(directory / "empty", "");
@@ -398,7 +398,7 @@ TEST(ControlSocket, ADatagramSocketAtThePathIsRefusedAndNotRemoved) {
   close(datagrams);
 }
 
-TEST(ControlSocket, AProgramThatListensButAcceptsNothingIsNotReplaced) {
+TEST(ControlSocket, TheSocketOfAProgramThatListensButAcceptsNothingIsNotReplaced) {
   const Directory directory;
   const int listener = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
   sockaddr_un address{};

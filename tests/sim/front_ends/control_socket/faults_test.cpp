@@ -6,7 +6,7 @@
 namespace ex9000::sim {
 namespace {
 
-TEST(ControlFault, BeginsImmediatelyAndIsRemovedByItsNumberOrWithAll) {
+TEST(ControlFault, BeginsImmediatelyAndFaultOffRemovesOneFaultOrAllFaults) {
   ControlBench bench("EX9042D");
   EXPECT_EQ(bench.tell("1 fault lost-reply"), "ok 1");
   EXPECT_EQ(bench.ask("$01M"), "");
@@ -19,7 +19,7 @@ TEST(ControlFault, BeginsImmediatelyAndIsRemovedByItsNumberOrWithAll) {
   EXPECT_EQ(bench.tell("fault off all"), "ok");
 }
 
-TEST(ControlFault, TheListShowsStateCountAndModuleOfEachFault) {
+TEST(ControlFault, TheListShowsTheStateTheCountAndTheModuleOfEachFault) {
   ThreeModules modules;
   EXPECT_EQ(modules.tell("2 fault gone"), "ok 1");
   EXPECT_EQ(modules.tell("3 fault   power-cut \t after 3 writes"), "ok 2");

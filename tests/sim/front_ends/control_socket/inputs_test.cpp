@@ -29,7 +29,7 @@ TEST(ControlInputs, EveryInputOfEveryModelHasItsOwnLevel) {
   }
 }
 
-TEST(ControlInputs, AModuleReadsTheLevelsAndLatchesAndCountsTheirEdges) {
+TEST(ControlInputs, AModuleReadsTheLevelsAndItCountsAndLatchesTheEdges) {
   ControlBench bench("EX9052D");
   bench.tell("1 input 6 on");
   EXPECT_EQ(bench.ask("@01"), ">4000");

@@ -1,5 +1,5 @@
-// Tests the control socket's commands for a single line, for one of several lines, for modules by their
-// positions, and for the whole program.
+// Tests the control socket's commands for a single line, for one of several lines, for the module at a
+// position, and for the whole program.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -9,7 +9,7 @@
 namespace ex9000::sim {
 namespace {
 
-TEST(ControlLine, ListNamesEveryModuleByItsPosition) {
+TEST(ControlLine, ListShowsEveryModuleWithItsPosition) {
   ThreeModules modules;
   const std::string text = modules.tell("list");
   EXPECT_TRUE(has(text, "1 EX9042D-M at 01")) << text;
@@ -19,7 +19,7 @@ TEST(ControlLine, ListNamesEveryModuleByItsPosition) {
   EXPECT_TRUE(has(modules.tell("list"), "2 EX9052D"));
 }
 
-TEST(ControlLine, APositionSelectsOnlyThatModule) {
+TEST(ControlLine, APositionSelectsOnlyTheModuleAtThisPosition) {
   ThreeModules modules;
   EXPECT_EQ(modules.tell("3 input 0 on"), "ok");
   EXPECT_EQ(modules.at(2).input_levels(), 0);
@@ -41,7 +41,7 @@ TEST(ControlLine, AnInvalidPositionIsRefused) {
   }
 }
 
-TEST(ControlLine, HelpAndTheHelpOptionNameTheseCommands) {
+TEST(ControlLine, TheCommandHelpAndTheOptionHelpShowTheseCommands) {
   ControlBench bench("EX9052D");
   const std::string text = bench.tell("help");
   for (const std::string form : {"N power on|off",
@@ -84,7 +84,7 @@ TEST(ControlLine, QuitIsAcknowledgedAndOnlyTheExactCommandQuits) {
   }
 }
 
-/// Two lines: `hall` with two modules, `yard` with one.
+/// Two lines: `hall` with two modules, and `yard` with one module.
 class TwoLines {
  public:
   TwoLines() {
@@ -164,7 +164,7 @@ TEST(ControlLine, RateAndFormatOfASerialPortCannotBeChanged) {
   EXPECT_EQ(bench.line().master().mode(), hal::SerialMode{9600});
 }
 
-TEST(ControlLine, SentReportsTheNumberOfBytesSentToThePorts) {
+TEST(ControlLine, TheCommandSentReportsHowManyBytesWereWrittenToEachPort) {
   ModuleBench bench("EX9052D");
   Control control({{"", bench.line(), [] { return 42U; }}});
   EXPECT_EQ(control.carry_out("sent").text, "ok 42");

@@ -62,7 +62,7 @@ TEST(ControlRefusals, InvalidCommandsAreRefused) {
   }
 }
 
-TEST(ControlRefusals, BinaryBytesAndVeryLongCommandsAreRefusedInOneLine) {
+TEST(ControlRefusals, TheRefusalOfBinaryBytesOrOfAVeryLongCommandIsOneLine) {
   ControlBench bench("EX9055D");
   using namespace std::string_literals;
   for (const std::string& command :

@@ -10,7 +10,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-TEST(ControlPower, OffStopsRepliesAndSwitchesOutputsOff) {
+TEST(ControlPower, AfterOffTheOutputsAreOffAndTheModuleDoesNotReply) {
   ControlBench bench("EX9042D");
   ASSERT_EQ(bench.ask("@011FFF"), ">");
   EXPECT_EQ(bench.number("1 outputs"), 0x1FFFU);
@@ -19,7 +19,7 @@ TEST(ControlPower, OffStopsRepliesAndSwitchesOutputsOff) {
   EXPECT_EQ(bench.ask("$01M"), "");
 }
 
-TEST(ControlPower, OnRestartsTheModuleWithItsPowerOnValueAndResetStatus) {
+TEST(ControlPower, AfterOnTheOutputsHaveThePowerOnValueAndTheResetStatusIsSet) {
   ControlBench bench("EX9042D");
   bench.ask("@010A05");
   ASSERT_EQ(bench.ask("~015P"), "!01");
@@ -58,7 +58,7 @@ TEST(ControlPower, OffDuringAWriteLeavesTheOldOrTheNewSettings) {
   }
 }
 
-TEST(ControlReset, ClearsOutputsCountersAndLatchesAndSetsTheResetStatus) {
+TEST(ControlReset, SwitchesTheOutputsOffSetsTheResetStatusAndClearsTheCountersAndTheLatches) {
   ControlBench bench("EX9055D");
   bench.tell("1 input 3 on");
   bench.tell("1 pulse 0 7");
@@ -74,7 +74,7 @@ TEST(ControlReset, ClearsOutputsCountersAndLatchesAndSetsTheResetStatus) {
   EXPECT_TRUE(bench.status_has("watchdog-resets=0"));
 }
 
-TEST(ControlInit, InitModeIsEnteredAndLeftAtTheNextReset) {
+TEST(ControlInit, AChangeOfInitChangesTheModeAtTheNextReset) {
   ControlBench bench("EX9042D-M@0A");
   EXPECT_EQ(bench.tell("1 init on"), "ok");
   bench.run(milliseconds(100));
@@ -92,7 +92,7 @@ TEST(ControlInit, InitModeIsEnteredAndLeftAtTheNextReset) {
   EXPECT_EQ(bench.ask("$002"), "");
 }
 
-TEST(ControlInit, CommandsThatRequireInitFollowTheDebouncedSwitch) {
+TEST(ControlInit, AModuleAcceptsCommandsThatRequireInitOnlyIfTheDebouncedInitIsAsserted) {
   ControlBench bench("EX9042D");
   EXPECT_EQ(bench.ask("%0101400700"), "?01");
   bench.tell("1 init on");

@@ -70,7 +70,7 @@ TEST(ControlStatus, ReportsTheActiveSettings) {
   }
 }
 
-TEST(ControlStatus, FollowsTheHostWatchdog) {
+TEST(ControlStatus, ReportsTheStateOfTheHostWatchdog) {
   ControlBench bench("EX9042D");
   ASSERT_EQ(bench.ask("~01310A"), "!01");
   EXPECT_TRUE(bench.status_has("host-watchdog=enabled timeout=1.0s"));
@@ -80,7 +80,7 @@ TEST(ControlStatus, FollowsTheHostWatchdog) {
   EXPECT_TRUE(bench.status_has("host-watchdog=disabled"));
 }
 
-TEST(ControlStatus, ReportsFedByResponseDelayAndInvertedInputs) {
+TEST(ControlStatus, ReportsTheResponseDelayTheInvertedInputsAndWhatFeedsTheHostWatchdog) {
   ControlBench bench("EX9055D");
   EXPECT_TRUE(bench.status_has("fed-by=host-ok response-delay=0ms inverted=0000"));
   ASSERT_EQ(bench.ask("~01X02510001"), "!01");
@@ -89,7 +89,7 @@ TEST(ControlStatus, ReportsFedByResponseDelayAndInvertedInputs) {
   EXPECT_TRUE(bench.status_has("fed-by=requests response-delay=30ms inverted=00A1"));
 }
 
-TEST(ControlView, TimersReadsTheRemainingTimeOfEachTimedOutput) {
+TEST(ControlView, TheCommandTimersReturnsTheRemainingTimeOfEachOutput) {
   ControlBench bench("EX9063D");
   EXPECT_EQ(bench.tell("1 timers"), "ok 0 0 0");
   bench.send("~01X02810003\r");  // switches on output 1 for 0.3 s
@@ -102,7 +102,7 @@ TEST(ControlView, TimersReadsTheRemainingTimeOfEachTimedOutput) {
             "error: the module has no power; use 'power on', or end the fault that switches the supply off");
 }
 
-TEST(ControlView, FiltersReadsTheFilterOfEachInput) {
+TEST(ControlView, TheCommandFiltersReturnsTheFilterOfEachInput) {
   ControlBench bench("EX9060D");
   ASSERT_EQ(bench.ask("~01X02400014"), "!01");
   ASSERT_EQ(bench.ask("~01X024307D0"), "!01");

@@ -124,7 +124,7 @@ TEST(Gateway, AModuleWithInitSpeaksAsciiUntilAStartWithoutInit) {
   EXPECT_EQ(bench.reply(0x01, kReadOutputs), kOutputsOff);
 }
 
-TEST(Gateway, AModbusModuleIsReachedBesideAsciiModules) {
+TEST(Gateway, AModbusModuleRepliesOnALineThatAlsoHasAnAsciiModule) {
   GatewayLine bench({"EX9042D@01", "EX9042D-M@02"});
   EXPECT_EQ(bench.reply(0x02, kReadOutputs), kOutputsOff);
   EXPECT_EQ(bench.reply(0x01, kReadOutputs), (Pdu{0x81, kNoReply}));
@@ -186,8 +186,8 @@ TEST(RtuReply, FitsTheAddressTheFunctionAndTheQuantityOrValuesOfItsRequest) {
   EXPECT_TRUE(is_reply({0x46, 0x00, 0x00, 0x90, 0x42, 0x00}, {0x46, 0x00}));
 }
 
-/// Returns the answers to a request for each of the coils 0 to 5. The gateway gets all requests at the same
-/// time, and each reply of the module is 600 ms late.
+/// Returns the answers to six requests, one for each of the coils 0 to 5. The gateway gets all requests at
+/// the same time, and each reply of the module is 600 ms late.
 template <class RequestFor>
 std::vector<Pdu> answers_if_replies_are_late(GatewayLine& bench, RequestFor request_for) {
   bench.line.faults().add(parse_fault("late-reply 600ms"));

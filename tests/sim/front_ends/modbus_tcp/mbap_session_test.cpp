@@ -132,7 +132,7 @@ TEST(MbapSession, FiveClientsOnOneLineGetTheirOwnReplies) {
   }
 }
 
-TEST(MbapSession, RequestsOfAClientThatReadsNoRepliesWait) {
+TEST(MbapSession, RequestsWaitWhileTheirClientReadsNoReplies) {
   Line line({parse_module_spec("EX9042D-M@01")}, kInstant,
             [](std::uint8_t /*byte*/, ByteStatus /*status*/) {});
   line.come_up();
@@ -160,7 +160,7 @@ TEST(MbapSession, RequestsOfAClientThatReadsNoRepliesWait) {
   EXPECT_EQ(session.unread(), 0U);
 }
 
-TEST(MbapSession, ClientsTakeTurnsAlthoughOneHasManyRequests) {
+TEST(MbapSession, ClientsTakeTurnsEvenIfOneClientSendsManyRequests) {
   Line line({parse_module_spec("EX9042D-M@01")}, kPaced, [](std::uint8_t /*byte*/, ByteStatus /*status*/) {});
   line.come_up();
   std::vector<std::string> order;

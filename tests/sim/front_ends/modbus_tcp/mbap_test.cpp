@@ -42,7 +42,7 @@ TEST(MbapReader, AFrameIsCompleteWithItsLastByte) {
   EXPECT_FALSE(reader.broken());
 }
 
-TEST(MbapReader, JoinedFramesAreSeparatedWhereverTcpSplitsThem) {
+TEST(MbapReader, TheReaderFindsBothFramesForEachSplitOfTheirBytesByTcp) {
   Buffer second = kRequest;
   second[1] = 0x35;
   Buffer both = kRequest;

@@ -20,7 +20,7 @@ const Buffer kFirst{0x00, 0x01, 0x00, 0x00, 0x00, 0x06, 0x01, 0x01, 0x00, 0x00, 
 const Buffer kSecond{0x00, 0x02, 0x00, 0x00, 0x00, 0x06, 0x01, 0x01, 0x00, 0x00, 0x00, 0x0D};
 const Buffer kFirstReply{0x00, 0x01, 0x00, 0x00, 0x00, 0x05, 0x01, 0x01, 0x02, 0x00, 0x00};
 const Buffer kSecondReply{0x00, 0x02, 0x00, 0x00, 0x00, 0x05, 0x01, 0x01, 0x02, 0x00, 0x00};
-/// Transaction 3 reads the outputs of unit 9, which exists only in ABusFileHasOneGatewayForEachLine.
+/// Transaction 3 reads the outputs of unit 9, which exists only in EachLineOfABusFileCanHaveAGateway.
 const Buffer kToNobody{0x00, 0x03, 0x00, 0x00, 0x00, 0x06, 0x09, 0x01, 0x00, 0x00, 0x00, 0x0D};
 const Buffer kNoReply{0x00, 0x03, 0x00, 0x00, 0x00, 0x03, 0x09, 0x81, 0x0B};
 
@@ -60,12 +60,12 @@ TEST(ModbusTcpProgram, InSteppedTimeAQuietAdvanceEndsAfterTheRepliesToTheArrived
   master.send(kFirst);
   master.send(kToNobody);
   master.send(kSecond);
-  // The module starts up in 100 ms. The request to unit 9 waits 500 ms for a reply.
+  // The module starts up in 100 ms. After the request to unit 9, the gateway waits 500 ms for a reply.
   EXPECT_EQ(control.ok("advance 10s after 36 quiet").rfind("0.6", 0), 0U);
   EXPECT_EQ(master.receive(31), kFirstReply + kNoReply + kSecondReply);
 }
 
-TEST(ModbusTcpProgram, InSteppedTimeAnAdvanceCountsBytesThatArriveAfterWaitingRequests) {
+TEST(ModbusTcpProgram, InSteppedTimeAnAdvanceCountsBytesThatArriveWhileRequestsWait) {
   SimulatorProcess simulator({"EX9042D-M@01", "--modbus-tcp", "0", "--speed", "step", "--control", "ctl"});
   ControlClient control(simulator.directory() + "/ctl");
   SocketClient master(simulator.tcp_port());
@@ -106,7 +106,7 @@ TEST(ModbusTcpProgram, InSteppedTimeTheSameCommandsGiveTheSameLog) {
   EXPECT_EQ(runs[0], runs[1]);
 }
 
-TEST(ModbusTcpProgram, ABusFileHasOneGatewayForEachLine) {
+TEST(ModbusTcpProgram, EachLineOfABusFileCanHaveAGateway) {
   Directory directory;
   const std::string file = directory.path() + "/bus.json";
   write_file(file, R"({"lines": [

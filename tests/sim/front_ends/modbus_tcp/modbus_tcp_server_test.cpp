@@ -64,7 +64,7 @@ class ModbusTcpServerTest : public testing::Test {
       }
     }
   }
-  /// Lets the server process what has arrived, and runs the line for `time`.
+  /// Calls every `process` function in `arrivals_`, and then runs the line for `time`.
   void pass(VirtualTime time = std::chrono::seconds(1)) {
     for (const auto& process : std::exchange(arrivals_, {})) {
       process();
@@ -209,7 +209,7 @@ TEST_F(ModbusTcpServerTest, TheServerDoesNotReadWhileTheLineAcceptsNoMoreBytes) 
   EXPECT_EQ(receive(client, 11), reply(2));
 }
 
-TEST_F(ModbusTcpServerTest, TheServerReadsFromNoClientAfterOneHasFilledTheLine) {
+TEST_F(ModbusTcpServerTest, WhileTheLineAcceptsNoMoreBytesTheServerDoesNotReadFromAnyClient) {
   tcp::socket first = connect();
   tcp::socket second = connect();
   send(first, request(1));
@@ -237,7 +237,7 @@ TEST_F(ModbusTcpServerTest, WaitingBytesAreReadWithoutTheIoContext) {
   EXPECT_EQ(receive(client, 11), reply(1));
 }
 
-TEST_F(ModbusTcpServerTest, AClientThatDoesNotReadGetsAllRepliesWhenItReads) {
+TEST_F(ModbusTcpServerTest, AClientThatReadsLateGetsAllReplies) {
   constexpr std::uint8_t kNoUnit = 250;  // the gateway answers immediately with exception 0A
   constexpr std::size_t kRequest = 12;
   constexpr std::size_t kFarTooMuch = 50'000'000;

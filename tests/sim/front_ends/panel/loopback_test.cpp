@@ -7,7 +7,7 @@
 namespace ex9000::sim {
 namespace {
 
-TEST(Loopback, AcceptsItsNamesOnlyWithThePortIfThePortIsNot80) {
+TEST(Loopback, AtAPortOtherThan80ANameIsAcceptedOnlyWithThePort) {
   for (const std::string name : {"127.0.0.1", "localhost"}) {
     EXPECT_TRUE(is_loopback_host(name + ":9042", 9042));
     EXPECT_TRUE(is_loopback_origin("http://" + name + ":9042", 9042));
@@ -18,7 +18,7 @@ TEST(Loopback, AcceptsItsNamesOnlyWithThePortIfThePortIsNot80) {
   EXPECT_FALSE(is_loopback_host("example.org:9042", 9042));
 }
 
-TEST(Loopback, AcceptsItsNamesWithOrWithoutThePortAtPort80) {
+TEST(Loopback, AtPort80ANameIsAcceptedWithOrWithoutThePort) {
   for (const std::string name : {"127.0.0.1", "localhost"}) {
     for (const std::string port : {"", ":80"}) {
       EXPECT_TRUE(is_loopback_host(name + port, 80));

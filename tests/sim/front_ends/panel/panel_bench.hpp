@@ -33,7 +33,7 @@ class PanelBench : public ModuleBench {
     viewer_ = panel_.viewer();
   }
 
-  /// Updates the panel and returns the next message to the page; null if there is none.
+  /// Updates the panel and returns the next message for the page; null if there is none.
   Message look() { return look(*viewer_); }
   Message look(PanelViewer& viewer) {
     panel_.look();

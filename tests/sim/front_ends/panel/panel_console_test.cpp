@@ -23,14 +23,14 @@ Message console_answer(PanelBench& bench, const std::string& ask, unsigned addre
   return message.contains("answers") ? message["answers"][0] : Message();
 }
 
-TEST(PanelConsole, AReplyComesWithItsMeaningAndItsDelay) {
+TEST(PanelConsole, TheAnswerContainsTheReplyItsMeaningAndItsDelay) {
   PanelBench bench("EX9052D-M@01");
   const Message read = console_answer(bench, "02 0000 0008");
   EXPECT_EQ(read["id"], 9);
   EXPECT_EQ(read["ok"], true);
   EXPECT_EQ(read["text"], "01 02 01 00 A1 88");
   EXPECT_EQ(read["meaning"], "from 0000: 0 0 0 0 0 0 0 0");
-  EXPECT_GT(read["delay"], 1000);  // microseconds; a character takes 1042 at 9600 baud
+  EXPECT_GT(read["delay"], 1000);  // in microseconds; at 9600 baud, a character takes 1042 microseconds
   EXPECT_LT(read["delay"], 20'000);
   EXPECT_EQ(console_answer(bench, "03 01E2 0002")["meaning"], "from 01E2: 0090 (144), 5200 (20992)");
   EXPECT_EQ(console_answer(bench, "03 7000 0001")["meaning"], "exception 02: illegal data address");
@@ -101,7 +101,7 @@ TEST(PanelConsole, ABroadcastThatWasNotSentIsReported) {
   EXPECT_EQ(answer["text"], "not sent: other masters did not stop sending within 500 ms");
 }
 
-TEST(PanelConsole, TheLongestPduMayHaveBlanksAnd1001CharactersAreRefused) {
+TEST(PanelConsole, TheLongestPduIsAcceptedWithBlanksBut1001CharactersAreRefused) {
   PanelBench bench("EX9052D-M@01");
   std::string longest = "65";
   for (int i = 1; i < 253; ++i) {
@@ -124,7 +124,7 @@ TEST(PanelConsole, OnePageMayHaveSixteenRequestsInTheQueue) {
   EXPECT_EQ(bench.look()["answers"].size(), 16U);
 }
 
-TEST(PanelConsole, ARequestWithAnInvalidLineAddressTextOrKeyIsRejected) {
+TEST(PanelConsole, ARequestWithAnInvalidLineOrAddressOrTextOrKeyIsRejected) {
   PanelBench bench("EX9052D-M@01");
   EXPECT_FALSE(bench.viewer().ask(R"({"id": 1, "line": 1, "address": 1, "ask": "07"})"));
   EXPECT_FALSE(bench.viewer().ask(R"({"id": 1, "line": 0, "address": 248, "ask": "07"})"));

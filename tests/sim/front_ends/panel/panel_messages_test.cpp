@@ -1,5 +1,6 @@
-// Tests the messages to a page of the panel: first the whole state, then the changes, and a limited number of
-// frames. Also tests the commands of a page.
+// Tests the messages to a page of the panel. The first message contains the whole state, and later messages
+// contain only the changes. Each message contains a limited number of frames. Also tests the commands of a
+// page.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -188,7 +189,7 @@ TEST(PanelOfTwoLines, ABaudRateIsReportedWithItsLine) {
 TEST(PanelOfTwoLines, EachLineHasItsOwnTime) {
   TwoLines bench;
   bench.line(1).bus().run_for(milliseconds(250));
-  bench.line(1).master().set_baud(19200);  // a change, so that there is a message
+  bench.line(1).master().set_baud(19200);  // without a change, the page gets no message within 1 s
   const Message lines = bench.look()["state"]["lines"];
   EXPECT_EQ(lines[1]["now"].get<std::int64_t>() - lines[0]["now"].get<std::int64_t>(), 250'000);
 }
@@ -213,7 +214,7 @@ TEST(PanelMessages, AMessageIsOneLineOfText) {
   EXPECT_EQ(bench.viewer().next().find('\n'), std::string::npos);
 }
 
-TEST(PanelMessages, FramesComeWithTimeStationBytesAndMeaning) {
+TEST(PanelMessages, AFrameIsReportedWithItsTimesItsStationItsBytesAndItsMeaning) {
   PanelBench bench("EX9055D");
   static_cast<void>(bench.look());
   ASSERT_EQ(bench.ask("$01M"), "!019055");
@@ -230,7 +231,7 @@ TEST(PanelMessages, FramesComeWithTimeStationBytesAndMeaning) {
   EXPECT_EQ(entries[1]["number"], 1);
 }
 
-TEST(PanelMessages, DamagedFramesAndNotesAreReported) {
+TEST(PanelMessages, NotesAndDamagedFramesAreReported) {
   PanelBench bench("EX9042D-M");
   static_cast<void>(bench.look());
   bench.send(ModuleBench::Bytes{1, 1, 0, 0, 0, 13, 0, 0});
@@ -242,7 +243,7 @@ TEST(PanelMessages, DamagedFramesAndNotesAreReported) {
   EXPECT_EQ(entries.back()["note"], "gone begins");
 }
 
-TEST(PanelMessages, APageGetsOnlyTheLast250Entries) {
+TEST(PanelMessages, WithOneLineAMessageContainsOnlyTheLast250FramesAndNotes) {
   PanelBench bench("EX9042D");
   static_cast<void>(bench.look());
   constexpr std::size_t kMany = 2000;
@@ -274,7 +275,7 @@ TEST(PanelMessages, FaultsAreReportedWhenTheyAreAddedAndRemoved) {
   EXPECT_EQ(bench.look()["state"]["lines"][0]["faults"], Message::array());
 }
 
-TEST(PanelMessages, ARefusedCommandGetsAnErrorAndQuitIsRefused) {
+TEST(PanelMessages, QuitIsRefusedAndARefusedCommandGetsAnError) {
   PanelBench bench("EX9042D");
   for (const std::string command : {"quit", " quit", "quit now", "1 input 0 on", "nonsense"}) {
     ASSERT_TRUE(bench.viewer().ask(R"({"id": 1, "do": ")" + command + "\"}")) << command;

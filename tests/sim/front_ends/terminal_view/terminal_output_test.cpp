@@ -55,7 +55,7 @@ TEST_F(TerminalOutputTest, ReturnsTheSizeOfTheWindow) {
   EXPECT_EQ(output.screen().columns, 132U);
 }
 
-TEST_F(TerminalOutputTest, KeepsWhatAnUnreadTerminalDoesNotAccept) {
+TEST_F(TerminalOutputTest, StoresOutputThatTheTerminalHasNotAccepted) {
   TerminalOutput output(program_);
   const std::string text(100'000, 'x');
   output.write(text);
@@ -69,7 +69,7 @@ TEST_F(TerminalOutputTest, KeepsWhatAnUnreadTerminalDoesNotAccept) {
   EXPECT_EQ(received, text);
 }
 
-TEST_F(TerminalOutputTest, StopsWaitingForAnUnreadTerminalWhenItGivesUp) {
+TEST_F(TerminalOutputTest, StopsWaitingForTheTerminalIfGivesUpReturnsTrue) {
   TerminalOutput output(program_, [] { return true; });
   output.write(std::string(std::size_t{3} << 20U, 'x'));
   EXPECT_FALSE(output.keeps_up());

@@ -23,7 +23,7 @@ namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
-// The values of frame.p2p_dir for frames that the master sends and receives.
+// The values of frame.p2p_dir for frames that the master sends, and for all other frames.
 const std::string kSent = "0";
 const std::string kReceived = "1";
 
@@ -73,18 +73,17 @@ class Captured {
   bool killed_ = false;
 };
 
-/// A request without its CRC, the number of bytes of its reply, the unit and the function that Wireshark
-/// shows for both frames, and some other fields of the request and of the reply.
+/// A request and its reply.
 struct Exchange {
-  Bytes request;
-  std::size_t answer;
-  std::string unit;
-  std::string function;
-  Packet asked;
-  Packet answered;
+  Bytes request;         ///< without the CRC
+  std::size_t answer;    ///< number of bytes of the reply, with the CRC
+  std::string unit;      ///< the unit that Wireshark shows for both frames
+  std::string function;  ///< the function that Wireshark shows for both frames
+  Packet asked;          ///< other fields that Wireshark shows for the request
+  Packet answered;       ///< other fields that Wireshark shows for the reply
 };
 
-TEST(Capture, FunctionAddressDirectionRegistersAndValuesAreDecoded) {
+TEST(Capture, TheDirectionTheUnitTheFunctionTheRegistersAndTheValuesAreDecoded) {
   Captured line({"EX9042D-M@01", "EX9052D-M@02"});
   const std::string reference = "modbus.reference_num";
   const std::string bit_count = "modbus.bit_cnt";
@@ -217,10 +216,10 @@ TEST(Capture, NoiseGetsAComment) {
   for (const Packet& packet : line.decoded({"frame.comment"})) {
     damaged += packet.at("frame.comment").find("noise: byte ") == 0 ? 1U : 0U;
   }
-  EXPECT_GE(damaged, 5U);  // ten requests were sent, each with 80 bits
+  EXPECT_GE(damaged, 5U);  // the test sends ten requests of 80 bits each
 }
 
-TEST(Capture, TheLinesOfABusFileAreInterfaces) {
+TEST(Capture, EachBusLineOfABusFileIsAnInterface) {
   const Directory directory;
   write_file(directory / "bus.json", R"({"capture": "bus.pcapng", "log": "json", "lines": [
     {"name": "hall", "pty": "hall.tty", "modules": [{"model": "EX9042D", "address": "01"}]},
@@ -268,8 +267,8 @@ TEST(Capture, TwoRunsAtTheSpeedMaxGiveTheSameCapture) {
   EXPECT_EQ(packets[0].at("frame.time_epoch").substr(0, 4), "1.10");
 }
 
-/// Returns the log without the notes about delays of the host, the computer that runs the simulator. Except
-/// for these notes, such a delay changes nothing in the log that the callers of this function check.
+/// Returns the log without the notes about delays of the host. The host is the computer that runs the
+/// simulator. Its delays are not the same in each run.
 std::string without_delays_of_the_host(const std::string& log) {
   std::string kept;
   std::istringstream lines(log);
@@ -304,7 +303,7 @@ TEST(Capture, TheFramesAndTheLogAreTheSameAtThreeSpeeds) {
   }
 }
 
-TEST(Capture, APlayGivesOneInterfacePerRun) {
+TEST(Capture, TheCommandPlayWritesOneInterfaceForEachRun) {
   const Directory directory;
   write_file(directory / "a.txt",
              "source: manual\nmodel: EX9042D-M\nmodel: EX9043D-M\npreset: protocol=modbus\n\n"
@@ -357,7 +356,7 @@ TEST(Capture, WiresharkDoesNotNameFunction46AndDoesNotDecodeFourByteRequestsOrBr
   }
 }
 
-TEST(Capture, TimestampsLieWithinTheRunAndDifferByLineTime) {
+TEST(Capture, TimestampsAreWithinTheRunAndDifferByTheLineTimeBetweenTheFrames) {
   const auto wall = [] {
     return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
   };
@@ -424,7 +423,7 @@ TEST(Capture, AWriteErrorLeavesNoCreatedFilesBehind) {
   }
 }
 
-TEST(Capture, RejectsTheBusFileTheControlSocketThePseudoTerminalAndTheEepromFile) {
+TEST(Capture, DoesNotOverwriteTheBusFileTheControlSocketThePseudoTerminalOrTheEepromFile) {
   const Directory directory;
   const std::string bus = R"({"capture": "link", "control": "ctl", "lines": [
     {"pty": "tty", "modules": [{"model": "EX9042D", "eeprom": "n.bin"}]}]})";
@@ -440,8 +439,8 @@ TEST(Capture, RejectsTheBusFileTheControlSocketThePseudoTerminalAndTheEepromFile
       command.insert(command.end(), named.begin(), named.end());
       const Finished finished = run(command, directory.path());
       EXPECT_EQ(finished.status, 2) << finished.error;
-      // While the target of the link does not exist, the program cannot detect that the link leads to the
-      // EEPROM file. The program then rejects the link with another message.
+      // If the EEPROM file does not exist yet, the program cannot detect that the link leads to this file. In
+      // this case, the program rejects the link with another message.
       if (path != "n.bin" || !named.empty()) {
         EXPECT_NE(finished.error.find(": is " + what + ", "), std::string::npos) << finished.error;
       }

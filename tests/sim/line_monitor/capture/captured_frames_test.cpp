@@ -1,4 +1,4 @@
-// Tests sim::Capture directly, without the program ex9000-sim: tshark decodes the captures.
+// Tests sim::Capture directly, without the program ex9000-sim. The tests decode the captures with tshark.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -51,7 +51,8 @@ TEST(Capture, EachLineIsAnInterfaceWithItsOwnRequests) {
                             {"modbus.bitnum", "8"}});
 }
 
-/// Inverts the levels in `mask` of one byte that is sent. `byte` is its position, counted from 0.
+/// Changes one byte on the line: inverts each level whose bit in `mask` is 1. `byte` is the position of this
+/// byte among the sent bytes, counted from 0.
 class OneHit final : public sim::Disturbance {
  public:
   OneHit(unsigned byte, sim::Levels mask) : byte_(byte), mask_(mask) {}

@@ -23,19 +23,19 @@ std::string hex(const std::vector<std::uint8_t>& bytes) {
 }
 
 TEST(Pcapng, ASectionHeaderContainsTheVersionAndTheNameOfTheProgram) {
-  // The first line of hex digits: block type, block length, byte-order magic, version 1.0, unknown length of
-  // the section.
+  // The first line of hex digits contains the block type, the block length, the byte-order magic, the
+  // version 1.0, and the code for an unknown section length.
   EXPECT_EQ(hex(pcapng::section_header("abcde")),
             "0A0D0D0A 2C000000 4D3C2B1A 01000000 FFFFFFFF FFFFFFFF "
             "04000500 61626364 65000000 00000000 2C000000");
 }
 
-TEST(Pcapng, AnInterfaceHasANameAndCountsNanoseconds) {
+TEST(Pcapng, AnInterfaceHasANameAndATimestampResolutionOfOneNanosecond) {
   EXPECT_EQ(hex(pcapng::interface_description(252, "com1")),
             "01000000 28000000 FC000000 00000000 02000400 636F6D31 09000100 09000000 00000000 28000000");
 }
 
-TEST(Pcapng, APacketHasItsInterfaceTimeAndDirection) {
+TEST(Pcapng, APacketHasATimeADirectionAndAnInterface) {
   pcapng::EnhancedPacket packet;
   packet.interface_id = 2;
   packet.timestamp = std::chrono::nanoseconds(0x0123456789ABCDEF);

@@ -143,7 +143,7 @@ TEST(DconMeaning, AFrameTooShortForAnAddressHasNoMeaning) {
   EXPECT_EQ(of_request("$0\r"), "");
 }
 
-TEST(DconMeaning, RefusalsIgnoredCommandsAndOtherRepliesAreDistinguished) {
+TEST(DconMeaning, ARejectionTheReplyToAnIgnoredCommandAndOtherRepliesAreDistinguished) {
   EXPECT_EQ(of_reply("?01\r"), "rejected");
   EXPECT_EQ(of_reply("?\r"), "rejected");
   EXPECT_TRUE(has(of_reply("!\r"), "ignored"));

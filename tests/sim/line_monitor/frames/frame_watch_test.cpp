@@ -76,7 +76,7 @@ TEST_F(FrameWatchTest, AModulesFrameEndsWhenItsDriverIsDisabled) {
   EXPECT_EQ(frames[0].ended, 3 * kCharacter);
 }
 
-TEST_F(FrameWatchTest, PiecesFromTheMasterWithAShortGapAreOneFrame) {
+TEST_F(FrameWatchTest, PiecesFromTheMasterAreOneFrameIfTheGapBetweenThemIsShort) {
   send(kMaster, {1, 5});
   watch.driver(kMaster, false, now);
   pass(milliseconds(4));
@@ -108,7 +108,8 @@ TEST_F(FrameWatchTest, UnansweredRequestsAreSeparateFrames) {
   EXPECT_EQ(frames[1].bytes, request);
 }
 
-// The shortest request has four bytes: Modbus over Serial Line V1.02, 2.3.
+// The shortest request has four bytes: the address, the function and the CRC (Modbus over Serial Line V1.02,
+// 2.3).
 TEST_F(FrameWatchTest, AnUnansweredRequestOfFourBytesIsAFrame) {
   send(kMaster, with_crc({5, 7}));
   pass(microseconds(3700));
@@ -134,7 +135,7 @@ TEST_F(FrameWatchTest, ACarriageReturnEndsADconFrame) {
   EXPECT_EQ(frames[1].began, 5 * kCharacter);
 }
 
-TEST_F(FrameWatchTest, AnIncompleteDconCommandWaitsFiveSecondsForMore) {
+TEST_F(FrameWatchTest, AnIncompleteDconCommandEndsAfterFiveSecondsWithoutAByte) {
   send(kMaster, dcon("$01"));
   pass(seconds(4));
   watch.driver(kModule, true, now);

@@ -39,7 +39,7 @@ std::string json_line_of(const Frame& frame) {
 }
 nlohmann::json json_of(const Frame& frame) { return nlohmann::json::parse(json_line_of(frame)); }
 
-TEST(BusLog, ReportsRateAndFormatOfAFrameThatStationsOfTheLineCannotReceive) {
+TEST(BusLog, ReportsTheBaudRateAndTheFormatOfAFrameThatReceiversInTheModeOfTheLineCannotRead) {
   Frame frame = frame_of(1, {1, 2, 3});
   frame.sent_in = {115200, LineFormat::k8N1};
   frame.line_in = {9600, LineFormat::k8N1};
@@ -64,7 +64,7 @@ TEST(TextLog, AFrameIsPrintedOnOneLine) {
   EXPECT_EQ(text_of(dcon(1, ">0004\r")), "   12.345679  < 01 EX9042D-M  >0004\\r  ; reply|");
 }
 
-TEST(BusLog, AStationAfterTheNamedOnesIsUnknown) {
+TEST(BusLog, AStationWithoutANameIsAnUnknownSender) {
   EXPECT_NE(text_of(frame_of(2, {1, 2, 3})).find("unknown sender"), std::string::npos);
   EXPECT_EQ(names().of(1), "01 EX9042D-M");
 }

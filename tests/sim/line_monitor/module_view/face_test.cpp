@@ -1,5 +1,5 @@
-// Tests that a Face contains the state of a module that viewers show, and that reading a Face does not change
-// the module. Tests the names of terminals.
+// Tests that a Face contains the part of a module's state that viewers show, and that reading a Face does not
+// change the module. Also tests the names of a module's terminals.
 #include "sim/line_monitor/module_view/face.hpp"
 
 #include <gtest/gtest.h>
