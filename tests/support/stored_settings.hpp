@@ -1,5 +1,6 @@
-// Converts the settings that StoredCopy reads from an EEPROM to the types of the core, for comparisons with
-// the core. Also writes copies of the settings as older and newer firmware does.
+// Converts the settings of a StoredCopy to the type Settings of the core, so that a test can compare them
+// with settings of the core. Also writes copies with the layout of older firmware or the length of newer
+// firmware.
 #pragma once
 
 #include <algorithm>
@@ -75,13 +76,13 @@ inline void put_layout_2(const Model& model, const Settings& settings, std::uint
   StoredCopy::seal(storing, memory, place);
 }
 
-/// Returns the byte at position `index` of a record's settings, for settings of newer firmware that this
-/// firmware does not support. The value is arbitrary.
+/// Returns an arbitrary value for the byte at position `index` of a record's settings. The byte belongs to a
+/// setting that only newer firmware supports.
 inline std::uint8_t unknown_byte(std::size_t index) { return static_cast<std::uint8_t>(0xC1U ^ index); }
 
-/// Returns the number of bytes that a record without unknown settings uses for `settings`. The record ends
-/// after the last setting that differs from its factory value, but not before the end of `safe_value`. The
-/// minimum is therefore 19 bytes.
+/// Returns the number of bytes that a record without unknown settings uses for `settings`. The
+/// settings in the record end with the last setting that differs from its factory value, but not before the
+/// end of `safe_value`. The minimum is therefore 19 bytes.
 inline std::size_t bytes_of_settings(const Settings& settings) {
   if (settings.response_delay != 0) {
     return 55;

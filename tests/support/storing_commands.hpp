@@ -1,6 +1,6 @@
 // Commands that make a module store settings, and timeouts of the host watchdog, which have the same effect
-// (wire.md section 8). ~AAXRRRRVVVV is not in this list. Each command and timeout has the expected settings,
-// which are calculated without the code of the core, except for its types and constants.
+// (wire.md section 8). The command ~AAXRRRRVVVV is not included. The expected settings after each command or
+// timeout are calculated without the code of the core, except for its types and constants.
 #pragma once
 
 #include <cstdint>

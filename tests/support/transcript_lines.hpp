@@ -20,8 +20,9 @@ class TranscriptLines {
   enum class Over { PseudoTerminal, Tcp };
 
   /// Each line has one module, with the model and the settings of the transcript at the same position. The
-  /// constructor switches the supplies of all modules off. With TCP, the program is the shipped one; with
-  /// pseudo-terminals, it is the program under test, which can have sanitizers.
+  /// constructor switches the supplies of all modules off. With TCP, the program is that of
+  /// `shipped_simulator_path`. With pseudo-terminals, it is that of `simulator_path`, which can have
+  /// sanitizers.
   TranscriptLines(const std::vector<const play::Transcript*>& transcripts, Over over);
 
   /// Returns the module for the transcript at `position`.

@@ -1,5 +1,5 @@
-// Loads transcripts, and adds up the waiting times in them. A transcript names its models. A scenario names
-// none.
+// Loads transcripts, and adds up the waiting times in them. A file with transcripts has at least one `model:`
+// line. A scenario has no such line.
 #pragma once
 
 #include <chrono>
@@ -12,12 +12,12 @@
 
 namespace ex9000::runner {
 
-/// Returns the transcripts of a file, one for each of its `model:` lines. Throws like play::load. Also throws
-/// std::invalid_argument if the file is a scenario.
+/// Returns the transcripts of a file, one for each of its `model:` lines. Throws std::invalid_argument if
+/// play::load throws it, or if the file is a scenario.
 inline std::vector<play::Transcript> load_transcripts(const std::string& path) {
   std::vector<play::Transcript> transcripts = play::load(path);
   if (transcripts[0].model == nullptr) {
-    sim::fail(path + ":1: requires at least one 'model:' line");
+    sim::fail(path + ":1: the file has no 'model:' line; a transcript requires at least one");
   }
   return transcripts;
 }

@@ -1,4 +1,4 @@
-"""Tests the parts of check-image separately, without a compiled image."""
+"""Tests parts of check-image separately, without a compiled image."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ class CallGraph(unittest.TestCase):
         chain = DeepestChains(self.graph(4)).below(0)
         self.assertEqual(str(chain), "reset 8 -> _ZL4turnv 24 -> _Z5writev 40")
         self.assertEqual(chain.size, 72)
-        # The frames of _Z4readv and memcpy, 16 + 32 bytes, are larger than that of _Z5writev, 40 bytes.
+        # The frames of _Z4readv and memcpy have 16 + 32 bytes together. The frame of _Z5writev has only 40 bytes.
         self.assertEqual(
             str(DeepestChains(self.graph(32)).below(0)), "reset 8 -> _ZL4turnv 24 -> _Z4readv 16 -> memcpy 32"
         )
@@ -184,7 +184,7 @@ Refusal answer (const struct State & state, struct Bytes args)
         self.assertFalse(self.reaches(12, 7, "Eeprom::busy(int)"))
         self.assertFalse(self.reaches(12, 7, "Eeprom::busy() const"))
 
-    def test_for_a_named_function_type_only_the_number_of_parameters_decides(self) -> None:
+    def test_only_the_parameter_count_limits_the_targets_of_a_call_through_a_named_function_type(self) -> None:
         self.assertTrue(self.reaches(13, 7, "ex::at(int, ex::Time)"))
         self.assertFalse(self.reaches(13, 7, "ex::at(int, ex::Time, int)"))
 
@@ -236,7 +236,7 @@ class MachineCode(unittest.TestCase):
             with self.subTest(text), self.assertRaises(StackPointerUnknown):
                 self.stack(text)
 
-    def test_calls_and_jumps_through_pointers_are_indirect_unlike_returns_direct_calls_and_table_jumps(self) -> None:
+    def test_only_calls_and_jumps_through_pointers_are_indirect(self) -> None:
         for mnemonic, operands, expected in (
             ("blx", "r3", True),
             ("bx", "r3", True),

@@ -1,4 +1,4 @@
-"""Tests check-image on images that it rejects: the reason that it prints."""
+"""Tests the reason that check-image prints when it rejects an image."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ class Refuses(unittest.TestCase):
             """,
         )
 
-    def test_an_unbounded_frame_is_refused(self) -> None:
+    def test_a_stack_frame_of_unknown_size_is_refused(self) -> None:
         source = """
             extern "C" void reset() {{ for (volatile int n = 0;; n = n + 1) {{ {} }} }}
             """
@@ -63,7 +63,7 @@ class Refuses(unittest.TestCase):
                 compile_options="-w",
             )
 
-    def test_a_reachable_assembler_function_that_foreign_does_not_list_is_refused(self) -> None:
+    def test_a_reachable_assembler_function_that_is_not_in_the_table_foreign_is_refused(self) -> None:
         self.refused(
             "foreign, reached by reset -> foreign: the compiler recorded no stack; add it to FOREIGN",
             """
@@ -74,7 +74,7 @@ class Refuses(unittest.TestCase):
             """,
         )
 
-    def test_a_memset_that_uses_more_stack_than_foreign_permits_is_refused(self) -> None:
+    def test_a_memset_that_uses_more_stack_than_the_table_foreign_permits_is_refused(self) -> None:
         self.refused(
             "memset, reached by reset -> memset: uses 64 bytes of stack; FOREIGN in linked_graph.py permits 16",
             """
@@ -129,7 +129,7 @@ class Refuses(unittest.TestCase):
             """,
         )
 
-    def test_a_level_of_a_handler_that_does_not_exist_is_refused(self) -> None:
+    def test_a_level_for_an_unknown_handler_is_refused(self) -> None:
         self.refused(
             "--level: no interrupt has the handler timer; name another one",
             'extern "C" void reset() { for (;;) {} }',
@@ -150,13 +150,13 @@ class Refuses(unittest.TestCase):
     def test_interrupts_disabled_for_too_long_are_refused(self) -> None:
         self.refused("interrupts are disabled for 21 instructions; at most 20 are permitted", holding("nop\\n" * 21))
 
-    def test_interrupts_disabled_in_a_loop_are_refused(self) -> None:
+    def test_a_loop_with_disabled_interrupts_is_refused(self) -> None:
         self.refused(
             "0x[0-9a-f]+: interrupts are disabled, and then there is a loop at .*",
             holding("1: cbz r0, 2f\\nb 1b\\n2: "),
         )
 
-    def test_interrupts_disabled_during_a_call_are_refused(self) -> None:
+    def test_a_call_with_disabled_interrupts_is_refused(self) -> None:
         self.refused(
             "0x[0-9a-f]+: interrupts are disabled, and then 0x[0-9a-f]+ makes a call or jump that check-image cannot"
             " follow",
@@ -172,7 +172,7 @@ class Refuses(unittest.TestCase):
             """,
         )
 
-    def test_interrupts_disabled_beyond_the_return_are_refused(self) -> None:
+    def test_a_return_with_disabled_interrupts_is_refused(self) -> None:
         self.refused(
             "0x[0-9a-f]+: interrupts are disabled, and then 0x[0-9a-f]+ returns",
             """

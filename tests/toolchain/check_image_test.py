@@ -1,4 +1,4 @@
-"""Tests check-image on images that it accepts, and the records of sizes."""
+"""Tests check-image on images that it accepts. Also tests the module that reads and writes the records of sizes."""
 
 from __future__ import annotations
 
@@ -39,7 +39,8 @@ class Accepts(unittest.TestCase):
             """,
             options="--verbose",
         )
-        # 8 bytes for the registers that reset saves, 24 and 100 for the arrays, 4 to round up to a multiple of eight.
+        # `reset` saves 8 bytes of registers. The arrays of `deep` and `deepest` have 24 and 100 bytes. The
+        # compiler rounds the frame of `deepest` up to 104 bytes, a multiple of eight.
         self.assertIn("main loop 136: reset 8 -> deep 24 -> deepest 104", verdict.figures)
         self.assertEqual(self.stack(verdict), 136 + EXCEPTION)
 
@@ -133,7 +134,7 @@ class Accepts(unittest.TestCase):
         )
         self.assertRegex(verdict.figures, r"main loop \d+: reset 8 -> other 0 -> same 80\n")
 
-    def test_a_handler_under_another_name_is_the_same_function(self) -> None:
+    def test_a_handler_that_is_an_alias_of_a_function_uses_the_stack_of_this_function(self) -> None:
         verdict = check(
             """
             extern "C" void reset() { for (;;) {} }
@@ -154,7 +155,7 @@ class Accepts(unittest.TestCase):
         self.assertRegex(verdict.figures, r"main loop \d+: reset 8 -> program 40\n")
         self.assertTrue(verdict.accepted, verdict.problems)
 
-    def test_the_memory_functions_of_newlib_use_no_more_stack_than_foreign_permits(self) -> None:
+    def test_the_memory_functions_of_newlib_use_no_more_stack_than_the_table_foreign_permits(self) -> None:
         source = """
             #include <string.h>
             unsigned char a[999], b[999];

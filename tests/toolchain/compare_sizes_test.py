@@ -25,17 +25,17 @@ class CompareSizes(unittest.TestCase):
         command = [str(PROGRAM), "--file", str(self.record), *options, str(self.built)]
         return subprocess.run(command, capture_output=True, text=True, check=False)
 
-    def test_five_percent_more_is_accepted(self) -> None:
+    def test_growth_by_five_percent_is_accepted(self) -> None:
         compared = self.compare("board IMAGE 1050 215 100")
         self.assertEqual((compared.returncode, compared.stderr), (0, ""))
 
-    def test_more_than_five_percent_more_flash_is_rejected_and_the_growth_is_printed(self) -> None:
+    def test_growth_of_the_flash_by_more_than_five_percent_is_rejected_and_printed(self) -> None:
         compared = self.compare("board IMAGE 1051 200 100")
         self.assertEqual(compared.returncode, 1)
         grown = "board IMAGE: has grown by more than 5 %: flash 1051 (+51), static 200, stack 100"
         self.assertIn(grown, compared.stderr)
 
-    def test_static_memory_and_stack_count_together(self) -> None:
+    def test_the_sum_of_static_ram_and_stack_is_compared(self) -> None:
         self.assertEqual(self.compare("board IMAGE 1000 100 215").returncode, 0)
         self.assertEqual(self.compare("board IMAGE 1000 200 116").returncode, 1)
 
@@ -44,7 +44,7 @@ class CompareSizes(unittest.TestCase):
         self.assertEqual(compared.returncode, 1)
         self.assertIn("board OTHER: is not in the record", compared.stderr)
 
-    def test_a_folder_without_sizes_is_rejected_and_the_record_stays(self) -> None:
+    def test_a_folder_without_sizes_is_rejected_and_the_record_does_not_change(self) -> None:
         with tempfile.TemporaryDirectory() as empty:
             command = [str(PROGRAM), "--file", str(self.record), "--record", empty]
             compared = subprocess.run(command, capture_output=True, text=True, check=False)

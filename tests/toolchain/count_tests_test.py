@@ -1,4 +1,4 @@
-"""Tests count-tests, which counts the tests in CTest's log for tests/run."""
+"""Tests count-tests. tests/run counts the tests in CTest's log with count-tests."""
 
 import pathlib
 import subprocess
@@ -9,7 +9,8 @@ COUNT_TESTS = pathlib.Path(__file__).resolve().parents[1] / "count-tests"
 
 
 def count(log, table):
-    """Returns the numbers that count-tests prints for these texts: passed, failed and skipped tests."""
+    """Runs count-tests on two files with the contents `log` and `table`. Returns the numbers of passed, failed and
+    skipped tests that count-tests prints."""
     with tempfile.TemporaryDirectory() as folder:
         files = [pathlib.Path(folder, name) for name in ("log", "table")]
         for file, text in zip(files, (log, table)):

@@ -1,4 +1,4 @@
-"""Tests image-info on small files that this program writes. tests/boards/image_info_test.py reads real images."""
+"""Tests image-info on small files that these tests create. tests/boards/image_info_test.py uses real images."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def hex_file(begin: int, content: bytes) -> bytes:
 
 
 class Reads(unittest.TestCase):
-    def test_each_format_has_the_same_content(self) -> None:
+    def test_files_of_each_format_give_the_same_content(self) -> None:
         for content, begin in ((STELLARIS, 0), (PICO, 0x10000000)):
             files = {
                 "ELF": elf((begin, content[:100]), (begin + 100, content[100:])),

@@ -34,10 +34,10 @@ STAGE = bytes(range(252)) + bytes(4)
 
 class SecondStage(unittest.TestCase):
     def test_the_checksum_is_crc_32_mpeg_2(self) -> None:
-        # The data sheet of the RP2040 requires the parameters of CRC-32/MPEG-2. This is the check value of that CRC.
+        # The data sheet of the RP2040 requires CRC-32/MPEG-2. The check value of this CRC is 0x0376E6E7.
         self.assertEqual(checksum(b"123456789"), 0x0376E6E7)
 
-    def test_the_last_four_bytes_become_the_checksum_of_the_others(self) -> None:
+    def test_the_last_four_bytes_become_the_checksum_of_the_252_bytes_before_them(self) -> None:
         before = elf((FLASH, STAGE), (FLASH + 256, b"image"))
         after = sealed(before)
         stage = flash_content(after)[FLASH]
@@ -57,7 +57,7 @@ class Uf2(unittest.TestCase):
         self.assertEqual(len(file) % BLOCK, 0)
         return [file[start : start + BLOCK] for start in range(0, len(file), BLOCK)]
 
-    def test_each_block_has_a_page_with_its_address_and_number(self) -> None:
+    def test_each_block_has_its_number_and_a_page_and_the_address_of_this_page(self) -> None:
         image = bytes(range(256)) + b"abc"
         blocks = self.blocks(uf2(elf((FLASH, STAGE), (FLASH + 256, image))))
         self.assertEqual(len(blocks), 3)

@@ -58,9 +58,10 @@ def check(
     link_options: str = "",
     not_in_script: str = "",
 ) -> Verdict:
-    """Builds an image from the sources and runs check-image on it. Each source is a translation unit. Adds the vector
-    table to the first one, and also an empty interrupt handler if the first one does not contain `interrupt`. If
-    `not_in_script` is not empty, the linker script lacks the lines that contain this text."""
+    """Builds an image from the sources and runs check-image on it with `options`. Each source becomes a translation
+    unit, which begins with PRELUDE. Adds the vector table to `source`. If `source` does not contain the text
+    `interrupt`, also adds an empty interrupt handler to it. If `not_in_script` is not empty, removes the lines that
+    contain this text from the linker script. Raises AssertionError if the compiler or the linker fails."""
     vectors = VECTORS if "interrupt" in source else NO_INTERRUPT + VECTORS
     with tempfile.TemporaryDirectory(prefix="check-image-") as folder:
         objects = []

@@ -62,7 +62,7 @@ TEST(WholeNumber, ANumberWithoutAnUpperBoundMayHave64Bits) {
   expect_refused(parse, {"0", "18446744073709551616", "", "-1", "1e3"}, "a whole number of at least 1");
 }
 
-TEST(WholeNumber, IsEmptyIfTheTextIsNotAValidNumber) {
+TEST(WholeNumber, IsNulloptIfTheTextIsNotAWholeNumberUpToTheMaximum) {
   EXPECT_EQ(whole_number("0", 7), 0U);
   EXPECT_EQ(whole_number("7", 7), 7U);
   EXPECT_EQ(whole_number("18446744073709551615", kMost), kMost);

@@ -1,5 +1,5 @@
-// A model of the microcontroller (a UART with its RS-485 driver, three timers, a clock and a watchdog) and of
-// the other hardware of a module, for example its memory.
+// A model of the microcontroller (a UART with its RS-485 driver, three timers, a tick, a clock and a
+// watchdog) and of the other hardware of a module, for example the memory.
 #pragma once
 
 #include <algorithm>
@@ -25,17 +25,18 @@ struct Sent {
   std::string bytes;
 };
 
-/// Simulates only the hardware. Stores the times of the next events; `kNever` if none is due. At `sent_due`,
-/// the owner must call `shift`. At each other time, the owner must set this time to `kNever` or to the next
-/// event, and call the interrupt handler. At `tick_due`, it must also increment `ticks`. While `interrupts()`
-/// is true, it must call the interrupt handler of the UART.
+/// Simulates only the hardware. Each member `..._due` is the time of the next event of one kind, or `kNever`
+/// if no such event is due. At `sent_due`, the owner must call `shift`. At the time in another of these
+/// members, the owner must set this member to `kNever` or to the time of its next event, and call the
+/// interrupt handler for the event. At `tick_due`, the owner must also increment `ticks`. While
+/// `interrupts()` is true, the owner must call the interrupt handler of the UART.
 class Chip final : public hal::bus::Peripherals {
  public:
   static constexpr std::uint32_t kNever = 0xFFFF'FFFF;
   static constexpr std::uint32_t kCharacter = 87;  ///< microseconds for each character at 115200 baud
   static constexpr std::uint32_t kMemoryJob = 3000;
 
-  /// The clock begins at 50 minutes, in the second half of its 32-bit range. A time of 0 that was never set
+  /// The clock begins at 50 minutes, in the second half of its 32-bit range. The initial value 0 of a time
   /// is therefore in the future, not in the past.
   std::uint32_t now = 3'000'000'000;
   std::uint32_t tick_due = now + 1000;
@@ -48,13 +49,13 @@ class Chip final : public hal::bus::Peripherals {
   std::vector<Sent> sent;
   std::uint16_t outputs = 0;
   unsigned ticks = 0;
-  unsigned feeds = 0;  ///< how often the watchdog was fed
+  unsigned feeds = 0;  ///< the number of times that the watchdog was fed
 
   [[nodiscard]] std::uint32_t next() const {
     return std::min({tick_due, silence_due, line_end_due, wake_due, memory_due, sent_due});
   }
 
-  // --- the UART; see hal/pl011/uart.hpp for its driver ---
+  // --- the UART; the code in hal/pl011/uart.hpp accesses its registers ---
 
   [[nodiscard]] bool driving() const { return driving_; }
   /// Returns whether a received byte causes an interrupt.
@@ -122,7 +123,7 @@ class Chip final : public hal::bus::Peripherals {
     } else if (holding_ < 0) {
       holding_ = byte;
     } else {
-      throw std::logic_error("a byte is written over the one that waits");
+      throw std::logic_error("a byte is written while another byte waits");
     }
   }
   void begin_shifting(std::uint8_t byte) {
@@ -137,7 +138,7 @@ class Chip final : public hal::bus::Peripherals {
     if (on) {
       sent.push_back({now, kNever, ""});
     } else if (sent_due != kNever || sent.back().bytes.empty()) {
-      throw std::logic_error("the driver goes off in the middle of a byte, or before the first");
+      throw std::logic_error("the driver is switched off during a byte, or before the first byte");
     }
     driving_ = on;
   }
@@ -150,7 +151,7 @@ class Chip final : public hal::bus::Peripherals {
   bool driving_ = false;
 };
 
-/// The chip that the following drivers use.
+/// The chip that the following classes use.
 inline Chip* chip = nullptr;
 
 struct Clock {

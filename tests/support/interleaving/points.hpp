@@ -1,4 +1,4 @@
-// The points at which an interrupt can occur between two accesses of the main loop.
+// The points at which an interrupt can occur between two accesses by the main loop.
 #pragma once
 
 #include <functional>

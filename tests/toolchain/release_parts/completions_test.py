@@ -26,7 +26,7 @@ class Bash(unittest.TestCase):
         cls.script = written("bash-completion", str(PROGRAM))
 
     def complete(self, *words: str) -> list[str]:
-        """Returns the completions of the last word in a folder that contains bus.json."""
+        """Returns the completions of the last of `words`. The current folder contains one file, bus.json."""
         with tempfile.TemporaryDirectory() as folder, tempfile.NamedTemporaryFile("w") as script:
             open(f"{folder}/bus.json", "w", encoding="utf-8").close()
             script.write(self.script)
@@ -61,7 +61,7 @@ class Bash(unittest.TestCase):
 
 
 class Zsh(unittest.TestCase):
-    def test_it_names_the_program_and_an_option(self) -> None:
+    def test_the_script_names_the_program_and_an_option(self) -> None:
         script = written("zsh-completion", str(PROGRAM))
         self.assertTrue(script.startswith("#compdef ex9000-sim\n"))
         self.assertIn("--tcp[", script)

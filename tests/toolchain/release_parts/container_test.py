@@ -1,4 +1,4 @@
-"""Tests the tar file of the container image, which must be an OCI image layout and have a manifest for Docker."""
+"""Tests the tar file of the container image. This file must contain an OCI image layout and a manifest for Docker."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class Container(unittest.TestCase):
         self.assertEqual(descriptor["digest"], "sha256:" + hashlib.sha256(blob).hexdigest())
         return blob
 
-    def test_the_oci_layout_leads_to_the_program(self) -> None:
+    def test_the_layer_of_the_oci_layout_contains_the_program(self) -> None:
         self.assertEqual(json.loads(self.files["oci-layout"]), {"imageLayoutVersion": "1.0.0"})
         (entry,) = json.loads(self.files["index.json"])["manifests"]
         manifest = json.loads(self.blob(entry))
@@ -40,7 +40,7 @@ class Container(unittest.TestCase):
         self.assertEqual(config["created"], "2026-09-21T14:13:20Z")
         self.assertEqual(contents(layer)["ex9000-sim"], PROGRAM)
 
-    def test_the_docker_manifest_names_the_same_files(self) -> None:
+    def test_the_docker_manifest_names_the_same_files_as_the_oci_manifest(self) -> None:
         (docker,) = json.loads(self.files["manifest.json"])
         (entry,) = json.loads(self.files["index.json"])["manifests"]
         manifest = json.loads(self.blob(entry))

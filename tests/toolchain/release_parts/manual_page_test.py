@@ -16,7 +16,7 @@ class ManualPage(unittest.TestCase):
     def setUpClass(cls) -> None:
         cls.page = written("manual-page", str(PROGRAM))
 
-    def test_it_has_the_options_of_the_program_and_of_describe_and_every_subcommand(self) -> None:
+    def test_the_page_has_every_subcommand_and_the_options_of_the_program_and_of_describe(self) -> None:
         helps = read(printed("--help"))
         for option in [*helps.options, *read(printed("describe", "--help")).options]:
             for name in option.names:
@@ -25,7 +25,7 @@ class ManualPage(unittest.TestCase):
         for name in helps.subcommands:
             self.assertIn(f"\n.Ss {name}\n", self.page)
 
-    def test_its_date_is_that_of_the_release(self) -> None:
+    def test_the_date_of_the_page_is_the_date_of_the_release(self) -> None:
         self.assertTrue(self.page.startswith(".Dd September 21, 2026\n"))
 
     @unittest.skipUnless(shutil.which("mandoc"), "mandoc is not installed")

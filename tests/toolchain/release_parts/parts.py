@@ -17,7 +17,7 @@ sys.path.insert(0, str(ROOT / "toolchain/release_parts"))
 
 def written(*words: str) -> str:
     """Runs toolchain/release_parts/write with the arguments `words`. Returns its standard output. Raises AssertionError
-    if the program fails."""
+    if its exit status is not 0."""
     environment = {"PATH": "/usr/bin:/bin", "SOURCE_DATE_EPOCH": str(SECONDS)}
     done = subprocess.run([str(WRITE), *words], env=environment, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr

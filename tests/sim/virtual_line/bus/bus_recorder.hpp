@@ -1,4 +1,5 @@
-// Records the complete bytes on a virtual line, and when stations enable or disable their drivers.
+// Records the complete bytes on a virtual line, and the times at which stations enable or disable their
+// drivers.
 #pragma once
 
 #include <cstdint>

@@ -46,7 +46,7 @@ class Listener final : public Station {
   BusEnd& wire_;
 };
 
-/// A station whose end of the wires the test controls. The station does not listen.
+/// A station that does not listen. The test controls this station's end of the wires.
 class Sender final : public Station {
  public:
   void run() override {}
@@ -284,7 +284,7 @@ TEST_F(BusTest, OverlappingBytesAreReportedAsACollisionAndArriveCorrupted) {
   EXPECT_TRUE(spoiled);
 }
 
-TEST_F(BusTest, ADriverDisabledInMidByteLeavesTheLineIdle) {
+TEST_F(BusTest, IfADriverIsDisabledDuringAByteTheLineBecomesIdle) {
   const auto sender = master(9600);
   Listener listener(bus_, 9600);
   SimulatedModule module(bus_, *find_model("EX9042D-M"));
@@ -326,7 +326,7 @@ TEST_F(BusTest, ACommandSentToAnUnpoweredModuleIsNotExecutedLater) {
   EXPECT_EQ(recorder.sent_by(1), (std::vector<std::uint8_t>{'!', '0', '1', '9', '0', '4', '3', 'D', '\r'}));
 }
 
-TEST_F(BusTest, AReceiverEnabledInMidByteDoesNotReceiveThatByte) {
+TEST_F(BusTest, AReceiverThatIsEnabledDuringAByteDoesNotReceiveThisByte) {
   const auto sender = master(9600);
   Listener listener(bus_, 0);
   send(*sender, {0x55});

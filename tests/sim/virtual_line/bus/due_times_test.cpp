@@ -1,4 +1,4 @@
-// Tests DueTimes. One test compares its results with those of a search through all stations.
+// Tests DueTimes. One test compares the results of DueTimes with those of a search through all stations.
 #include "sim/virtual_line/bus/due_times.hpp"
 
 #include <gtest/gtest.h>

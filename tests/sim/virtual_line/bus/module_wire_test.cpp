@@ -77,7 +77,7 @@ TEST_F(ModuleWireTest, AReplyKeepsItsForcedRateToTheEnd) {
   EXPECT_EQ(wires.happened, (Happened{"5 on", "5 a 1200", "5 b 1200", "5 off", "5 on", "5 c 9600"}));
 }
 
-TEST_F(ModuleWireTest, EndingTheDelaySendsALateReplyImmediately) {
+TEST_F(ModuleWireTest, IfTheDelaysEndTheFirstReplyIsSentImmediatelyAndTheTimeBetweenRepliesStaysTheSame) {
   watch();
   fate.late_by = 1h;
   reply(5ms, 'a');
@@ -91,7 +91,7 @@ TEST_F(ModuleWireTest, EndingTheDelaySendsALateReplyImmediately) {
   EXPECT_EQ(wires.happened.size(), 9U);
 }
 
-TEST_F(ModuleWireTest, AReplyWhoseDelayEndsWhenItBeginsIsNotLateAnyMore) {
+TEST_F(ModuleWireTest, IfTheDelayEndsAtTheStartOfAReplyTheReplyIsNotLate) {
   watch();
   fate.late_by = 1h;
   run_until(5ms);
@@ -117,7 +117,7 @@ TEST_F(ModuleWireTest, LimitsTheNumberOfStoredLateReplies) {
   EXPECT_GT(wires.happened.size(), 65'000U);
 }
 
-TEST_F(ModuleWireTest, ReportsTheEndOfAReplyThatIsLostBecauseTooManyAreLate) {
+TEST_F(ModuleWireTest, ReportsTheEndOfAReplyThatIsLostBecauseTooManyRepliesAreLate) {
   watch();
   fate.late_by = 1h;
   for (int i = 0; i < 30'000; ++i) {
@@ -127,7 +127,7 @@ TEST_F(ModuleWireTest, ReportsTheEndOfAReplyThatIsLostBecauseTooManyAreLate) {
   EXPECT_EQ(on_the_wires.back(), "30000 off");
 }
 
-TEST_F(ModuleWireTest, ReportsTheStartAndEndOfEachReplyOnTheWiresAndEachAbortedOrLostReply) {
+TEST_F(ModuleWireTest, ReportsTheStartAndEndOfEachReplyOnTheWiresAndOnlyTheEndOfEachDroppedOrLostReply) {
   watch();
   fate.late_by = 20ms;
   reply(5ms, 'a');
@@ -181,7 +181,7 @@ TEST_F(ModuleWireTest, ALateReplyIsSentUnchangedAfterTheUartHasFinished) {
   EXPECT_EQ(wires.happened, (Happened{"55 on", "55 a 9600", "56 off"}));
 }
 
-TEST_F(ModuleWireTest, AReplyAfterALateOneIsSentAfterIt) {
+TEST_F(ModuleWireTest, AReplyThatFollowsALateReplyIsSentAfterTheLateReply) {
   watch();
   fate.late_by = 50ms;
   reply(5ms, 'a');
@@ -191,7 +191,7 @@ TEST_F(ModuleWireTest, AReplyAfterALateOneIsSentAfterIt) {
   EXPECT_EQ(wires.happened, (Happened{"55 on", "55 a 9600", "56 off", "56 on", "56 b 9600", "57 off"}));
 }
 
-TEST_F(ModuleWireTest, AReplyThatBeginsDuringALateOneIsSentAfterIt) {
+TEST_F(ModuleWireTest, AReplyThatBeginsDuringALateReplyIsSentAfterAllLateReplies) {
   watch();
   fate.late_by = 4ms;
   reply(5ms, 'a');

@@ -1,5 +1,5 @@
-// Compares the bytes that stations receive with the bytes of receivers that sample every bit of the whole
-// traffic. The bus itself samples for a station only if the station cannot get a byte unchanged.
+// Tests that stations receive the same bytes as receivers that sample every bit of the whole traffic. The
+// bus itself samples for a station only if the station cannot get a byte unchanged.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -320,8 +320,8 @@ std::vector<Received> sampled(const Recorder& recorder, const Trouble& trouble, 
 
 class Reception : public testing::TestWithParam<Trouble> {};
 
-/// Compares the bytes that the talkers and the listeners receive in random traffic with those of sampling
-/// receivers. Returns the number of compared bytes.
+/// Expects that, in random traffic, each talker and each listener receives the same bytes as a sampling
+/// receiver. Returns the number of compared bytes.
 std::size_t compare(const Trouble& trouble, std::uint64_t seed) {
   Random random(seed);
   VirtualClock clock;

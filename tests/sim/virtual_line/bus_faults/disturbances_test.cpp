@@ -134,7 +134,7 @@ TEST(Echo, RepeatsTheBytesThatItReceivesWhileItIsOn) {
   EXPECT_EQ(line.heard, (Heard{{4, ByteStatus::Good}}));
 }
 
-TEST(Echo, WaitsForAPauseAlsoAfterMoreBytesThanItRepeats) {
+TEST(Echo, WaitsForAPauseEvenIfItReceivesMoreBytesThanItRepeats) {
   constexpr std::size_t kMost = 1024;
   TwoOnALine line;
   Echo echo(line.bus, {9600});
@@ -147,7 +147,7 @@ TEST(Echo, WaitsForAPauseAlsoAfterMoreBytesThanItRepeats) {
   EXPECT_EQ(line.heard, Heard(bytes.size() + kMost, {0x55, ByteStatus::Good}));
 }
 
-TEST(Module, ALateDriverHoldsTheLineForTheSetTime) {
+TEST(Module, ALateDriverHoldsTheLineForTheGivenTime) {
   for (const VirtualTime late : {VirtualTime(0), VirtualTime(milliseconds(7))}) {
     Line line({parse_module_spec("EX9042D-M@01,protocol=ascii")}, kPaced, [](std::uint8_t, ByteStatus) {});
     BusRecorder recorder;

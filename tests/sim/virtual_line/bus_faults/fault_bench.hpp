@@ -52,8 +52,8 @@ class FaultBench {
       line_.bus().run_until(line_.bus().next());
     }
   }
-  /// Sends `command` and a CR. Returns everything that the master receives until `patience` after the end of
-  /// the request, without a final CR.
+  /// Sends `command` and a CR, and then waits for the time `patience`. Returns everything that the master has
+  /// received since the call. Removes a final CR from the result.
   std::string ask(const std::string& command, VirtualTime patience = std::chrono::milliseconds(50)) {
     forget();
     send(command + "\r");

@@ -1,4 +1,4 @@
-// Tests when faults occur, and how long they last.
+// Tests the schedules and the durations of faults.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -111,7 +111,7 @@ TEST(FaultsSchedule, AReplyFaultMayLastBeyondTheReply) {
   FaultBench bench;
   bench.add("lost-reply every 3rd reply for 100ms");
   const std::string which = answered(bench, 6);  // each request and the wait for its reply take about 55 ms
-  EXPECT_EQ(which, "xx..x.");                    // the sixth reply is lost again
+  EXPECT_EQ(which, "xx..x.");                    // the sixth reply triggers the fault again
 }
 
 TEST(FaultsSchedule, AReplyFaultHasItsProbabilityAndIsReproducibleFromTheSeed) {
@@ -127,7 +127,7 @@ TEST(FaultsSchedule, AReplyFaultHasItsProbabilityAndIsReproducibleFromTheSeed) {
   EXPECT_NEAR(lost, 0.25, 4 * std::sqrt(0.25 * 0.75 / 2000));
 }
 
-TEST(FaultsSchedule, APowerCutAfterWritesOccursAfterTheWriteAndBeforeItsReply) {
+TEST(FaultsSchedule, APowerCutAfterWritesOccursAfterTheLastCountedWriteAndBeforeTheReply) {
   FaultBench bench;
   bench.add("power-cut after 3 writes");
   EXPECT_EQ(bench.ask("~01OFIRST"), "!01");
@@ -143,7 +143,7 @@ TEST(FaultsSchedule, APowerCutAfterWritesOccursAfterTheWriteAndBeforeItsReply) {
   EXPECT_EQ(bench.faults().list()[0].occurrences_so_far, 1U);
 }
 
-TEST(FaultsSchedule, OnlyTheWritesOfTheFaultsModuleAreCounted) {
+TEST(FaultsSchedule, AFaultOfOneModuleCountsOnlyTheWritesOfThisModule) {
   FaultBench bench(two());
   bench.add("gone after 1 write for 1s", 2);
   EXPECT_EQ(bench.ask("~01OOTHER"), "!01");

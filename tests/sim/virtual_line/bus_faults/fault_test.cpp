@@ -152,7 +152,7 @@ struct Wrong {
 
 class WrongFault : public testing::TestWithParam<Wrong> {};
 
-TEST_P(WrongFault, IsRefusedInOneLineThatNamesTheErrorAndTheRemedy) {
+TEST_P(WrongFault, IsRefusedWithAOneLineMessageThatNamesTheErrorAndTheRemedy) {
   const std::string why = why_not(GetParam().text);
   EXPECT_NE(why.find(GetParam().names), std::string::npos) << why;
   EXPECT_NE(why.find(GetParam().mend), std::string::npos) << why;

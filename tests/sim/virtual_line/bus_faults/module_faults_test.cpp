@@ -24,7 +24,7 @@ TEST(WrongRate, IsUsedForReceivingAndSending) {
   EXPECT_EQ(bench.ask("$01M"), kName);
 }
 
-TEST(Gone, RemovesTheSupplyAndRestoresIt) {
+TEST(Gone, SwitchesTheSupplyOffUntilTheFaultIsRemoved) {
   FaultBench bench;
   bench.ask("@010A05");
   bench.ask("$015");

@@ -50,7 +50,7 @@ TEST(LateReply, KeepsTheOrderOfTheReplies) {
   EXPECT_EQ(bench.heard(), kName + "\r!01400600\r>0000\r!01D01.00\r");
 }
 
-TEST(LateReply, IsSentImmediatelyIfItsFaultIsRemovedAndDoesNotDelayTheNextReply) {
+TEST(LateReply, IfItsFaultIsRemovedItIsSentImmediatelyAndTheNextReplyIsNotLate) {
   for (const bool all : {false, true}) {
     FaultBench bench;
     const std::size_t fault = bench.add("late-reply 1h");
@@ -188,7 +188,7 @@ TEST(LateDriver, ANewTimeCountsFromTheEndOfTheReply) {
   EXPECT_LE(held, 40ms + 3us);
 }
 
-TEST(LateDriver, HoldsTheLineForTheGivenTimeAndBlocksARequestDuringIt) {
+TEST(LateDriver, HoldsTheLineForTheGivenTimeAndBlocksRequestsDuringThisTime) {
   FaultBench bench;
   bench.add("late-driver 20ms");
   EXPECT_EQ(bench.ask("$01M", 15ms), kName);

@@ -21,8 +21,8 @@ InputProgram parsed(const std::string& text) { return parse_input_program(text, 
 /// The times at which the level of an input changes, and the new levels.
 using Moves = std::vector<std::pair<VirtualTime, bool>>;
 
-/// A module and a program that changes the level of one of its inputs. The program starts when the line's
-/// time is 100 ms.
+/// A module, and a program that changes the level of one input of this module. The program starts when the
+/// line's time is 100 ms.
 class InputBench {
  public:
   explicit InputBench(const std::string& program, const std::string& edge = "falling", std::uint64_t seed = 1)

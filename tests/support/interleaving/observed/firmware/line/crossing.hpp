@@ -1,6 +1,7 @@
-// Replaces firmware/line/crossing.hpp and has the same interface. Before and after each access of the main
-// loop there is a point at which an interrupt can occur. The classes throw std::logic_error if the wrong side
-// calls a function, or if an interrupt uses a value while the main loop writes it.
+// Replaces firmware/line/crossing.hpp and has the same interface. An interrupt can occur before and after
+// each access by the main loop. The classes throw std::logic_error if an interrupt calls a function for the
+// main loop, if the main loop calls a function for interrupts, or if an interrupt uses a value while the main
+// loop writes it.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +17,8 @@ namespace detail {
 inline void require_side(bool interrupt) {
   if (interleaving::Points::in_interrupt() != interrupt) {
     throw std::logic_error(
-        "an interrupt has called a function for the main loop, or the main loop a function for interrupts");
+        "an interrupt has called a function for the main loop, or the main loop has called a function "
+        "for interrupts");
   }
 }
 

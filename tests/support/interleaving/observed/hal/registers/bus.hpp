@@ -1,5 +1,5 @@
-// Replaces hal/registers/bus.hpp. A test supplies the registers. Before and after each access of the main
-// loop there is a point at which an interrupt can occur.
+// Replaces hal/registers/bus.hpp. A test supplies the registers. An interrupt can occur before and after each
+// access by the main loop.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace ex9000::hal::bus {
 
-/// Implements the registers at all addresses. The test supplies it.
+/// The registers at all addresses. A test implements this interface.
 class Peripherals {
  public:
   virtual std::uint32_t read(std::uint32_t address) = 0;
