@@ -88,7 +88,7 @@ bool ChildProcess::read_more() {
   pollfd ready{out_, POLLIN, 0};
   const int result = poll(&ready, 1, kHangMilliseconds);
   if (result == 0) {
-    kill(pid_, SIGKILL);  // a hanging program would keep `wait` waiting
+    kill(pid_, SIGKILL);  // otherwise, `wait` does not return
   }
   return result == 1 && append_from(out_, output_);
 }

@@ -11,10 +11,10 @@ class ChildProcess {
  public:
   enum class Errors { Apart, WithOutput };
 
-  /// Starts the program in the working directory `directory`. The first word of `command` is a path, or a
-  /// name that is searched in PATH. Throws std::runtime_error if the program does not start. With `Apart`,
-  /// the program writes to the standard error of the test; with `WithOutput`, `output()` includes its
-  /// standard error.
+  /// Starts the program in the working directory `directory`. The first word of `command` is a path, or the
+  /// name of a program in a directory of PATH. Throws std::runtime_error if the program does not start. With
+  /// `Apart`, the standard error of the program goes to the standard error of the test. With `WithOutput`,
+  /// `output()` includes the standard error of the program.
   ChildProcess(const std::vector<std::string>& command, const std::string& directory,
                Errors errors = Errors::Apart);
   ~ChildProcess();
@@ -28,11 +28,11 @@ class ChildProcess {
   /// Returns all output that has been read so far.
   [[nodiscard]] const std::string& output() const { return output_; }
 
-  /// Sends `signal` and waits until the program ends. Returns its exit status, or 128 plus the number of the
-  /// signal that has ended it.
+  /// Sends `signal` to the program, then calls `wait`. Returns the result of `wait`.
   int end(int signal);
-  /// Waits until the program ends. Kills a program that prints nothing for 60 s. Returns the same value as
-  /// `end`. Call neither `end` nor `wait` again after one of them has returned.
+  /// Waits until the program ends. Kills a program that prints nothing for 60 s. Returns the exit status, or
+  /// 128 plus the number of the signal that has ended the program. Call neither `end` nor `wait` again after
+  /// one of them has returned.
   int wait();
 
  private:
@@ -50,7 +50,7 @@ struct Finished {
 };
 
 /// Runs a command in the working directory `directory` and waits until it ends. The first word is a path, or
-/// a name that is searched in PATH. Throws std::runtime_error if the command does not start.
+/// the name of a program in a directory of PATH. Throws std::runtime_error if the command does not start.
 Finished run(const std::vector<std::string>& command, const std::string& directory = "/");
 
 }  // namespace ex9000::system

@@ -43,7 +43,7 @@ bool ControlClient::read_more() {
   constexpr int kHangMilliseconds = 60'000;
   pollfd ready{fd_, POLLIN, 0};
   if (poll(&ready, 1, kHangMilliseconds) != 1) {
-    throw std::runtime_error("the simulator has not answered for a minute");
+    throw std::runtime_error("the simulator has sent nothing for 60 s");
   }
   std::array<char, 4096> buffer{};
   const ssize_t size = recv(fd_, buffer.data(), buffer.size(), 0);

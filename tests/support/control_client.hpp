@@ -27,12 +27,12 @@ class ControlClient {
   std::size_t offer(const std::string& bytes);
   /// Closes the sending direction. The client can still receive.
   void close_writing();
-  /// Returns the next line without the newline. Throws std::runtime_error if the connection ends earlier, or
-  /// if nothing arrives for 60 s.
+  /// Waits for the next line and returns it without the newline. Throws std::runtime_error if the connection
+  /// ends before the newline, or if nothing arrives for 60 s.
   std::string line();
-  /// Returns whether the simulator has closed the connection and all its bytes have been read. If no byte is
-  /// left to read, first waits for a byte or for the end of the connection. Throws std::runtime_error if
-  /// neither arrives within 60 s.
+  /// Returns whether the simulator has closed the connection and all bytes from the simulator have been read.
+  /// If there is no byte to read, first waits for a byte or for the end of the connection. Throws
+  /// std::runtime_error if neither arrives within 60 s.
   bool at_end();
 
  private:

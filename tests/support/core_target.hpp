@@ -1,5 +1,5 @@
-// A transcript target: the core in virtual time. It can record which rows of the core's tables, refusals and
-// verdicts the transcripts reach.
+// A transcript target: the core in virtual time. It can record which refusals, which verdicts and which rows
+// of the core's tables the transcripts reach.
 #pragma once
 
 #include "sim/app/play/bus_target.hpp"

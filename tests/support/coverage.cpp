@@ -40,8 +40,8 @@ constexpr std::array<std::pair<Verdict, const char*>, 6> kVerdicts{{
     {Verdict::TooShort, "TooShort"},
     {Verdict::TooLong, "TooLong"},
     // Open, Ignored and NoRoom are not required. LineError and Overrun are not required either: `note` passes
-    // each byte to the assembler without an error, so the assembler does not return them. See
-    // tests/firmware/line/*_assembler_test.cpp for tests of LineError and Overrun.
+    // each byte to the assembler with ByteStatus::Good, so the assembler returns neither LineError nor
+    // Overrun. See tests/firmware/line/*_assembler_test.cpp for tests of these two verdicts.
 }};
 
 std::string hex_code(unsigned code) {
@@ -81,8 +81,9 @@ std::vector<unsigned> functions_of(modbus::Functions functions) {
 }  // namespace
 
 void Coverage::note(const Module& module, const play::Bytes& sent, const play::Bytes& heard) {
-  // Passes the bytes to a new assembler. Its verdict can differ from that of the module's assembler. If the
-  // transcript waits in the middle of a frame, `sent` is only a part of the frame.
+  // Passes the bytes to a new assembler. The verdict of the new assembler can differ from the verdict of the
+  // module's assembler. For example, if the transcript waits in the middle of a frame, `sent` is only a part
+  // of the frame.
   const InForce& in_force = module.state().in_force;
   FrameQueue queue;
   Verdict verdict = Verdict::Open;

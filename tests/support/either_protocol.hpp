@@ -16,7 +16,7 @@ namespace ex9000 {
 class EitherProtocol {
  public:
   using Bytes = std::vector<std::uint8_t>;
-  /// Sends a frame and returns the reply. Returns nothing if there is no reply.
+  /// Sends a frame and returns the reply. Returns an empty vector if there is no reply.
   using Exchange = std::function<Bytes(const Bytes& frame)>;
 
   EitherProtocol(Protocol protocol, Exchange exchange)
@@ -44,9 +44,9 @@ class EitherProtocol {
     const Bytes reply = ask("~012", {1, 0x01, 0x01, 0x04, 0, 1});
     return ascii() ? reply.at(3) == '1' : reply.at(3) == 1;
   }
-  /// Returns whether the module was reset since the last call. In ASCII, sends `$AA5`. In Modbus, reads the
-  /// bus message counter, which is 1 if this is the first message after a reset. Therefore a Modbus test must
-  /// send no other message between the reset and this call.
+  /// Returns whether the module has been reset since the last call. In ASCII, sends `$AA5`. In Modbus, reads
+  /// the bus message counter. The counter is 1 if the request that reads it is the first message after a
+  /// reset. Therefore a Modbus test must send no other message between the reset and this call.
   bool was_reset() {
     const Bytes reply = ask("$015", {1, 0x08, 0, 0x0B, 0, 0});
     return ascii() ? reply.at(3) == '1' : (reply.at(4) << 8U | reply.at(5)) == 1;

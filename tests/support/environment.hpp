@@ -12,7 +12,8 @@ namespace ex9000 {
 /// the value is not a decimal number of up to 18 digits, so that a mistake does not replace a long run by a
 /// short one.
 inline std::uint64_t number_in_environment(const char* variable, std::uint64_t otherwise) {
-  const char* const text = std::getenv(variable);  // NOLINT(concurrency-mt-unsafe): tests set none
+  // NOLINTNEXTLINE(concurrency-mt-unsafe): no caller uses setenv
+  const char* const text = std::getenv(variable);
   if (text == nullptr) {
     return otherwise;
   }
@@ -24,11 +25,12 @@ inline std::uint64_t number_in_environment(const char* variable, std::uint64_t o
   return std::stoull(digits);
 }
 
-/// Returns true if the environment variable EX9000_CUTS is `all`, which selects all cases. Returns false if
-/// the variable is not set, which selects some of the cases. Throws std::runtime_error if the variable has
+/// Returns whether the test must run all cases, and not only some cases: true if the environment variable
+/// EX9000_CUTS is `all`, false if EX9000_CUTS is not set. Throws std::runtime_error if EX9000_CUTS has
 /// another value.
 inline bool all_cases_requested() {
-  const char* const which = std::getenv("EX9000_CUTS");  // NOLINT(concurrency-mt-unsafe): tests set none
+  // NOLINTNEXTLINE(concurrency-mt-unsafe): no caller uses setenv
+  const char* const which = std::getenv("EX9000_CUTS");
   if (which != nullptr && std::string(which) != "all") {
     throw std::runtime_error(
         "EX9000_CUTS=" + std::string(which) +

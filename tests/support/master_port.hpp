@@ -42,7 +42,7 @@ class TerminalPort final : public MasterPort {
   static std::vector<std::uint8_t> not_empty(std::vector<std::uint8_t> bytes) {
     if (bytes.empty()) {
       throw std::runtime_error(
-          "the simulator has written bytes, but none has arrived within 60 s, or it has closed the port");
+          "no byte from the simulator has arrived within 60 s, or the simulator has closed the port");
     }
     return bytes;
   }

@@ -1,5 +1,5 @@
-// A transcript target: a module of a running ex9000-sim in stepped time. It uses a port of the module's line
-// and the control socket.
+// A transcript target: a module of a running ex9000-sim in stepped time. The target uses a port of the
+// module's line and the control socket.
 #pragma once
 
 #include <chrono>
@@ -17,10 +17,10 @@ namespace ex9000::system {
 class ProcessTarget final : public play::Target {
  public:
   /// `number` identifies the module on the control socket. The module must be the only one on the line
-  /// `line`, and `port` must be connected to that line. The module must have the model, the stored settings,
-  /// and the levels of INIT* and of the inputs that Target::start describes. Its supply must be off, because
-  /// `start` only switches the supply on. `control` must live at least as long as this object. The simulator
-  /// must run with --speed step.
+  /// `line`, and `port` must be connected to that line. The model, the stored settings, INIT* and the inputs
+  /// of the module must be as Target::start describes. The supply of the module must be off, because `start`
+  /// only switches the supply on. `control` must live at least as long as this object. The simulator must run
+  /// with --speed step.
   ProcessTarget(std::unique_ptr<MasterPort> port, ControlClient& control, std::string line,
                 std::size_t number);
 

@@ -11,9 +11,9 @@
 namespace ex9000::system {
 
 /// A gateway for Modbus RTU masters. It reads a whole request from the terminal, sends the request to the
-/// module, and returns the whole reply in one piece. Gaps between the bytes of a request, for example because
-/// the host interrupts the master, therefore have no effect on the module. A request ends with the first byte
-/// at which its CRC is correct.
+/// module, and returns the whole reply in one piece. Therefore gaps between the bytes of a request have no
+/// effect on the module. For example, the operating system can interrupt the master and so cause a gap. A
+/// request ends with the first byte at which its CRC is correct.
 ///
 /// No other thread may use the module between a request and its reply. The baud rate of the terminal has no
 /// effect.
@@ -21,7 +21,7 @@ class PtyBridge {
  public:
   using Bytes = std::vector<std::uint8_t>;
 
-  /// `exchange` sends a request to the module and returns its reply. A thread of the bridge calls it.
+  /// `exchange` sends a request to the module and returns the reply. A thread of the bridge calls `exchange`.
   explicit PtyBridge(std::function<Bytes(const Bytes&)> exchange);
   ~PtyBridge();
   PtyBridge(const PtyBridge&) = delete;
@@ -40,7 +40,7 @@ class PtyBridge {
   std::function<Bytes(const Bytes&)> exchange_;
   int fd_;
   int held_open_ = -1;  ///< prevents a hang-up when a master disconnects
-  int over_;            ///< an event descriptor, readable when the bridge is to stop
+  int over_;            ///< an event descriptor, readable when the bridge must stop
   std::string tty_;
   Bytes request_;
   std::exception_ptr failure_;

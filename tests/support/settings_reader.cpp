@@ -80,7 +80,8 @@ std::optional<Settings> SettingsReader::read_ascii() {
   if (model_.outputs != 0) {
     const auto value = [&](const char* command) {
       const std::string reply = ask(std::string(command));
-      const unsigned first = hex_byte(reply, 3);  // the outputs from 8 on if the model has them, else 0 to 7
+      // `first` contains the outputs from output 8 if the model has them; otherwise, outputs 0 to 7.
+      const unsigned first = hex_byte(reply, 3);
       const bool has_two_groups = model_.outputs > 8;
       return static_cast<std::uint16_t>(has_two_groups ? first << 8U | hex_byte(reply, 5) : first);
     };

@@ -25,7 +25,7 @@ struct FrameFormat {
   }
   static FrameFormat init_mode() { return {Protocol::Ascii, 0, false}; }
 
-  /// Returns the frame of `request`, which is ASCII without checksum and CR, or Modbus without CRC.
+  /// Returns `request` as a frame. `request` is ASCII without checksum and CR, or Modbus without CRC.
   [[nodiscard]] std::vector<std::uint8_t> framed(const std::vector<std::uint8_t>& request) const;
 };
 
@@ -44,11 +44,11 @@ class SettingsReader {
   /// instead.
   std::optional<Settings> read(std::uint8_t format);
 
-  /// Sends a DCON command, given without its address: the delimiter and the text after the address. Returns
-  /// the reply without checksum and CR; empty if the reply is missing or too short.
+  /// Sends a DCON command. `command` consists of the delimiter and the text after the address. Returns the
+  /// reply without checksum and CR; empty if the reply is missing or too short.
   std::string ask(const std::string& command);
-  /// Sends a Modbus request, given without address and CRC. Returns the reply with its address, without CRC;
-  /// empty if the reply is missing or too short.
+  /// Sends a Modbus request. `request` does not contain the address and the CRC. Returns the reply with its
+  /// address and without its CRC; empty if the reply is missing or too short.
   Bytes ask(const Bytes& request);
 
  private:

@@ -17,8 +17,8 @@ std::string shipped_simulator_path();
 
 class SimulatorProcess {
  public:
-  /// Starts the program with `arguments` in a new temporary directory. Returns when it has printed its
-  /// greeting. Throws std::runtime_error if the program ends earlier, or if it prints nothing for 60 s.
+  /// Starts the program with `arguments` in a new temporary directory. Returns when the program has printed
+  /// its greeting. Throws std::runtime_error if the program ends earlier, or if it prints nothing for 60 s.
   explicit SimulatorProcess(const std::vector<std::string>& arguments,
                             const std::string& program = simulator_path());
 
@@ -26,8 +26,8 @@ class SimulatorProcess {
   /// nor a bus file nor `--speed max`.
   [[nodiscard]] const std::string& directory() const { return directory_.path(); }
   [[nodiscard]] std::string tty() const { return directory() + "/ex9000.tty"; }
-  /// Returns a TCP port of the simulator. `position` counts the ports for TCP and Modbus TCP in the greeting,
-  /// from 0.
+  /// Returns a TCP port of the simulator. `position` is the position of the port among the ports for TCP and
+  /// Modbus TCP in the greeting, from 0.
   [[nodiscard]] std::uint16_t tcp_port(std::size_t position = 0) const;
   [[nodiscard]] int pid() const { return process_.pid(); }
 

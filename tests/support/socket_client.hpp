@@ -22,17 +22,16 @@ class SocketClient {
   void close_writing();
   /// Closes the connection with a TCP reset (RST). Call no other function after this one.
   void abort();
-  /// Waits until at least `count` bytes have arrived, and returns all bytes that it has received. Returns
-  /// fewer bytes if the other side closes the connection, or if none arrive for 60 s. This timeout only
-  /// detects a program that hangs.
+  /// Receives at least `count` bytes and returns all received bytes. Returns fewer bytes if the other side
+  /// closes the connection, or if no byte arrives for 60 s. This timeout only detects a program that hangs.
   std::vector<std::uint8_t> receive(std::size_t count);
   std::string receive_text(std::size_t count);
-  /// Waits until bytes arrive and returns them. Returns nothing if none arrive within `patience`, or if the
-  /// other side closes the connection.
+  /// Waits until bytes arrive and returns them. Returns an empty vector if no byte arrives within `patience`,
+  /// or if the other side closes the connection.
   std::vector<std::uint8_t> receive_some(std::chrono::milliseconds patience);
   bool hears_nothing_for(std::chrono::milliseconds time);
-  /// Returns whether the other side closes the connection within 60 s. Returns false if a byte that has not
-  /// been read arrives first.
+  /// Returns whether the other side closes the connection within 60 s. Returns false if there is still a byte
+  /// to read before the end of the connection.
   bool closed();
 
  private:

@@ -1,6 +1,5 @@
 // Converts the settings of a StoredCopy to the type Settings of the core, so that a test can compare them
-// with settings of the core. Also writes copies with the layout of older firmware or the length of newer
-// firmware.
+// with settings of the core. Also writes copies of settings in the form that older or newer firmware writes.
 #pragma once
 
 #include <algorithm>
@@ -80,9 +79,9 @@ inline void put_layout_2(const Model& model, const Settings& settings, std::uint
 /// setting that only newer firmware supports.
 inline std::uint8_t unknown_byte(std::size_t index) { return static_cast<std::uint8_t>(0xC1U ^ index); }
 
-/// Returns the number of bytes that a record without unknown settings uses for `settings`. The
-/// settings in the record end with the last setting that differs from its factory value, but not before the
-/// end of `safe_value`. The minimum is therefore 19 bytes.
+/// Returns the number of bytes that a record without unknown settings uses for `settings`. The settings in
+/// the record end with the last setting that differs from its factory value, but not before the end of
+/// `safe_value`. The minimum is therefore 19 bytes.
 inline std::size_t bytes_of_settings(const Settings& settings) {
   if (settings.response_delay != 0) {
     return 55;

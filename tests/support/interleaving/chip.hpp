@@ -26,10 +26,10 @@ struct Sent {
 };
 
 /// Simulates only the hardware. Each member `..._due` is the time of the next event of one kind, or `kNever`
-/// if no such event is due. At `sent_due`, the owner must call `shift`. At the time in another of these
-/// members, the owner must set this member to `kNever` or to the time of its next event, and call the
-/// interrupt handler for the event. At `tick_due`, the owner must also increment `ticks`. While
-/// `interrupts()` is true, the owner must call the interrupt handler of the UART.
+/// if no such event is due. At `sent_due`, the owner must call `shift`. At the time of any other event, the
+/// owner must set the member to `kNever` or to the time of the next event of this kind, and then call the
+/// interrupt handler. At `tick_due`, the owner must also increment `ticks`. While `interrupts()` is true, the
+/// owner must call the interrupt handler of the UART.
 class Chip final : public hal::bus::Peripherals {
  public:
   static constexpr std::uint32_t kNever = 0xFFFF'FFFF;

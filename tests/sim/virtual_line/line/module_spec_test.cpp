@@ -96,7 +96,7 @@ TEST(ModuleSpec, EveryLineFormatCanBeCombinedWithARateInAnyOrder) {
   }
 }
 
-TEST(ModuleSpec, ChecksumAndEdgeSetTheirBitOfTheFormat) {
+TEST(ModuleSpec, TheKeysChecksumAndEdgeEachSelectABitOfTheDataFormat) {
   EXPECT_EQ(parse_module_spec("EX9052D,checksum=on").settings.format, 0x40);
   EXPECT_EQ(parse_module_spec("EX9052D,checksum=off").settings.format, 0x00);
   EXPECT_EQ(parse_module_spec("EX9052D,edge=rising").settings.format, 0x80);
@@ -153,7 +153,7 @@ TEST(ModuleSpec, AnUnknownModelIsRefused) {
   }
 }
 
-TEST(ModuleSpec, AnEmptyArgumentIsRefusedInOneLine) {
+TEST(ModuleSpec, TheMessageAboutAnEmptyArgumentIsOneLine) {
   const std::string error = error_of("");
   EXPECT_NE(error.find("empty argument"), std::string::npos) << error;
   EXPECT_NE(error.find("--models"), std::string::npos) << error;
@@ -167,7 +167,7 @@ TEST(ModuleSpec, AnAddressThatIsNotOneOrTwoHexDigitsIsRefused) {
   }
 }
 
-TEST(ModuleSpec, AWrongValueIsRefusedWithTheAllowedValues) {
+TEST(ModuleSpec, TheMessageAboutAWrongValueListsTheAllowedValues) {
   expect_error("EX9042D-M,protocol=rtu", "modbus or ascii");
   expect_error("EX9042D-M,protocol=", "modbus or ascii");
   expect_error("EX9042D-M,protocol", "modbus or ascii");
@@ -187,7 +187,7 @@ TEST(ModuleSpec, ModbusIsRefusedForAModelWithoutIt) {
                "protocol=: 'modbus': the EX9042D speaks ASCII only; expected ascii");
 }
 
-TEST(ModuleSpec, ANameTheModelCannotStoreIsRefused) {
+TEST(ModuleSpec, ANameThatTheModelCannotStoreIsRefused) {
   expect_error("EX9042D,name=", "1 to 6");
   expect_error("EX9042D,name=ABCDEFG", "1 to 6");
   expect_error("EX9068D-M,name=ABCDEFGH", "1 to 7 printable ASCII characters for the EX9068D-M");
@@ -195,7 +195,7 @@ TEST(ModuleSpec, ANameTheModelCannotStoreIsRefused) {
   expect_error("EX9042D,name=\xC3\xBC", "printable");
 }
 
-TEST(ModuleSpec, AnUnknownKeyIsRefusedWithTheKnownKeys) {
+TEST(ModuleSpec, TheMessageAboutAnUnknownKeyListsTheKnownKeys) {
   for (const char* text : {"EX9042D,adress=01", "EX9042D,,baud=9600", "EX9042D,Baud=9600", "EX9042D,x"}) {
     expect_error(
         text, "=: unknown key; expected one of protocol, baud, format, checksum, edge, name, init, eeprom");

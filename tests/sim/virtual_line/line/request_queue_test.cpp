@@ -146,7 +146,7 @@ TEST_P(Queue, ADconCommandGetsItsReply) {
   EXPECT_EQ(results_, (Results{{"name", Frame(reply.begin(), reply.end())}}));
 }
 
-TEST_P(Queue, ADamagedReplyIsMarkedAndDoesNotAnswerARequestThatChecksItsReply) {
+TEST_P(Queue, IfARequestChecksItsReplyADamagedReplyIsIgnoredOtherwiseItIsMarkedAsDamaged) {
   const auto with_reply_in_another_format = [this](RequestQueue::Request asked) {
     line_.requests().ask(std::move(asked));
     do {
@@ -205,11 +205,11 @@ TEST_P(Queue, ARequestThatCannotBeSentInTimeIsNotSentLater) {
   const bool paced = !GetParam();
   if (paced) {
     run(std::chrono::seconds(10));
-    EXPECT_EQ(watch_.began.size(), 1U);  // the test's own bytes, but not the request
+    EXPECT_EQ(watch_.began.size(), 1U);  // only `commands` has been sent, not the request
   }
 }
 
-TEST_P(Queue, ARequestThatIsAddedByDoneFollowsTheWaitingRequests) {
+TEST_P(Queue, IfTheFunctionDoneAddsARequestTheWaitingRequestsAreSentFirst) {
   RequestQueue::Request first = request(kRead1, "a");
   first.done = [this](const RequestQueue::Reply& /*reply*/) {
     results_.emplace_back("a", Frame());
@@ -230,7 +230,7 @@ TEST_P(Queue, ARequestWaitsForARequestOfAnotherProgramAndItsReply) {
   EXPECT_EQ(results_, (Results{{"a", kOff1}, {"a", kOff1}, {"a", kOff1}}));
 }
 
-TEST_P(Queue, AFrameAfterAReplyThatALossOfPowerHasEndedIsASeparateFrame) {
+TEST_P(Queue, IfAModuleLosesPowerDuringItsReplyTheNextFrameOfTheMasterIsASeparateFrame) {
   line_.master().send(kRead2.data(), kRead2.size());
   while (watch_.last_byte_of_others == VirtualTime(0)) {
     line_.bus().run_next();
@@ -250,7 +250,7 @@ TEST_P(Queue, ALongTransmissionDoesNotBlockARequestForEver) {
   EXPECT_EQ(results_.size(), 1U);
 }
 
-/// Sends a byte every `period`, from its construction on.
+/// A station that sends one byte in each `period`. Its constructor sends the first byte.
 class Babbler final : public Station {
  public:
   Babbler(Bus& bus, VirtualTime period) : bus_(bus), end_(bus.attach(*this)), period_(period) { run(); }
