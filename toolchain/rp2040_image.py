@@ -36,7 +36,8 @@ def checksum(data: bytes) -> int:
 def sealed(elf: bytes) -> bytes:
     """Returns the ELF file with the right checksum in its second stage.
 
-    Raises NotAnImage if `elf` is not a complete 32-bit little-endian ELF file, or if it has no second stage.
+    Raises NotAnImage if `elf` is not a 32-bit little-endian ELF file, or if it has no complete segment with a second
+    stage. Does not check the segments after this segment.
     """
     for offset, address, data in _segments(elf):
         if address == FLASH and len(data) >= SECOND_STAGE:

@@ -14,7 +14,7 @@
 namespace ex9000 {
 namespace {
 
-TEST(Conformance, TheCorePassesAllTranscriptsWhichCoverAllModelsRowsRefusalsAndVerdicts) {
+TEST(Conformance, TheCorePassesAllTranscriptsAndTheyReachAllModelsTableRowsRefusalsAndVerdicts) {
   const std::vector<std::string> files = play::transcript_files(EX9000_CONFORMANCE_DIR);
   ASSERT_FALSE(files.empty());
   std::size_t runs = 0;
@@ -41,7 +41,7 @@ TEST(Conformance, TheCorePassesAllTranscriptsWhichCoverAllModelsRowsRefusalsAndV
               runs, steps, coverage.reached());
 }
 
-TEST(Conformance, WaitsAreUnderTwoSecondsUnlessTheFileIsMarkedSlow) {
+TEST(Conformance, TheTotalWaitOfATranscriptIsUnderTwoSecondsUnlessItsFileIsMarkedSlow) {
   for (const std::string& file : play::transcript_files(EX9000_CONFORMANCE_DIR)) {
     for (const play::Transcript& transcript : runner::load_transcripts(file)) {
       EXPECT_TRUE(transcript.slow || runner::waits_of(transcript) < std::chrono::seconds(2)) << file;

@@ -36,7 +36,7 @@ void play_on_a_simulator(Played* runs, std::size_t count, Over over) try {
 
 class Conformance : public testing::TestWithParam<Over> {};
 
-TEST_P(Conformance, TheSimulatorPassesEveryTranscriptOnEveryModelItNames) {
+TEST_P(Conformance, TheSimulatorPassesEveryTranscriptOnEveryModelThatTheTranscriptNames) {
   std::vector<Played> runs = all_runs();
   std::atomic<std::size_t> next{0};
   in_parallel(processors(), [&](unsigned /*number*/) {

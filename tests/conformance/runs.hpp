@@ -96,7 +96,7 @@ inline void expect_the_result_of_the_core(const char* name, const std::vector<Pl
     core_steps += play::play(run.transcript, core).steps;
   }
   EXPECT_EQ(steps, core_steps);
-  std::printf("%s: %zu runs, %zu steps, as the core\n", name, runs.size(), steps);
+  std::printf("%s: %zu runs, %zu steps\n", name, runs.size(), steps);
 }
 
 }  // namespace ex9000::conformance

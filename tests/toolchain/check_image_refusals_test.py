@@ -65,7 +65,7 @@ class Refuses(unittest.TestCase):
 
     def test_a_reachable_assembler_function_that_is_not_in_the_table_foreign_is_refused(self) -> None:
         self.refused(
-            "foreign, reached by reset -> foreign: the compiler recorded no stack; add it to FOREIGN",
+            "foreign, reached by reset -> foreign: the compiler recorded no stack; add the function to FOREIGN",
             """
             extern "C" void foreign();
             asm(".section .text.foreign\\n.thumb_func\\n.global foreign\\n.type foreign, %function\\n"
@@ -123,7 +123,7 @@ class Refuses(unittest.TestCase):
 
     def test_a_stack_pointer_that_is_computed_is_refused(self) -> None:
         self.refused(
-            "reset: moves the stack pointer with 'sub.*'; push, pop, or add or subtract a constant",
+            "reset: moves the stack pointer with 'sub.*'; only push, pop, add a constant or subtract a constant",
             """
             extern "C" void reset() { for (;;) asm volatile("sub sp, sp, r0" ::: "memory"); }
             """,
@@ -183,7 +183,7 @@ class Refuses(unittest.TestCase):
 
     def test_interrupts_disabled_by_a_write_to_primask_are_refused(self) -> None:
         self.refused(
-            "0x[0-9a-f]+: interrupts are disabled by PRIMASK, r0; use cpsid i",
+            "0x[0-9a-f]+: 'msr PRIMASK, r0' changes an interrupt mask; use cpsid i and cpsie i",
             'extern "C" void reset() { for (;;) asm volatile("msr primask, r0" ::: "memory"); }',
         )
 
@@ -219,7 +219,7 @@ class Refuses(unittest.TestCase):
 
     def test_instructions_of_a_floating_point_unit_are_refused(self) -> None:
         self.refused(
-            "instructions of a floating-point unit: floating point; compile with -mfloat-abi=soft",
+            "the image contains instructions of a floating-point unit; compile with -mfloat-abi=soft",
             'volatile float f; extern "C" void reset() { for (;;) f = f * f; }',
             compile_options="-mcpu=cortex-m4 -mfpu=fpv4-sp-d16 -mfloat-abi=softfp",
             link_options="-mcpu=cortex-m4 -mfpu=fpv4-sp-d16 -mfloat-abi=softfp",

@@ -19,11 +19,11 @@ class NotACallGraph(Exception):
 
 @dataclass(frozen=True)
 class Title:
-    """The name of a function in a call graph. GCC writes the source file of the translation unit before the name of a
-    function that is local to the unit, inline or an instance of a template. With -fwhole-program, a function is local
-    unless it is `main` or has the attribute `externally_visible`."""
+    """The name of a function in a call graph. GCC writes the name of the source file before the name of a function if
+    the function is local to its translation unit, is inline, or is an instance of a template. With -fwhole-program, a
+    function is local unless it is `main` or has the attribute `externally_visible`."""
 
-    file: str  # empty for other functions
+    file: str  # empty if GCC writes only the name of the function
     name: str
 
     @staticmethod

@@ -1,4 +1,4 @@
-"""Decides which functions a call through a pointer can reach, from the types in GCC's dump.
+"""Uses the types in GCC's dump to decide which functions a call through a pointer can reach.
 
 The call graph contains only the location of such a call. The dump of the optimised program
 (-fdump-tree-optimized-lineno) also contains the type of the function pointer, or the slot of the virtual table. A
@@ -107,8 +107,8 @@ def split_list(text: str) -> tuple[str, ...]:
 
 
 def parameters_of(readable: str) -> tuple[str, ...] | None:
-    """Returns the parameter types in a demangled name, or None if the name contains none, like the name of a C
-    function."""
+    """Returns the parameter types in a demangled name. Returns None if the name has no parameter list, for example if
+    it is the name of a C function."""
     text = readable.removesuffix(" const")
     if not text.endswith(")"):
         return None
@@ -124,7 +124,7 @@ def parameters_of(readable: str) -> tuple[str, ...] | None:
 class _Shape:
     """The part of a type that the dump and the demangled name both contain."""
 
-    kind: str  # "class"; "number"; or "named" for a class or an enumeration in a demangled name
+    kind: str  # "number", "class" (only in the dump), or "named" (only in a demangled name: a class or an enumeration)
     name: str
     indirections: str  # `*` and `&`
 
@@ -165,8 +165,8 @@ def _may_be_same(ours: _Shape | None, theirs: _Shape | None) -> bool:
 
 
 def _shape_in_dump(text: str) -> _Shape | None:
-    """Returns the shape of a type in the dump, for example `const struct State &`, `unsigned int`, `uint16_t`, or None
-    if it can be any type, for example because it is an alias that is not in _ALIASES."""
+    """Returns the shape of a type in the dump, for example of `const struct State &`, `unsigned int` or `uint16_t`.
+    Returns None if `text` can mean any type, for example because it is an alias that is not in _ALIASES."""
     name, indirections = _take_apart(text)
     if "(" in text:
         return None
@@ -177,8 +177,8 @@ def _shape_in_dump(text: str) -> _Shape | None:
 
 
 def _shape_demangled(text: str) -> _Shape | None:
-    """Returns the shape of a demangled type, for example `ex9000::State const&`, `unsigned short`, or None if the type
-    contains parentheses, for example a pointer to a function."""
+    """Returns the shape of a demangled type, for example of `ex9000::State const&` or `unsigned short`. Returns None if
+    the type contains parentheses, for example if it is a pointer to a function."""
     name, indirections = _take_apart(text)
     if "(" in text:
         return None

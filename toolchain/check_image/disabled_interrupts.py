@@ -1,4 +1,4 @@
-"""Counts for how many instructions interrupts are disabled: between each `cpsid i` and the next `cpsie i`."""
+"""Counts the instructions during which interrupts are disabled: from each `cpsid i` to the next `cpsie i`."""
 
 from __future__ import annotations
 
@@ -6,8 +6,8 @@ import re
 
 from check_image.disassembly import Disassembly, Instruction
 
-# If an interrupt waits longer than one character, 86.8 us at 115200 baud, a byte can be lost. `MOST` instructions
-# take less than 2 us on all boards.
+# If an interrupt waits longer than the transmission of a character takes, 86.8 us at 115200 baud, a byte can be lost.
+# `MOST` instructions take less than 2 us on all boards.
 MOST = 20
 
 _DISABLE, _ENABLE = "cpsid", "cpsie"
@@ -33,7 +33,9 @@ class DisabledInterrupts:
         for address in addresses:
             instruction = self._code[address]
             if instruction.mnemonic.startswith("msr") and _MASKS.match(instruction.operands):
-                self.problems.append(f"{address:#x}: interrupts are disabled by {instruction.operands}; use cpsid i")
+                self.problems.append(
+                    f"{address:#x}: 'msr {instruction.operands}' changes an interrupt mask; use cpsid i and cpsie i"
+                )
             if instruction.mnemonic.startswith(_DISABLE):
                 self._follow(address)
         if self.longest > MOST:
@@ -45,7 +47,9 @@ class DisabledInterrupts:
         try:
             self.longest = max(self.longest, self._longest_after(disabled_at, []))
         except _NeverEnabled as reason:
-            self.problems.append(f"{disabled_at:#x}: interrupts are disabled, and then {reason}; use cpsie i before")
+            self.problems.append(
+                f"{disabled_at:#x}: interrupts are disabled, and then {reason}; enable interrupts earlier with cpsie i"
+            )
 
     def _longest_after(self, address: int, way: list[int]) -> int:
         """Returns the maximum number of instructions between the one at `address` and the next `cpsie i`."""

@@ -1,4 +1,4 @@
-"""Extracts from the machine code its branches, the addresses that it loads, and its use of the stack."""
+"""Finds the branches of the machine code, the addresses that the code loads, and the stack that it uses."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class Instruction:
 
     @property
     def branch_target(self) -> int | None:
-        """Returns the target of a branch or call with a fixed address, else None."""
+        """Returns the target if the instruction is a branch or a call to a fixed address, else None."""
         target = _TARGET.match(self.operands) if _BRANCH.fullmatch(self.mnemonic) else None
         return int(target.group(1), 16) if target else None
 
@@ -160,7 +160,7 @@ def pushed_by(instruction: Instruction) -> int:
     """Returns the number of bytes by which the stack grows, negative if it shrinks. Raises StackPointerUnknown if this
     number is known only at run time."""
     growth = _growth(instruction.mnemonic.split(".")[0], instruction.operands)
-    # A conditional pop is part of a conditional return. If the code continues, it has popped nothing.
+    # A conditional pop is part of a conditional return. If its condition is false, it pops nothing.
     return max(growth, 0) if _CONDITIONAL_POP.match(instruction.mnemonic) else growth
 
 
@@ -178,13 +178,14 @@ def _growth(mnemonic: str, operands: str) -> int:
         return int(constant.group(1)) * (1 if mnemonic.startswith("sub") else -1)
     if re.match(r"sp\b", operands) and mnemonic.startswith(("add", "sub", "mov", "ldr", "orr", "and", "bic")):
         raise StackPointerUnknown(
-            f"moves the stack pointer with '{mnemonic} {operands}'; push, pop, or add or subtract a constant"
+            f"moves the stack pointer with '{mnemonic} {operands}';"
+            " only push, pop, add a constant or subtract a constant"
         )
     return 0
 
 
 def _count(registers: re.Match[str] | None) -> int:
-    """Returns the number of registers in a list. A part of the list is a register, or a range such as r4-r7."""
+    """Returns the number of registers in a list. Each part of the list is a register or a range such as r4-r7."""
     assert registers is not None
     count = 0
     for part in registers.group(1).split(","):

@@ -21,7 +21,7 @@ _ARM = 40
 
 
 class NotAnImage(Exception):
-    """The file does not have the format that an Arm linker writes."""
+    """The file is not a 32-bit little-endian ELF file for Arm."""
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class Section:
 @dataclass(frozen=True)
 class Symbol:
     name: str
-    address: int  # without the Thumb bit for functions
+    address: int  # for a function, the address without the Thumb bit
     size: int
     is_function: bool
     is_object: bool

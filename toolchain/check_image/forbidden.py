@@ -18,7 +18,7 @@ _SYMBOLS = [
         (r"_Unwind_|__(aeabi|gnu)_unwind", "exceptions"),
         (r"__cxa_", "the C++ run-time library"),
         (r"__aeabi_u?ldivmod$|__u?(div|mod|divmod)di[34]$", "64-bit division"),
-        # Run-time ABI for the Arm Architecture 4.1.2, and libgcc's internal names.
+        # The names of section 4.1.2 of the Run-time ABI for the Arm Architecture, and libgcc's internal names.
         (r"__aeabi_([fdh]|c[fd]|u?[il]2[fd])", "floating point"),
         (r"__gnu_[dfh]2|__(?!gnu)[a-z]+[hsdt]f([hsdt][fi])?[23]?$", "floating point"),
         (r"_GLOBAL__(sub_)?[ID]_", "globals initialised at run time"),
@@ -43,11 +43,11 @@ def problems(elf: Elf, records: Iterable[Record], disassembly: Disassembly) -> l
             found.append(f"{symbol.name}: undefined; link a definition")
         what = _what(symbol.name)
         if what:
-            found.append(f"{symbol.name}: {what}")
+            found.append(f"{symbol.name}: {what}; an image must not contain this symbol")
     for section in elf.sections:
         for pattern, what in _SECTIONS:
             if section.size and pattern.match(section.name):
-                found.append(f"section {section.name}: {what}")
+                found.append(f"section {section.name}: {what}; an image must not contain this section")
         for text in _TEXTS:
             if text in section.data:
                 found.append(
@@ -57,10 +57,10 @@ def problems(elf: Elf, records: Iterable[Record], disassembly: Disassembly) -> l
     # compiler's records contain these functions.
     for record in records:
         if _what(record.title.name) == "globals initialised at run time":
-            found.append(f"{record.location}: globals initialised at run time")
+            found.append(f"{record.location}: globals initialised at run time; use constant initial values")
     # If code uses a floating-point unit, an exception frame can be longer than check-image calculates.
     if any(each.mnemonic.startswith("v") and each.operands for each in disassembly.instructions.values()):
-        found.append("instructions of a floating-point unit: floating point; compile with -mfloat-abi=soft")
+        found.append("the image contains instructions of a floating-point unit; compile with -mfloat-abi=soft")
     return found
 
 

@@ -1,4 +1,4 @@
-"""Applies the compiler's call graph to the functions in the linked image, and checks it against the machine code."""
+"""Builds the call graph of the linked image from the compiler's records, and compares them with the machine code."""
 
 from __future__ import annotations
 
@@ -16,22 +16,22 @@ from check_image.stack import Graph, Node
 
 @dataclass(frozen=True)
 class Foreign:
-    """A function that has no record of the compiler. Its stack is known for another reason."""
+    """A function for which the compiler wrote no record. `reason` states why its stack use has an upper bound."""
 
-    frame: int  # bytes, at most
+    frame: int  # the upper bound in bytes
     reason: str
 
 
 # check-image compares each frame with the number of bytes that the instructions push, and takes the calls from the
 # instructions.
 FOREIGN = {
-    "memcpy": Foreign(8, "newlib's, or newlib-nano's: loops, no calls"),
-    "memmove": Foreign(16, "newlib's, or newlib-nano's: loops, no calls"),
-    "memset": Foreign(16, "newlib's, or newlib-nano's: loops, no calls"),
-    "memcmp": Foreign(16, "newlib's, or newlib-nano's: loops, no calls"),
+    "memcpy": Foreign(8, "from newlib or newlib-nano: it contains loops and no calls"),
+    "memmove": Foreign(16, "from newlib or newlib-nano: it contains loops and no calls"),
+    "memset": Foreign(16, "from newlib or newlib-nano: it contains loops and no calls"),
+    "memcmp": Foreign(16, "from newlib or newlib-nano: it contains loops and no calls"),
     "__aeabi_uidiv": Foreign(8, "libgcc's division for a processor without a division instruction"),
-    "__aeabi_uidivmod": Foreign(0, "libgcc's: continues in __aeabi_uidiv"),
-    "__aeabi_idiv0": Foreign(0, "libgcc's: returns"),
+    "__aeabi_uidivmod": Foreign(0, "from libgcc: it continues in __aeabi_uidiv"),
+    "__aeabi_idiv0": Foreign(0, "from libgcc: it only returns"),
 }
 
 _VENEER = re.compile(r"__(.*)_veneer")
@@ -77,7 +77,7 @@ class LinkedGraph:
 
     def _find(self, title: Title) -> Function | None:
         # GCC writes the file before the name of an inline function too, but the linker keeps one global copy for all
-        # units. Therefore the global functions are searched if the file has no such function.
+        # units. If the file has no local function with this name, _find therefore searches the global functions.
         in_file = self._functions.local_named(title.name, title.file) if title.file else None
         return in_file or self._functions.global_named(title.name)
 
@@ -105,7 +105,7 @@ class LinkedGraph:
                 str(self._functions.at(t)) for t in sorted(targets)
             ]
         node = Node(str(function), record.frame, frozenset(calls), problem)
-        before = self.graph.get(function.address)  # not None for an inline function that several units have compiled
+        before = self.graph.get(function.address)  # not None for an inline function that several units contain
         self.graph[function.address] = _worse_of(before, node) if before else node
         self.locations[function.address] = record.location
         if record.indirect_calls:
@@ -187,7 +187,10 @@ class LinkedGraph:
             )
 
     def _targets_in_code(self, function: Function, code: list[Instruction]) -> list[Function]:
-        """Returns the other functions that the code calls or jumps to directly, each once, in the order of the code."""
+        """Returns the functions that the code calls or jumps to directly, in the order of the code.
+
+        The result contains each function only once. It does not contain `function`.
+        """
         targets: dict[int, Function] = {}
         for instruction in code:
             target = instruction.branch_target
@@ -200,8 +203,8 @@ class LinkedGraph:
         return list(targets.values())
 
     def _behind_veneer(self, function: Function) -> Function:
-        """Returns the target of `function` if it is a veneer and exactly one function has the name of the target,
-        otherwise `function`.
+        """If `function` is a veneer, and exactly one function has the name of its target, returns this target.
+        Otherwise returns `function`.
 
         The linker inserts a veneer if a function is beyond the range of a branch.
         """
@@ -213,7 +216,7 @@ class LinkedGraph:
         code = self._disassembly.of(function)
         calls = frozenset(t.address for t in self._targets_in_code(function, code))
         known = next((FOREIGN[name] for name in function.names if name in FOREIGN), None)
-        frame, problem = 0, "the compiler recorded no stack; add it to FOREIGN in linked_graph.py"
+        frame, problem = 0, "the compiler recorded no stack; add the function to FOREIGN in linked_graph.py"
         if known is not None:
             frame, problem = known.frame, _compare_with_table(known, code)
         self.graph[function.address] = Node(str(function), frame, calls, problem)
