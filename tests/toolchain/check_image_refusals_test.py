@@ -131,7 +131,8 @@ class Refuses(unittest.TestCase):
 
     def test_a_level_for_an_unknown_handler_is_refused(self) -> None:
         self.refused(
-            "--level: no interrupt has the handler timer; name another one",
+            "--level: no remaining interrupt has the handler timer; name the handler of an interrupt, and only in one"
+            " --level",
             'extern "C" void reset() { for (;;) {} }',
             options="--level timer",
         )

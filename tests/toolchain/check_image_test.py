@@ -155,7 +155,7 @@ class Accepts(unittest.TestCase):
         self.assertRegex(verdict.figures, r"main loop \d+: reset 8 -> program 40\n")
         self.assertTrue(verdict.accepted, verdict.problems)
 
-    def test_the_memory_functions_of_newlib_use_no_more_stack_than_the_table_foreign_permits(self) -> None:
+    def test_the_memory_functions_of_newlib_stay_within_their_stack_limits(self) -> None:
         source = """
             #include <string.h>
             unsigned char a[999], b[999];

@@ -45,8 +45,8 @@ def main(arguments: list[str]) -> int:
 def _parse(arguments: list[str]) -> argparse.Namespace:
     parser = argparse.ArgumentParser(
         prog="check-image",
-        description="Prints the sizes and the worst-case stack of a firmware image and the changes since the record, "
-        "and checks the contents of the image.",
+        description="Checks the contents of a firmware image. Prints its sizes, its worst-case stack, and the changes "
+        "since the record.",
     )
     parser.add_argument(
         "image", type=Path, help="the linked ELF file, with a vector table in its section .vectors"
@@ -56,8 +56,8 @@ def _parse(arguments: list[str]) -> argparse.Namespace:
         type=Path,
         nargs="+",
         help=(
-            "the compiler's call graphs (.ci), or the object files next to them; an object file without a"
-            " call graph is assembler code"
+            "the compiler's call graphs (.ci), or the object files next to them; check-image treats an object file"
+            " without a call graph as assembler code"
         ),
     )
     parser.add_argument(
@@ -67,19 +67,23 @@ def _parse(arguments: list[str]) -> argparse.Namespace:
         help="print the changes since this record, which has lines of BOARD IMAGE FLASH STATIC STACK",
     )
     parser.add_argument(
-        "--board", default="", help="use the lines of this board in the record, and write the sizes next to the image"
+        "--board",
+        default="",
+        help="use the lines of this board in the record, and write the sizes to a file next to the image",
     )
     parser.add_argument(
         "--level",
         action="append",
         default=[],
         metavar="HANDLER[,HANDLER]...",
-        help="interrupt handlers with a preemption priority of their own; the others share one",
+        help="interrupt handlers that share a separate preemption priority; the interrupt handlers that no --level"
+        " names share another priority",
     )
     parser.add_argument(
         "--verbose",
         action="store_true",
-        help="also print the deepest calls, the calls through pointers, and the flash by folder and by symbol",
+        help="also print the deepest calls, the calls through pointers, and the flash of each folder and of the"
+        f" {_TOP_SYMBOLS} largest symbols",
     )
     return parser.parse_args(arguments)
 
@@ -139,7 +143,8 @@ def _report(
     """Prints the sizes, their changes since the record, and the largest number of instructions for which interrupts
     are disabled. With --board, writes the sizes to a file next to the image.
 
-    Returns a problem if RAM is too small, otherwise an empty list. If flash is too small, the linker already fails.
+    Returns a problem if the RAM is too small, otherwise an empty list. Does not check the flash, because the linker
+    fails if the flash is too small.
     """
     before = records.read(options.record).get((options.board, options.image.stem))
     flash, static, stack = figures.since(before)

@@ -21,7 +21,8 @@ class Figures:
     stack: int
 
     def since(self, before: Figures | None) -> list[str]:
-        """Returns flash, static RAM and stack as text. Adds the change to each size that differs from `before`."""
+        """Returns flash, static RAM and stack as text. If a size differs from `before`, its text also contains the
+        difference, for example `104 (+4)`."""
         if before is None:
             return [str(self.flash), str(self.static), str(self.stack)]
         return [

@@ -1,4 +1,4 @@
-"""Calculates the static RAM of an image, and its flash: in total, by symbol and by folder."""
+"""Calculates the static RAM of an image, and the flash of the whole image, of each symbol and of each folder."""
 
 from __future__ import annotations
 
@@ -15,13 +15,14 @@ RAM = range(0x20000000, 0x40000000)
 
 
 def flash(elf: Elf) -> int:
-    """Returns the bytes of all sections that are stored in flash, for example code and initial values of variables."""
+    """Returns the total size in bytes of the sections that are stored in flash, for example code and initial values of
+    variables."""
     return sum(section.size for section in elf.sections if section.loaded)
 
 
 def static_ram(elf: Elf) -> int:
-    """Returns the bytes of all sections in RAM: variables, and the code of an image that runs from RAM. Does not count
-    a section that reserves the stack."""
+    """Returns the total size in bytes of the sections in RAM: variables, and the code of an image that runs from RAM.
+    Does not count a section that reserves the stack."""
     return sum(s.size for s in elf.sections if s.address in RAM and not s.name.startswith(".stack"))
 
 
@@ -77,7 +78,8 @@ def _folder(source: str, root: Path) -> str:
 
 
 def _in_flash(elf: Elf) -> list[Symbol]:
-    """Returns the symbols that have a size and are stored in flash. If several have one address, returns the first."""
+    """Returns the symbols that have a size and are stored in flash. If several of these symbols have the same address,
+    returns only the first of them."""
     seen: dict[int, Symbol] = {}
     for symbol in elf.symbols:
         if symbol.size and _is_loaded(symbol.section):

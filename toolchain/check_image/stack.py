@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-# The maximum number of bytes of stack that the entry of an exception uses without a floating-point unit: eight words,
-# and one more if the stack is not aligned to eight bytes (Armv7-M ARM B1.5.6 and B1.5.7).
+# The maximum number of bytes that the entry of an exception pushes if the code does not use a floating-point unit:
+# eight words, and one more word if the stack is not aligned to eight bytes (Armv7-M ARM B1.5.6 and B1.5.7).
 EXCEPTION_FRAME = 32 + 4
 
 
@@ -88,8 +88,8 @@ class Interruption:
 
 @dataclass(frozen=True)
 class WorstCase:
-    """The deepest chain from the reset handler, which runs the main loop, and the deepest chain from a handler of each
-    level that has handlers."""
+    """The deepest chain from the reset handler, which runs the main loop. For each level that has handlers, also the
+    deepest chain from one of these handlers."""
 
     main: Chain
     interruptions: tuple[Interruption, ...]

@@ -16,15 +16,15 @@ _CONFIGURABLE_FAULTS = range(4, 7)  # MemManage, BusFault, UsageFault
 
 
 class BadVectors(Exception):
-    """The table is missing or too short, contains a value that is neither 0 nor the address of a function, or does not
-    have the reset handler or a handler that --level names."""
+    """The table is missing or too short, contains a value that is neither 0 nor the address of a function, or has no
+    reset handler. Or --level names a function that is not an interrupt handler or that an earlier --level names."""
 
 
 class Vectors:
     def __init__(self, elf: Elf, functions: Functions) -> None:
         section = elf.named(".vectors")
         if section is None or len(section.data) < 8:
-            raise BadVectors("the section .vectors is missing; link with the image.ld of a board")
+            raise BadVectors("the section .vectors is missing or too short; link with the image.ld of a board")
         words = struct.unpack(f"<{len(section.data) // 4}I", section.data[: len(section.data) // 4 * 4])
         self.stack_top = words[0]
         self.handlers: dict[int, Function] = {}  # by exception number, including Reset
@@ -43,7 +43,7 @@ class Vectors:
         return self.handlers[_RESET]
 
     def levels(self, named: Sequence[Sequence[str]]) -> list[Level]:
-        """Returns the handlers, except that of Reset, in levels. Handlers of one level cannot interrupt each other.
+        """Returns all handlers except the reset handler, in levels. Handlers of one level cannot interrupt each other.
         Handlers of different levels can be active at the same time. A level can be empty.
 
         `named`: for each level with a separate priority, the names of its handlers. The other interrupts form one
@@ -62,7 +62,10 @@ class Vectors:
             missing = set(names) - {name for number in chosen for name in left[number].names}
             if missing:
                 names_of_missing = ", ".join(sorted(missing))
-                raise BadVectors(f"--level: no interrupt has the handler {names_of_missing}; name another one")
+                raise BadVectors(
+                    f"--level: no remaining interrupt has the handler {names_of_missing}; name the handler of an"
+                    " interrupt, and only in one --level"
+                )
             own.append(Level("+".join(names), [left.pop(number).address for number in sorted(chosen)]))
         return [
             Level("interrupts", _addresses(left)),

@@ -19,7 +19,7 @@ class NotAnImage(Exception):
 def flash_content(file: bytes) -> bytes:
     """Returns the bytes of the flash from its first used address on. Gaps are FFh, as in an erased flash.
 
-    Raises NotAnImage if the file is damaged, contains no data, or fills more than 16 MiB of flash.
+    Raises NotAnImage if the file is damaged, contains no data, or extends over more than 16 MiB of flash.
     """
     if file.startswith(_ELF):
         pieces = _elf(file)
@@ -39,7 +39,9 @@ def _joined(pieces: list[tuple[int, bytes]]) -> bytes:
     begin = min(address for address, _ in pieces)
     size = max(address + len(data) for address, data in pieces) - begin
     if size > 0x1000000:
-        raise NotAnImage(f"fills {size} bytes from {begin:#x} on; expected an image for a flash of at most 16 MiB")
+        raise NotAnImage(
+            f"extends over {size} bytes from {begin:#x} on; expected an image for a flash of at most 16 MiB"
+        )
     content = bytearray(b"\xff" * size)
     for address, data in pieces:
         content[address - begin : address - begin + len(data)] = data

@@ -37,11 +37,14 @@ COMPONENTS = (
     Component("CLI11", "CLI11", "BSD-3-Clause", "libcli11-dev", "headers: the command line"),
     Component("nlohmann-json", "JSON for Modern C++", _MIT, "nlohmann-json3-dev", "headers: JSON"),
     Component("libstdcxx", "libstdc++", _GCC_RUNTIME, "libstdc++-12-dev", "the C++ library of the host"),
-    Component("libgcc", "libgcc", _GCC_RUNTIME, "libgcc-12-dev", "functions that code from the host's compiler calls"),
+    Component(
+        "libgcc", "libgcc", _GCC_RUNTIME, "libgcc-12-dev",
+        "support functions for the code that the host's compiler generates",
+    ),
     Component("glibc", "GNU C Library", "LGPL-2.1-or-later", "libc6-dev", "the C library of the host"),
     Component(
         "libstdcxx-arm", "libstdc++ for Arm", _GCC_RUNTIME, "libstdc++-arm-none-eabi-dev",
-        "headers only, for example array and string_view; no library is linked",
+        "headers only, for example array and string_view; the images are not linked with this library",
     ),
     Component(
         "libgcc-arm", "libgcc for Arm", _GCC_RUNTIME, "gcc-arm-none-eabi",
@@ -62,7 +65,7 @@ PRODUCTS = (
     Product(
         "firmware-rp2040", "OpenEX9000 firmware images for RP2040 boards", "FIRMWARE",
         {"libstdcxx-arm": "CONTAINS", "libgcc-arm": "STATIC_LINK"},
-        "The images are linked with -nostdlib and with no library except libgcc, for the division.",
+        "The images are linked with -nostdlib. The only library is libgcc, which contains the division.",
     ),
     Product(
         "package", "ex9000-sim, Debian package", "APPLICATION", {**_SIMULATOR, "glibc": "DYNAMIC_LINK"},
@@ -71,7 +74,8 @@ PRODUCTS = (
     Product(
         "static", "ex9000-sim, static program and container image", "APPLICATION",
         {**_SIMULATOR, "glibc": "STATIC_LINK"},
-        "To link it with another C library, build the target ex9000-sim-static from the sources.",
+        "To link the program with another C library, set the CMake option EX9000_STATIC and build the target "
+        "ex9000-sim-static.",
     ),
 )
 

@@ -11,9 +11,9 @@ from help_text import Help, Option
 _ENTRY = re.compile(r"^  (\S+(?: \S+)*) {2,}(\S.*)$")
 _CONTINUED = re.compile(r"^ {10,}(\S.*)$")
 
-# Without these escapes, a backslash would begin an escape, and a quotation mark would end an argument of a macro. A
-# reader would see typographic characters in place of -, ' and `. A shell does not understand these typographic
-# characters. The backslash is first, because the other escapes contain it.
+# Without these escapes, a backslash begins an escape, a quotation mark ends an argument of a macro, and the page shows
+# typographic characters instead of -, ' and `. A shell does not understand these typographic characters. The backslash
+# is the first key, because the other escapes contain it.
 _ESCAPES = {"\\": "\\e", '"': "\\(dq", "-": "\\-", "'": "\\(aq", "`": "\\(ga"}
 
 
@@ -59,20 +59,20 @@ _EXIT_STATUS = [
     ".Bl -tag -width Ds",
     ".It 0",
     "a user, a signal, the control command",
-    ".Ql quit ,",
-    "the reader of the log or",
+    ".Ql quit",
+    "or the option",
     ".Fl \\-for",
-    "has ended the program,",
+    "has ended the program; the reader of the log has closed the pipe;",
     ".Ql describe",
     "or an option such as",
     ".Fl \\-help",
-    "has printed its text, or all files of",
+    "has printed its text; or all files of",
     ".Ql play",
     "have passed",
     ".It 1",
     "a file of",
     ".Ql play",
-    "has failed, or an error has occurred that is not listed under 2, for example a",
+    "has failed, or an error that is not listed under 2 has occurred; for example, a",
     "serial port has disappeared",
     ".It 2",
     "an argument, a bus file or a file of",

@@ -14,8 +14,9 @@ namespace {
 constexpr std::chrono::milliseconds kLongestReply{250};
 /// If a reply is too long, its first extra byte arrives within this time, at 9600 baud or more.
 constexpr std::chrono::milliseconds kAfterReply{2};
-/// If the module stores no setting, an unexpected reply begins within this time. The time is longer than the
-/// sum of T3.5 at 1200 baud, the 20 ms within which a reply must begin, and the first character of the reply.
+/// Without a store, an unexpected reply begins within this time after the request. The time is longer than
+/// the sum of T3.5 at 1200 baud, the 20 ms within which a reply must begin, and the first character of the
+/// reply.
 constexpr std::chrono::milliseconds kReplyBegins{65};
 
 /// Returns the DCON checksum of `text`. Does not use the firmware's code, so that the tests do not check the
