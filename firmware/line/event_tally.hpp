@@ -11,7 +11,7 @@ namespace ex9000 {
 /// least once every 65535 events. The results of `collect` then include each event exactly once.
 class EventTally {
  public:
-  /// Counts `events` events. For the interrupt.
+  /// Counts `events` events. Only for the interrupt.
   [[gnu::always_inline]] void count_in_interrupt(unsigned events = 1) {
     total_.store_in_interrupt(static_cast<std::uint16_t>(total_.load() + events));
   }

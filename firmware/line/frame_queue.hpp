@@ -32,11 +32,11 @@ struct Frame {
 /// frames are lost, and `complete_in_interrupt` returns false for them.
 class FrameQueue {
  public:
-  /// Returns the frame that is being assembled. For the interrupt.
+  /// Returns the frame that is being assembled. Only for the interrupt.
   [[gnu::always_inline]] Frame& assembling() { return frames_[completed_.load() % kFrames]; }
 
   /// Queues the assembled frame. Returns false if another frame is already waiting; the assembled frame is
-  /// then lost. For the interrupt.
+  /// then lost. Only for the interrupt.
   [[gnu::always_inline]] bool complete_in_interrupt() {
     if (has_frame()) {
       return false;

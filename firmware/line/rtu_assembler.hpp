@@ -26,13 +26,13 @@ class RtuAssembler {
 
   /// Processes a byte that the UART reports at `now`. Restart the silence timer with `rtu_silence` after this
   /// call. Returns the verdict on the previous frame if this byte shows that the previous frame has ended,
-  /// else Open. For the receive interrupt.
+  /// else Open. Call this from the receive interrupt.
   Verdict byte(FrameQueue& queue, std::uint8_t byte, ByteStatus status, Time now);
 
   /// Call this when the silence timer has expired. After this call, restart the timer with `next_wait()`,
   /// unless that time is 0. Returns the verdict on the frame that has ended, or Open if none has ended. An
   /// accepted frame contains address, function and data, but neither the CRC nor a leading turn-around byte
-  /// 00. For the interrupt of the silence timer.
+  /// 00. Call this from the interrupt of the silence timer.
   Verdict silence(FrameQueue& queue);
   /// Returns the time after which `silence` must be called again; 0 if this is not necessary.
   [[nodiscard]] Duration next_wait() const;

@@ -39,7 +39,7 @@ class SystemTimer {
     return Time(counted + kLastMicrosecond - left / cycles_per_microsecond);
   }
 
-  /// Counts a tick. For the SysTick interrupt.
+  /// Counts a tick. Call this from the SysTick interrupt.
   void count_in_interrupt() { counted_.store_in_interrupt(counted_.load() + kTickMicroseconds); }
 
  private:

@@ -60,7 +60,8 @@ class Uart {
 
   // --- interrupts ---
 
-  /// Calls `deliver(byte, status)` for a received byte, or continues to send. For the UART's interrupt.
+  /// Calls `deliver(byte, status)` for a received byte, or continues to send. Call this from the interrupt of
+  /// the UART.
   template <class Deliver>
   void on_interrupt(Deliver deliver) {
     const Bits<MaskedInterrupts> why = kMaskedInterrupts.read();
@@ -78,8 +79,8 @@ class Uart {
 
   /// If the last byte has been sent, turns the driver off and returns true. Else restarts the end timer and
   /// returns false. A PL011 has no interrupt for the end of a transmission, so this function checks the busy
-  /// flag. For the interrupt of the end timer. This timer first expires about one character time after the
-  /// beginning of the last byte.
+  /// flag. Call this from the interrupt of the end timer. This timer first expires about one character time
+  /// after the beginning of the last byte.
   bool on_end_timer() {
     if (kFlags.read().has(kBusy)) {
       EndTimer::restart(bit_);

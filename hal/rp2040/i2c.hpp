@@ -49,7 +49,7 @@ class I2c {
   [[nodiscard]] I2cResult result() const { return result_; }
 
   /// Disables the interrupt, because the interrupt request stays asserted until the main loop has removed the
-  /// cause. For the I2C interrupt.
+  /// cause. Call this from the I2C interrupt.
   static void on_interrupt() { kInterruptMask.write({}); }
 
  private:

@@ -30,7 +30,8 @@ class InputPins {
 
   static constexpr bool any() { return channels != 0; }
 
-  /// Calls `deliver(channel, level)` for each channel that has had an edge. For the interrupt of the pins.
+  /// Calls `deliver(channel, level)` for each channel that has had an edge. Call this from the interrupt of
+  /// the pins.
   template <class Deliver>
   static void take_edges(Deliver deliver) {
     const Settled settled = settle(Gpio::edges());

@@ -56,7 +56,7 @@ class I2c {
   [[nodiscard]] bool busy() const { return busy_; }
   [[nodiscard]] I2cResult result() const { return result_; }
 
-  /// Counts a byte whose transfer has ended, with or without an error. For the I2C interrupt.
+  /// Counts a byte whose transfer has ended, with or without an error. Call this from the I2C interrupt.
   void on_interrupt() {
     kInterruptClear.write(Bits<InterruptClear>(1));
     completed_.store_in_interrupt(completed_.load() + 1U);

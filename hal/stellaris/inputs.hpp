@@ -57,7 +57,7 @@ class InputPins {
   /// Calls `deliver(channel, level)` for each channel on `port` that has had an edge. The group of the last
   /// channel may also contain pins without a channel. For an edge of such a pin, `channel` is `channels` or
   /// greater. The level is read after the flag has been cleared, so that an edge in between is flagged again.
-  /// For the port's interrupt.
+  /// Call this from the interrupt of the port.
   template <Port port, class Deliver>
   static void take_edges(Deliver deliver) {
     static constexpr std::array<std::uint8_t, 8> kChannels = channels_of(port);

@@ -50,7 +50,7 @@ class FaultOnBoard : public WatchedImage {
         EXPECT_EQ(bench.outputs(), after);
         for (const WatchedModule::Change& change : module.changes) {
           // A reset switches all outputs off. Then the module drives the outputs to the power-on value or to
-          // the safe value, one pin after the other.
+          // the safe value, one group of pins after the other. The model reports each pin separately.
           EXPECT_EQ(change.at <= bench.began ? change.outputs & ~before : change.outputs & ~after, 0);
         }
         EXPECT_TRUE(module.was_reset());

@@ -1,7 +1,7 @@
 // A firmware image that a host can run: the unchanged composition of a board, a model and the board's
 // drivers. The bus accesses of the drivers go to registers::Microcontroller. Each image is a separate
-// shared object, because the types of the firmware's core differ between images: the code of features that a
-// model does not have is not compiled.
+// shared object, because EX9000_MODEL changes types of the firmware's core: for example, the frame buffers
+// are smaller if the model does not speak Modbus.
 #pragma once
 
 #include <array>

@@ -48,7 +48,7 @@ COMPONENTS = (
     ),
     Component(
         "libgcc-arm", "libgcc for Arm", _GCC_RUNTIME, "gcc-arm-none-eabi",
-        "the division, because a Cortex-M0+ has no instruction for it",
+        "the integer division routines, because a Cortex-M0+ has no division instruction",
     ),
 )
 
@@ -65,7 +65,8 @@ PRODUCTS = (
     Product(
         "firmware-rp2040", "OpenEX9000 firmware images for RP2040 boards", "FIRMWARE",
         {"libstdcxx-arm": "CONTAINS", "libgcc-arm": "STATIC_LINK"},
-        "The images are linked with -nostdlib. The only library is libgcc, which contains the division.",
+        "The images are linked with -nostdlib. The only library is libgcc, which contains the integer division "
+        "routines.",
     ),
     Product(
         "package", "ex9000-sim, Debian package", "APPLICATION", {**_SIMULATOR, "glibc": "DYNAMIC_LINK"},

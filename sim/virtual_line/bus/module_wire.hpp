@@ -18,20 +18,20 @@ using hal::doubles::VirtualClock;
 using hal::doubles::VirtualTime;
 using hal::doubles::Wire;
 
-/// The effect of defects on one reply.
+/// The effect of faults on one reply.
 struct ReplyFate {
   bool lost = false;
   VirtualTime late_by{0};
   std::size_t delayed_by = 0;  ///< number of the fault that makes the reply late, from 1; 0: none
 };
 
-/// Passes on the bytes that a UART sends. Without a defect, the bytes and their times are unchanged.
+/// Passes on the bytes that a UART sends. Without a fault, the bytes and their times are unchanged.
 class ModuleWire final : public Wire {
  public:
   ModuleWire(const VirtualClock& clock, Wire& wire) : clock_(clock), wire_(wire) {}
 
   /// Called when the UART enables the driver. `reply` is the number of the reply, from 1. Returns the effect
-  /// of defects on the reply. The function must not reset the module or switch off its power.
+  /// of faults on the reply. The function must not reset the module or switch off its power.
   using Begins = std::function<ReplyFate(std::uint64_t reply)>;
   /// Called when the UART disables the driver, even if the reply is lost or is not on the wires yet.
   using Ends = std::function<void()>;

@@ -58,7 +58,7 @@ TEST(ControlPower, OffDuringAWriteLeavesTheOldOrTheNewSettings) {
   }
 }
 
-TEST(ControlReset, SwitchesTheOutputsOffSetsTheResetStatusAndClearsTheCountersAndTheLatches) {
+TEST(ControlReset, DrivesThePowerOnValueSetsTheResetStatusAndClearsTheCountersAndTheLatches) {
   ControlBench bench("EX9055D");
   bench.tell("1 input 3 on");
   bench.tell("1 pulse 0 7");
