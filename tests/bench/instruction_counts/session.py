@@ -118,8 +118,8 @@ class Session:
         self._run(self._board.start_up)
 
     def _count(self, request, passes):
-        """Repeats a request. If the request has several frames, then sends the last frame, so that the module has
-        the address and the line settings of the session. After that, checks that the module replies."""
+        """Repeats a request. If the request has several frames, sends the last frame once more at the end, so that the
+        module has the address and the line settings of the session, and checks that the module replies."""
         for attempt in range(passes):
             in_turn = len(request.before) == len(request.frames) > 1
             for frame in [request.before[attempt % len(request.before)]] if in_turn else request.before:

@@ -224,8 +224,8 @@ bool Session::play_step(const Send& send) {
   const Time modbus_silence = rate_ <= 19200 ? Time(77ULL * 1'000'000'000ULL / (2ULL * rate_))
                                              : Time(std::chrono::microseconds(1750));
   const Time turn_around = reference_.runs_modbus() ? modbus_silence : takes(1);
-  // If the response delay is longer than the turn-around, the 20 ms or 200 ms within which a reply starts
-  // count from the end of the delay.
+  // A reply must start within 20 ms or 200 ms. If the response delay is longer than the turn-around, this
+  // time begins at the end of the delay.
   const Time delay = reference_.reply_delay() > turn_around ? reference_.reply_delay() : Time(0);
   const Time earliest = std::max(turn_around, delay);
   // wire.md 7 allows 20 ms from the end of a Modbus frame, which is the end of its silence. If the response
