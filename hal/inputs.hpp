@@ -10,8 +10,8 @@
 namespace ex9000::hal {
 
 /// The shortest time between the configuration of the input pins and `start`. A weak pull-up or pull-down of
-/// a microcontroller has up to 80 kΩ. Within this time, it changes the level of an open pin whose wire has a
-/// capacitance of 10 nF. If `start` read the pin earlier, the later edge would count as a pulse.
+/// the RP2040 or the TM4C123 has up to 80 kΩ. Within this time, it changes the level of an open pin whose
+/// wire has a capacitance of 10 nF. If `start` read the pin earlier, the later edge would count as a pulse.
 inline constexpr Duration kPullsSettle = milliseconds(1);
 
 /// The input channels. The edge interrupt calls `Device::on_edge` for each edge. Edges of a channel that

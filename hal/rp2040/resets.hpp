@@ -8,7 +8,7 @@
 
 namespace ex9000::hal::rp2040 {
 
-/// The peripherals that images use and that stay in reset after a reset of the MCU. Each has one bit.
+/// The peripherals that images must reset or release from reset before their use. Each has one bit.
 enum class Block : std::uint32_t {
   I2c0 = 1U << 3U,
   Pins = 1U << 5U,
@@ -25,8 +25,9 @@ constexpr std::uint32_t operator|(std::uint32_t a, Block b) { return a | static_
 class Resets {
  public:
   /// Resets `blocks` and waits until they can be used. This takes a few clock cycles. If the clock of a block
-  /// does not run, this function waits until the watchdog resets the MCU. The blocks are already in reset
-  /// before this call, except after a reset of only the processor, for example by a debug probe.
+  /// does not run, this function waits until the watchdog resets the MCU. Most blocks are already in reset
+  /// before this call: the exceptions are the timer, which the boot ROM releases, and all blocks after a
+  /// reset of only the processor, for example by a debug probe.
   static void restart(std::uint32_t blocks) {
     kReset.set(Bits<Reset>(blocks));
     kReset.clear(Bits<Reset>(blocks));

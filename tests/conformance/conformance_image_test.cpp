@@ -1,4 +1,4 @@
-// Plays all transcripts of the manuals' models on their firmware images, on the reference board (lm3s6965evb)
+// Plays all transcripts of the manuals' models on their firmware images, on the board lm3s6965evb
 // in QEMU.
 #include <gtest/gtest.h>
 #include <sched.h>

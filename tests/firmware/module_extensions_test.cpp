@@ -158,6 +158,29 @@ TEST(InputFilter, APulseCountsEvenIfItEndsBeforeTheModuleListens) {
   EXPECT_EQ(bench.ask("#013"), "!0100001");
 }
 
+// At this time, the inversion and the counting edge of the settings are already in force.
+TEST(InputInversion, IsInForceBeforeTheModuleListens) {
+  ModuleBench bench("EX9052D,baud=115200,edge=rising");
+  ASSERT_EQ(bench.ask("~01X02500004"), "!01");
+  bench.module().power(false);
+  bench.module().power(true);
+  const State& state = bench.module().module().state();
+  while (state.settings.inverted_inputs == 0) {
+    bench.module().set_init(!bench.module().init_asserted());
+    bench.run(milliseconds(1));
+  }
+  bench.module().set_init(false);
+  bench.module().set_input(1, true);
+  bench.module().set_input(2, true);
+  bench.run(milliseconds(2));
+  ASSERT_FALSE(bench.module().module().listening());
+  bench.run(milliseconds(100));
+  EXPECT_EQ(bench.ask("#011"), "!0100001");
+  EXPECT_EQ(bench.ask("#012"), "!0100000");
+  EXPECT_EQ(bench.ask("$01L1"), "!020000");
+  EXPECT_EQ(bench.ask("$01L0"), "!040000");
+}
+
 // --- requests that restart the host watchdog ---
 
 TEST(FedByRequests, TheEndOfARequestRestartsTheHostWatchdog) {

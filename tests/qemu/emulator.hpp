@@ -1,4 +1,4 @@
-// The reference board in QEMU, in emulated time.
+// The LM3S6965 board (boards/lm3s6965evb) in QEMU, in emulated time.
 #pragma once
 
 #include <optional>

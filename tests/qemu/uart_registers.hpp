@@ -1,4 +1,4 @@
-// Registers of the reference board's UART0, for code that accesses them from outside the microcontroller.
+// Registers of UART0 of the LM3S6965, for code that accesses them from outside the microcontroller.
 // Source: LM3S6965 data sheet, section 12.5.
 #pragma once
 
