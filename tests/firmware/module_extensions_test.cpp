@@ -136,17 +136,22 @@ TEST(InputFilter, IfALevelChangesWhileTheModuleStartsItCountsAfterTheFilterTime)
   }
 }
 
-// The settings are known, but the module does not listen yet, because INIT* bounces.
-TEST(InputFilter, APulseCountsEvenIfItEndsBeforeTheModuleListens) {
-  ModuleBench bench("EX9052D,baud=115200");
-  ASSERT_EQ(bench.ask("~01X02430001"), "!01");
+/// Switches the supply off and on, and lets INIT* bounce until `are_read` returns true for the settings. The
+/// module then knows its settings, but it does not listen yet.
+template <class AreRead>
+void start_while_init_bounces(ModuleBench& bench, AreRead are_read) {
   bench.module().power(false);
   bench.module().power(true);
-  const State& state = bench.module().module().state();
-  while (!state.settings.input_filters.any()) {
+  while (!are_read(bench.module().module().state().settings)) {
     bench.module().set_init(!bench.module().init_asserted());
     bench.run(milliseconds(1));
   }
+}
+
+TEST(InputFilter, APulseCountsEvenIfItEndsBeforeTheModuleListens) {
+  ModuleBench bench("EX9052D,baud=115200");
+  ASSERT_EQ(bench.ask("~01X02430001"), "!01");
+  start_while_init_bounces(bench, [](const Settings& settings) { return settings.input_filters.any(); });
   bench.module().set_input(3, true);
   bench.run(milliseconds(2));
   bench.module().set_init(false);
@@ -158,17 +163,11 @@ TEST(InputFilter, APulseCountsEvenIfItEndsBeforeTheModuleListens) {
   EXPECT_EQ(bench.ask("#013"), "!0100001");
 }
 
-// At this time, the inversion and the counting edge of the settings are already in force.
+// The inversion and the counting edge are in force as soon as the settings are read.
 TEST(InputInversion, IsInForceBeforeTheModuleListens) {
   ModuleBench bench("EX9052D,baud=115200,edge=rising");
   ASSERT_EQ(bench.ask("~01X02500004"), "!01");
-  bench.module().power(false);
-  bench.module().power(true);
-  const State& state = bench.module().module().state();
-  while (state.settings.inverted_inputs == 0) {
-    bench.module().set_init(!bench.module().init_asserted());
-    bench.run(milliseconds(1));
-  }
+  start_while_init_bounces(bench, [](const Settings& settings) { return settings.inverted_inputs != 0; });
   bench.module().set_init(false);
   bench.module().set_input(1, true);
   bench.module().set_input(2, true);
