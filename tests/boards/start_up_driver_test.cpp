@@ -157,7 +157,11 @@ TEST_P(StartUp, ConfiguresInputPinsWithAPullToTheInactiveLevel) {
 }
 
 TEST_P(StartUp, EnablesThePullsOfTheInputsAtLeastAMillisecondBeforeTheFirstReadOfTheLevels) {
-  come_up();
+  bench.power_on();
+  // Without these times, nothing else delays the start.
+  bench.mcu->system_control.set_crystal_start(Instant(0));
+  bench.mcu->system_control.set_lock_time(Instant(0));
+  bench.run_for(kComesUpWithin);
   for (unsigned channel = 0; channel < image.inputs; ++channel) {
     const PinPlace pin = image.input_pins.at(channel);
     SCOPED_TRACE(std::string(1, pin.port) + std::to_string(pin.pin));
