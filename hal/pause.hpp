@@ -1,4 +1,4 @@
-// A pause of the start of a board.
+// A pause during the start of a board.
 #pragma once
 
 #include "firmware/time.hpp"

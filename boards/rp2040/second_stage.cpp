@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "hal/rp2040/boot.hpp"
+#include "hal/rp2040/clocks.hpp"
 
 namespace ex9000::start_up {
 
@@ -14,7 +15,7 @@ extern "C" std::uint32_t image_end[];
 extern "C" [[noreturn]] __attribute__((section(".second_stage"), used, externally_visible)) void
 second_stage() {
   constexpr std::uint32_t kImageInFlash = 256;
-  hal::rp2040::Boot::use_reference();
+  hal::rp2040::Clocks::use_reference();
   hal::rp2040::Boot::use_crystal();
   hal::rp2040::Boot::copy(kImageInFlash, image_begin, static_cast<std::uint32_t>(image_end - image_begin));
   hal::rp2040::Boot::jump(image_begin);

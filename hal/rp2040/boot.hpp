@@ -7,7 +7,6 @@
 
 #include "hal/registers/register.hpp"
 #include "hal/rp2040/crystal.hpp"
-#include "hal/rp2040/shared_register.hpp"
 
 namespace ex9000::hal::rp2040 {
 
@@ -15,17 +14,6 @@ namespace ex9000::hal::rp2040 {
 /// is not inlined would be in the image, and the image is not in RAM yet.
 class Boot {
  public:
-  /// Switches the processor and the flash interface to the reference clock, because `copy` requires a slower
-  /// clock than the PLL. They still run on the PLL after a reset of only the processor, for example by a
-  /// debug probe.
-  [[gnu::always_inline]] static void use_reference() {
-    constexpr Bits<SystemControl> kFromPll(1);
-    constexpr Bits<SystemSelected> kReferenceSelected(1);
-    kSystemControl.clear(kFromPll);
-    while (!kSystemSelected.read().has(kReferenceSelected)) {
-    }
-  }
-
   /// Switches the reference clock to the crystal, because the ring oscillator may run at less than 2 MHz.
   /// Blocks for at most about 5 ms if the crystal starts. If the crystal is not stable after `kMostReads`
   /// reads, this function does not switch the clock. The image then starts the watchdog and waits for the
@@ -84,8 +72,6 @@ class Boot {
   struct Data;
   struct SelectControl;
   struct Vectors;
-  struct SystemControl;
-  struct SystemSelected;
   static constexpr Register<Control> kControl{0x1800'0000};
   static constexpr Register<Count> kCount{0x1800'0004};
   static constexpr Register<Enable> kEnable{0x1800'0008};
@@ -95,8 +81,6 @@ class Boot {
   static constexpr Register<Data> kData{0x1800'0060};
   static constexpr Register<SelectControl> kSelectControl{0x4001'800C};
   static constexpr Register<Vectors> kVectors{0xE000'ED08};
-  static constexpr SharedRegister<SystemControl> kSystemControl{0x4000'803C};
-  static constexpr SharedRegister<SystemSelected> kSystemSelected{0x4000'8044};
 };
 
 }  // namespace ex9000::hal::rp2040

@@ -25,6 +25,15 @@ struct ClockTree {
 
 class Clocks {
  public:
+  /// Switches the processor and the flash interface to the reference clock, because Boot::copy requires a
+  /// slower clock than the PLL. They still run on the PLL after a reset of only the processor, for example by
+  /// a debug probe. For the second stage of the boot sequence, so this function is inlined; see Boot.
+  [[gnu::always_inline]] static void use_reference() {
+    kSystemControl.clear(kFromPll);
+    while (!kSystemSelected.read().has(kReferenceSelected)) {
+    }
+  }
+
   /// Switches the reference clock to the crystal, and the processor and the peripherals to the PLL. The
   /// second stage has already started the crystal. Call this once after reset, when the watchdog is running.
   /// If the crystal is already stable, this blocks for less than 1 ms. If the crystal never becomes stable or
@@ -65,6 +74,7 @@ class Clocks {
   static constexpr SharedRegister<PeripheralControl> kPeripheralControl{0x4000'8048};
 
   static constexpr Bits<SystemControl> kFromPll{0x1};
+  static constexpr Bits<SystemSelected> kReferenceSelected{1U << 0U};
   static constexpr Bits<SystemSelected> kAuxiliarySelected{1U << 1U};
   static constexpr Bits<PeripheralControl> kPeripheralEnable{1U << 11U};
 
