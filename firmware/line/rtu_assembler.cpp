@@ -57,7 +57,8 @@ Verdict RtuAssembler::conclude(FrameQueue& queue) {
     return Verdict::Open;
   }
   const std::uint8_t address = frame.storage[offset];
-  if (address != own_address_.load() && address != kBroadcast) {
+  const bool is_exception = (frame.storage[offset + 1] & modbus::kExceptionFlag) != 0;
+  if (is_exception || (address != own_address_.load() && address != kBroadcast)) {
     return Verdict::Foreign;
   }
   broadcast_ = address == kBroadcast;

@@ -15,7 +15,7 @@ enum class Verdict : std::uint8_t {
   Accepted,   ///< correct, and for this module or for all modules; the frame is in the queue
   HostOk,     ///< a host OK; the interrupt stores its time, so that no host OK is lost
   Ignored,    ///< ASCII: a correct broadcast other than `#**` and `~**`
-  Foreign,    ///< correct, but neither for this module nor for all modules
+  Foreign,    ///< correct, but neither for this module nor for all modules, or an exception reply
   NoRoom,     ///< correct, and for this module or for all modules, but lost because another frame is waiting
   BadCheck,   ///< wrong or missing checksum, wrong CRC
   TooShort,   ///< ASCII with checksum: fewer than 3 characters; Modbus: fewer than 4 bytes

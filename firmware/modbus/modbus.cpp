@@ -4,6 +4,7 @@
 
 #include "firmware/line/crc16.hpp"
 #include "firmware/modbus/functions.hpp"
+#include "firmware/modbus/host_ok.hpp"
 #include "firmware/model/built.hpp"
 
 namespace ex9000::modbus {
@@ -11,7 +12,6 @@ namespace ex9000::modbus {
 namespace {
 
 constexpr std::uint8_t kBroadcast = 0;
-constexpr std::uint8_t kExceptionFlag = 0x80;
 
 /// Exception codes: Modbus Application Protocol V1.1b3, 7.
 enum Exception : std::uint8_t {

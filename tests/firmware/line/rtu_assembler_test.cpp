@@ -283,6 +283,16 @@ TEST_F(RtuAssemblerTest, ReadingRegister3038WithQuantity0Or1IsAHostOk) {
             Verdict::HostOk);  // an example frame of wire.md section 7
 }
 
+// wire.md section 7.
+TEST_F(RtuAssemblerTest, AFrameWhoseFunctionHasBit7SetIsNoRequest) {
+  for (unsigned function = 0x80; function <= 0xFF; ++function) {
+    for (const int address : {0x00, 0x01}) {
+      const FrameBytes frame{static_cast<std::uint8_t>(address), static_cast<std::uint8_t>(function), 0x02};
+      EXPECT_EQ(verdict_of(with_crc(frame)), Verdict::Foreign) << function;
+    }
+  }
+}
+
 TEST_F(RtuAssemblerTest, AnotherFunctionRegisterQuantityOrLengthIsNoHostOk) {
   const std::vector<FrameBytes> others{
       {0x01, 0x03, 0x30, 0x38, 0x00, 0x02},                    // quantity
@@ -296,7 +306,7 @@ TEST_F(RtuAssemblerTest, AnotherFunctionRegisterQuantityOrLengthIsNoHostOk) {
       {0x01, 0x02, 0x30, 0x38, 0x00, 0x00},                    // function
       {0x01, 0x05, 0x30, 0x38, 0x00, 0x00},                    // function
       {0x01, 0x06, 0x30, 0x38, 0x00, 0x01},                    // function
-      {0x01, 0x83, 0x30, 0x38, 0x00, 0x01},                    // function
+      {0x01, 0x43, 0x30, 0x38, 0x00, 0x01},                    // function
       {0x01, 0x03, 0x30, 0x38},                                // too short
       {0x01, 0x03, 0x30, 0x38, 0x00},                          // too short
       {0x01, 0x03, 0x30, 0x38, 0x00, 0x01, 0x00},              // too long

@@ -119,10 +119,11 @@ class RtuJudge {
     const Bytes frame{bytes_.data() + start, size - 2};
     const bool host_ok =
         frame.size == 6 && (frame[1] == 3 || frame[1] == 4) && frame.word(2) == 0x3038 && frame.word(4) <= 1;
-    const auto kind = frame[0] != own_ && frame[0] != 0 ? Finding::Kind::Foreign
-                      : host_ok                         ? Finding::Kind::HostOk
-                      : frame[0] == 0                   ? Finding::Kind::Broadcast
-                                                        : Finding::Kind::Request;
+    const bool exception = frame[1] >= 0x80;  // of another server
+    const auto kind = exception || (frame[0] != own_ && frame[0] != 0) ? Finding::Kind::Foreign
+                      : host_ok                                        ? Finding::Kind::HostOk
+                      : frame[0] == 0                                  ? Finding::Kind::Broadcast
+                                                                       : Finding::Kind::Request;
     return {kind, frame, first_, last_};
   }
 

@@ -66,6 +66,10 @@ Bytes Module::modbus_frame(Bytes frame, std::vector<bool> bad) {
     rule("Modbus frame for another address");
     return {};
   }
+  if (function >= 0x80) {
+    rule("Modbus exception reply");
+    return {};
+  }
   counts_.server_messages += 1;
   if (address != 0) {
     restart_host_watchdog_by_request();

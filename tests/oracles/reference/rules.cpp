@@ -135,6 +135,7 @@ const char* const kRules[] = {
     "Modbus frame spoiled",
     "turn-around 00 before a Modbus frame",
     "Modbus frame for another address",
+    "Modbus exception reply",
     "host OK by FC03",
     "host OK by FC04",
     "broadcast host OK by FC03",
