@@ -45,9 +45,13 @@ void SettingsStore::done(bool ok) {
       break;
     case Step::Invalidate:
       if (ok) {
-        copies_to_invalidate_ &= ~bit(place_);
+        step_ = Step::CheckInvalid;
+      } else {
+        invalidate_from(place_ + 1);
       }
-      invalidate_from(place_ + 1);
+      break;
+    case Step::CheckInvalid:
+      check_invalid(ok);
       break;
     case Step::Idle:  // not covered: no job is running while idle
       break;
@@ -73,17 +77,19 @@ void SettingsStore::begin_reading(Step step) {
   begin_copy(0);
 }
 
+/// Counts the page that was read. Returns whether the copy has more pages.
+bool SettingsStore::copy_goes_on() {
+  done_ += page_size();
+  copy_size_ = copy_size(kPlaces[place_], {read_back_.data(), kMemoryPage});
+  return done_ < copy_size_;
+}
+
 void SettingsStore::read_page(bool ok) {
-  const Place& place = kPlaces[place_];
-  const Bytes page{read_back_.data(), kMemoryPage};
-  if (ok) {
-    done_ += page_size();
-    copy_size_ = copy_size(place, page);
-    if (done_ < copy_size_) {
-      return;
-    }
+  if (ok && copy_goes_on()) {
+    return;
   }
-  const bool blank = ok && is_blank(page);
+  const Place& place = kPlaces[place_];
+  const bool blank = ok && is_blank({read_back_.data(), kMemoryPage});
   const auto stored = ok ? read_copy(model_.get(), place, {read_back_.data(), done_}) : std::nullopt;
   const std::uint8_t attempts = !ok && silent_ ? 1 : kAttempts;
   if (!stored && !blank && ++attempt_ < attempts) {
@@ -262,6 +268,17 @@ void SettingsStore::invalidate_from(std::size_t place) {
   begin_copy(place);
   read_back_.fill(0);
   step_ = Step::Invalidate;
+}
+
+/// Reads the invalidated copy as a reset would, because the memory may acknowledge a write without effect.
+void SettingsStore::check_invalid(bool ok) {
+  if (ok && copy_goes_on()) {
+    return;
+  }
+  if (ok && !read_copy(model_.get(), kPlaces[place_], {read_back_.data(), done_})) {
+    copies_to_invalidate_ &= ~bit(place_);
+  }
+  invalidate_from(place_ + 1);
 }
 
 }  // namespace ex9000

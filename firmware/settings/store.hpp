@@ -113,9 +113,10 @@ class SettingsStore {
   void done(bool ok);
 
  private:
-  enum class Step : std::uint8_t { Idle, Load, LookAgain, Write, Verify, Invalidate };
+  enum class Step : std::uint8_t { Idle, Load, LookAgain, Write, Verify, Invalidate, CheckInvalid };
 
   void begin_reading(Step step);
+  [[nodiscard]] bool copy_goes_on();
   void read_page(bool ok);
   void take_copy(const StoredSettings& stored);
   void next_place();
@@ -128,6 +129,7 @@ class SettingsStore {
   [[nodiscard]] std::size_t page_size() const;
   void finish_writing();
   void invalidate_from(std::size_t place);
+  void check_invalid(bool ok);
 
   static constexpr std::size_t kNoPlace = kPlaces.size();
   static constexpr std::uint8_t kAttempts = 3;

@@ -257,6 +257,28 @@ TEST_F(SettingsKeeperTest, StoredSettingsAreUncertainUntilARefusedCopyIsInvalida
   EXPECT_TRUE(keeper_.certain());
 }
 
+// wire.md D15.
+TEST_F(SettingsKeeperTest, AnInvalidationWithoutEffectIsRepeatedEverySecond) {
+  store(numbered(5));
+  memory_.noisy_reads = kAttempts;
+  memory_.ignored_after = kAttempts;
+  store(numbered(21));
+  EXPECT_FALSE(keeper_.certain());
+  for (unsigned second = 0; second < 3; ++second) {
+    keeper_.poll(numbered(5), now_ + milliseconds(1000 * second));
+    ASSERT_TRUE(keeper_.busy());
+    drive_memory();
+    EXPECT_FALSE(keeper_.certain());
+    keeper_.poll(numbered(5), now_ + milliseconds(1000 * second));
+    EXPECT_FALSE(keeper_.busy());
+  }
+  memory_.ignored_after = SIZE_MAX;
+  keeper_.poll(numbered(5), now_ + milliseconds(3000));
+  drive_memory();
+  EXPECT_TRUE(keeper_.certain());
+  EXPECT_TRUE(Boot(memory_).stored() == numbered(5));
+}
+
 TEST(SettingsKeeperAtReset, TheSettingsAreUncertainUntilASaveIfTheMemoryDidNotAnswer) {
   FakeMemory memory;
   memory.failing_reads = kReadsOfASilentMemory;

@@ -62,15 +62,16 @@ class FakeMemory {
   }
 
   std::vector<std::uint8_t> cells = std::vector<std::uint8_t>(kStoredMemory, 0xFF);
-  std::size_t failing_reads = 0;      ///< number of the next reads that the memory does not answer
-  std::size_t noisy_reads = 0;        ///< number of the next reads that return a wrong bit
-  std::size_t unanswered_writes = 0;  ///< number of the next writes that the memory does not answer
-  bool unanswered_but_done = false;   ///< the memory stores the data of writes that it does not answer
-  bool stuck = false;                 ///< the byte at kStuckCell cannot be written in any page
-  std::optional<std::size_t> power;   ///< if set, the power fails after this many more bytes are written
-  Garbage garbage = Garbage::None;    ///< content of the byte that is being written when the power fails
-  std::vector<std::uint16_t> reads;   ///< addresses of all reads
-  std::vector<std::uint16_t> writes;  ///< addresses of all writes
+  std::size_t failing_reads = 0;         ///< number of the next reads that the memory does not answer
+  std::size_t noisy_reads = 0;           ///< number of the next reads that return a wrong bit
+  std::size_t unanswered_writes = 0;     ///< number of the next writes that the memory does not answer
+  bool unanswered_but_done = false;      ///< the memory stores the data of writes that it does not answer
+  std::size_t ignored_after = SIZE_MAX;  ///< after this many more writes, writes are answered but not done
+  bool stuck = false;                    ///< the byte at kStuckCell cannot be written in any page
+  std::optional<std::size_t> power;      ///< if set, the power fails after this many more bytes are written
+  Garbage garbage = Garbage::None;       ///< content of the byte that is being written when the power fails
+  std::vector<std::uint16_t> reads;      ///< addresses of all reads
+  std::vector<std::uint16_t> writes;     ///< addresses of all writes
   std::size_t bytes_written = 0;
 
  private:
@@ -96,6 +97,12 @@ class FakeMemory {
       if (!unanswered_but_done) {
         return false;
       }
+    }
+    if (ignored_after == 0) {
+      return answers;
+    }
+    if (ignored_after != SIZE_MAX) {
+      --ignored_after;
     }
     for (std::size_t i = 0; i < job.bytes.size; ++i) {
       std::uint8_t& cell = cells[job.address + i];

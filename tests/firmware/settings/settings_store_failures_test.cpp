@@ -136,8 +136,49 @@ TEST(SettingsStore, TheCopyOfAFailedSaveIsInvalidatedAndTheCopyThatWasReadLastIs
   ASSERT_TRUE(store.needs_invalidation());
   store.begin_invalidating();
   EXPECT_EQ(store.job().address / kPage, invalidated / kPage);
-  end_jobs(store, true, 1);
+  end_jobs(store, true, 2);  // the write, and the read-back
   EXPECT_FALSE(store.needs_invalidation());
+}
+
+// A memory that answers a write without doing it must not make refused settings valid.
+TEST(SettingsStore, AnInvalidationWithoutEffectIsNoticed) {
+  FakeMemory memory;
+  Boot run(memory);
+  ASSERT_TRUE(run.save(numbered(1)));
+  SettingsStore store(the_model());
+  ASSERT_TRUE(drive(store, memory));
+  memory.noisy_reads = kAttempts;    // the refused copy is complete, but each read-back differs
+  memory.ignored_after = kAttempts;  // then the write that invalidates the copy has no effect
+  store.begin_saving(numbered(21));
+  ASSERT_TRUE(drive(store, memory));
+  EXPECT_FALSE(store.saved());
+  ASSERT_TRUE(Boot(memory).stored() == numbered(21)) << "the copy is valid, so this test can fail";
+  EXPECT_TRUE(store.needs_invalidation());
+  store.begin_invalidating();
+  ASSERT_TRUE(drive(store, memory));
+  EXPECT_TRUE(store.needs_invalidation());
+
+  memory.ignored_after = SIZE_MAX;
+  store.begin_invalidating();
+  ASSERT_TRUE(drive(store, memory));
+  EXPECT_FALSE(store.needs_invalidation());
+  EXPECT_TRUE(Boot(memory).stored() == numbered(1));
+}
+
+// A worn cell that keeps its value does not make the copy valid, so it is not written again and again.
+TEST(SettingsStore, AnInvalidationThatIsIncompleteButSufficientIsNotRepeated) {
+  FakeMemory memory;
+  Boot run(memory);
+  ASSERT_TRUE(run.save(numbered(1)));
+  SettingsStore store(the_model());
+  ASSERT_TRUE(drive(store, memory));
+  memory.noisy_reads = kAttempts;
+  memory.stuck = true;
+  store.begin_saving(numbered(21));
+  ASSERT_TRUE(drive(store, memory));
+  EXPECT_FALSE(store.saved());
+  EXPECT_FALSE(store.needs_invalidation());
+  EXPECT_TRUE(Boot(memory).stored() == numbered(1));
 }
 
 // The memory did not answer at reset. Then a save failed, and its copy could not be invalidated. The next
