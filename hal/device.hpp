@@ -111,8 +111,8 @@ class Device {
       drive_outputs();
     }
     poll_line(now);
-    begin_memory_job(now);
-    return set_wake_timer(now) || memory_polls;
+    const bool memory_is_done = begin_memory_job(now);
+    return set_wake_timer(now) || memory_polls || memory_is_done;
   }
 
   constexpr Board& board() { return board_; }
@@ -185,9 +185,11 @@ class Device {
     return polls_again;
   }
 
-  void begin_memory_job(Time now) {
+  /// Begins the next memory job. Returns whether the memory has completed it at once, so that no interrupt
+  /// follows.
+  bool begin_memory_job(Time now) {
     if (memory_job_under_way_ || !module_.needs_memory()) {
-      return;
+      return false;
     }
     const MemoryJob job = module_.memory_job();
     if (job.kind == MemoryJob::Kind::Read) {
@@ -196,6 +198,7 @@ class Device {
       board_.memory.start_write(job.address, {job.bytes.data, job.bytes.size}, now);
     }
     memory_job_under_way_ = true;
+    return !board_.memory.busy();
   }
 
   /// Sets the wake timer to the time until the next event: at most kMemoryPollPeriod during a memory job,

@@ -31,7 +31,7 @@ inline constexpr Duration kMemoryPollPeriod = milliseconds(1);
 ///         memory and at least every `kMemoryPollPeriod`. If this returns true, call it again immediately,
 ///         because no interrupt will occur.
 ///     bool busy() const
-///         Returns whether a job is running.
+///         Returns whether a job is running. A job may end at once: then this is false after `start_...`.
 ///     bool succeeded() const
 ///         Returns whether the last job succeeded. A job fails, for example, if the memory does not complete
 ///         it before the driver's timeout expires. Call this only while not `busy()`.
