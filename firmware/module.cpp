@@ -8,6 +8,8 @@ namespace {
 
 constexpr Duration kInitTimeout = milliseconds(50);  // wire.md D13
 constexpr std::uint8_t kInitModeAddress = 0x00;
+/// What a reply may take beyond the time of its bytes, for gaps that late interrupts cause.
+constexpr Duration kReplyMargin = milliseconds(100);
 constexpr Duration kClockResolution(1);  // an event may be this much later than its recorded time
 
 constexpr Duration sooner(Duration a, Duration b) { return b < a ? b : a; }
@@ -229,6 +231,16 @@ void Module::continue_store(Time now) {
       finish_request();
     }
   }
+}
+
+Bytes Module::take_reply(Time now) {
+  const Bytes reply = cycle_.take_reply(now);
+  if (reply.size != 0) {
+    const auto characters = static_cast<std::uint32_t>(reply.size);
+    const Duration length(characters * receiver_.timing().character.microseconds());
+    reply_deadline_.set(now + length + kReplyMargin);
+  }
+  return reply;
 }
 
 /// Carries out a request that has been judged. If the request changes settings, these settings must be stored

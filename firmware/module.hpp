@@ -84,8 +84,9 @@ class Module {
   /// Returns the levels to drive: bit n is channel n, 1 = energised. All are 0 until the settings are loaded.
   [[nodiscard]] std::uint16_t outputs() const { return state_.outputs; }
   [[nodiscard]] bool led_lit() const { return led_.lit(); }
-  /// Returns whether to feed the hardware watchdog. See ModuleWatchdog::main_loop_alive.
-  bool feed_watchdog() { return module_watchdog_.main_loop_alive(); }
+  /// Returns whether to feed the hardware watchdog: see ModuleWatchdog::main_loop_alive. A reply that does
+  /// not end jams the line, so past its deadline there is no feed until `reply_sent` (wire.md section 6).
+  bool feed_watchdog(Time now) { return module_watchdog_.main_loop_alive() && !reply_deadline_.reached(now); }
 
   /// Returns whether the start is complete: the settings are loaded, and the module has selected INIT mode or
   /// normal operation. The line can then be opened at `baud()` with `format()`.
@@ -104,9 +105,12 @@ class Module {
 
   /// Returns the reply if it may be sent now. Returns each reply only once. The result is empty if no reply
   /// is ready, or if it is too early to send the reply. The bytes are valid until `reply_sent`.
-  Bytes take_reply(Time now) { return cycle_.take_reply(now); }
+  Bytes take_reply(Time now);
   /// Ends the reply. Call this when its last stop bit has been sent and the driver is off.
-  void reply_sent(Time now) { cycle_.reply_sent(now, turn_around()); }
+  void reply_sent(Time now) {
+    cycle_.reply_sent(now, turn_around());
+    reply_deadline_.disarm();
+  }
 
   // --- for panels, logs and tests ---
 
@@ -158,7 +162,8 @@ class Module {
   TimingAt timing_at_;
   Start start_ = Start::Loading;
   Deadline init_timeout_;
-  Time second_began_;  ///< when the current second of the uptime began
+  Deadline reply_deadline_;  ///< armed while a reply is being sent
+  Time second_began_;        ///< when the current second of the uptime began
 
   State state_;
   InputEdges edges_;

@@ -123,10 +123,11 @@ class Device {
   /// feeds the hardware watchdog if the module permits this. Also drives the outputs again, in case a
   /// disturbance has changed their registers.
   void poll_panel() {
-    module_.poll_panel(board_.init_switch.asserted(), board_.clock.now());
+    const Time now = board_.clock.now();
+    module_.poll_panel(board_.init_switch.asserted(), now);
     board_.status_led.light(module_.led_lit());
     drive_outputs();
-    if (module_.feed_watchdog()) {
+    if (module_.feed_watchdog(now)) {
       board_.watchdog.feed();
     }
   }

@@ -9,6 +9,8 @@
 namespace ex9000 {
 
 struct LineTiming {
+  /// Duration of a character, rounded up.
+  Duration character;
   /// Shortest time between the report of CR and the reply: the rest of the stop bits of CR plus one
   /// character, rounded up.
   Duration dcon_turn_around;
@@ -36,6 +38,7 @@ struct LineTiming {
     const unsigned second_stop_bit = bits_of_character(format) - bits_received(format);
     const std::uint32_t until_report = microseconds(2 * bits_received(format), baud);
     LineTiming timing;
+    timing.character = Duration(microseconds(2 * bits_of_character(format), baud) + 1U);
     timing.rest_of_stop_bit = Duration(second_stop_bit == 0 ? 0 : microseconds(2, baud) + 1U);
     timing.dcon_turn_around =
         timing.rest_of_stop_bit + Duration(microseconds(2 * bits_of_character(format), baud) + kRoundUp);

@@ -96,6 +96,31 @@ TEST_P(FaultOnBoard, AStoppedTickCausesAReset) {
   });
 }
 
+// The driver would jam the line for ever. The deadline of a reply is its length and 100 ms.
+TEST_P(FaultOnBoard, ALostEndOfAReplyCausesAReset) {
+  constexpr unsigned kUarts[] = {5, 6};
+  constexpr unsigned kLineEndTimer = 21;  // timer 1A
+  for (const bool ends : {false, true}) {
+    WatchedModule module(image(), set_up(*find_model(image().model), protocol()));
+    BoardBench& bench = module.bench;
+    const unsigned lost = ends ? kLineEndTimer : kUarts[bench.image.uart];
+    const Bytes request = module.framed("$012", {1, 0x11});
+    const auto driver_is_on = [&bench] { return bench.line.driven(); };
+    const Bytes reply = bench.exchange(request);
+    bench.line.send(request);
+    ASSERT_TRUE(runs_until(bench, driver_is_on, std::chrono::microseconds(100)));
+    bench.mcu->core.lose(lost);
+    const Instant length = static_cast<std::int64_t>(reply.size()) * bench.line.character_time();
+    bench.run_for(length + milliseconds(50));
+    ASSERT_TRUE(driver_is_on());
+    bench.run_for(milliseconds(60) + kResetsWithin);
+    EXPECT_EQ(bench.watchdog_resets, 1U);
+    EXPECT_FALSE(driver_is_on());
+    bench.run_for(kComesUpWithin);
+    EXPECT_EQ(bench.exchange(request), reply);
+  }
+}
+
 TEST_P(FaultOnBoard, AnInterruptStormCausesAReset) {
   WatchedModule module(image(), set_up(*find_model(image().model), protocol()));
   const std::uint32_t enabled = module.bench.mcu->core.enabled();

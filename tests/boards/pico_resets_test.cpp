@@ -172,6 +172,27 @@ TEST_F(PicoResets, TheModuleReportsASoftwareResetAfterACopyToTheDrive) {
   EXPECT_EQ(ask("~01X0301"), "!010002\r");
 }
 
+/// wire.md section 6: the driver would jam the line for ever.
+TEST_F(PicoResets, TheModuleIsResetIfTheInterruptThatEndsAReplyIsLost) {
+  constexpr int kLineEndTimer = 1;
+  constexpr int kUart = 20;
+  for (const int lost : {kLineEndTimer, kUart}) {
+    begin();
+    bench_.send(text("$01M\r"));
+    bench_.run_for(milliseconds(3));
+    ASSERT_NE(bench_.levels() & board::kDriverEnable.mask(), 0U);
+    bench_.execute("lose " + std::to_string(lost));
+    bench_.run_for(milliseconds(60));  // a reply of nine characters takes 9.4 ms
+    ASSERT_NE(bench_.levels() & board::kDriverEnable.mask(), 0U);
+    bench_.run_for(milliseconds(60) + kWatchdogPeriod);
+    EXPECT_EQ(bench_.counts().at("timeouts"), 1);
+    EXPECT_EQ(bench_.levels() & board::kDriverEnable.mask(), 0U);
+    bench_.run_for(kComingUp);
+    bench_.heard();
+    EXPECT_EQ(ask("$01M"), "!019043M\r");
+  }
+}
+
 TEST_F(PicoResets, BytesWithoutPausesDoNotResetTheModule) {
   begin("EX9043D-M", 115200);
   const nanoseconds end = bench_.now() + 2 * kWatchdogPeriod;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "sim/text/values.hpp"
+#include "tests/firmware/core_bench.hpp"
 #include "tests/firmware/module_bench.hpp"
 
 namespace ex9000::sim {
@@ -52,6 +53,33 @@ TEST(HostWatchdog, TheCommandThatClearsTheTimeoutStatusDoesNotClearATimeoutDurin
   EXPECT_EQ(bench.ask("~010"), "!0104");
   bench.power_cycle();
   EXPECT_EQ(bench.ask("~010"), "!0104");
+}
+
+// wire.md 6: module watchdog.
+TEST(ModuleWatchdog, IsNotFedWhileAReplyTakesLongerThanItsDeadline) {
+  CoreBench bench("EX9042D-M");
+  Module& module = bench.module();
+  bench.hear(CoreBench::with_crc({0x01, 0x11}));
+  module.step(bench.now());
+  const std::size_t size = module.take_reply(bench.now()).size;
+  ASSERT_NE(size, 0U);
+  constexpr Duration kCharacter(1042);  // at 9600 baud, 8N1
+  const Time began = bench.now();
+  const Duration least(static_cast<std::uint32_t>(size) * kCharacter.microseconds());
+  const auto fed = [&] {
+    bench.pass(ex9000::milliseconds(10));
+    module.on_tick();
+    return module.feed_watchdog(bench.now());
+  };
+  while (bench.now().since(began) < least + ex9000::milliseconds(90)) {
+    ASSERT_TRUE(fed()) << bench.now().since(began).microseconds() << " us";
+  }
+  bench.pass(ex9000::milliseconds(20));
+  for (int tick = 0; tick < 2000; ++tick) {
+    ASSERT_FALSE(fed());
+  }
+  module.reply_sent(bench.now());
+  EXPECT_TRUE(fed());
 }
 
 TEST(HostWatchdog, RunsEvenIfTheInitSwitchBouncesContinuously) {

@@ -114,7 +114,7 @@ void Core::pend(unsigned exception) {
 /// Sets the level of an interrupt line. A line that `stick` has asserted stays asserted. A pending exception
 /// stays pending when its line goes low.
 void Core::interrupt_line_of(unsigned interrupt, bool asserted) {
-  lines_.at(interrupt) = asserted || (stuck_ >> interrupt & 1U) != 0;
+  lines_.at(interrupt) = (asserted && (lost_ >> interrupt & 1U) == 0) || (stuck_ >> interrupt & 1U) != 0;
   if (lines_.at(interrupt)) {
     pend(kFirstInterrupt + interrupt);
   }

@@ -48,6 +48,8 @@ class Core final : public Peripheral {
     stuck_ |= 1U << interrupt;
     interrupt_line_of(interrupt, true);
   }
+  /// Loses an interrupt from now on, as if the line between its peripheral and the processor were broken.
+  void lose(unsigned interrupt) { lost_ |= 1U << interrupt; }
   void hold(bool on) { held_ = on; }
   [[nodiscard]] bool held() const { return held_; }
   /// Returns whether a sleeping processor wakes up now.
@@ -97,6 +99,7 @@ class Core final : public Peripheral {
   unsigned group_shift_ = 0;
   std::array<bool, 32> lines_{};
   std::uint32_t stuck_ = 0;    ///< a bit for each line
+  std::uint32_t lost_ = 0;     ///< a bit for each line
   std::uint64_t pending_ = 0;  ///< a bit for each exception
   std::array<Instant, kExceptions> since_{};
   std::vector<unsigned> active_;

@@ -22,6 +22,7 @@ class Processor {
     this.faulted = false;
     this.lockedUp = false;
     this.deepest = 0;
+    this.lost = 0;  // interrupts that do not reach the processor
     core.setInterrupt = (irq, asserted) => this.setLine(irq, asserted);
     const enter = core.exceptionEntry.bind(core);
     core.exceptionEntry = (exception) => {
@@ -59,11 +60,15 @@ class Processor {
     this.faulted = true;
   }
 
+  lose(irq) {
+    this.lost |= 1 << irq;
+  }
+
   setLine(irq, asserted) {
     const bit = 1 << irq;
     if (!asserted) {
       this.lines &= ~bit;
-    } else if ((this.lines & bit) === 0) {
+    } else if ((this.lines & bit) === 0 && (this.lost & bit) === 0) {
       this.lines |= bit;
       this.core.pendingInterrupts |= bit;
       this.core.interruptsUpdated = true;

@@ -179,6 +179,8 @@ const COMMANDS = {
   read: (address) => board.chip.mcu.readUint32(integer(address)),
   // write ADDRESS HALFWORD: changes a halfword of RAM
   write: (address, value) => board.chip.mcu.writeUint16(integer(address), integer(value)),
+  // lose INTERRUPT: the processor does not notice this interrupt until the next reset
+  lose: (interrupt) => board.chip.processor.lose(integer(interrupt)),
   // trace DESCRIPTOR: writes interrupts and bytes of the UART to an open file, from the next start of the chip on
   trace(descriptor) {
     board.trace = new Trace(integer(descriptor));
