@@ -16,6 +16,7 @@
 
 #include "firmware/line/crc16.hpp"
 #include "tests/masters/libmodbus_master.hpp"
+#include "tests/support/hang.hpp"
 #include "tests/support/two_modules.hpp"
 
 namespace ex9000::system {
@@ -24,9 +25,6 @@ namespace {
 /// The bytes of a frame without its CRC. The result of `received` or `heard` can also contain a CRC, be
 /// incomplete, or be a header of Modbus TCP.
 using Frame = std::vector<std::uint8_t>;
-
-/// A timeout that expires only if bytes of an expected reply do not arrive.
-constexpr std::chrono::seconds kHang{60};
 
 Frame frame_of(std::istringstream& hex) {
   Frame frame;

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/hang.hpp"
 #include "tests/support/two_modules.hpp"
 
 namespace ex9000::system {
@@ -117,8 +118,9 @@ TEST_P(Mbpoll, HostOkHasNoReplyAndATimeoutOfTheHostWatchdogBlocksTheOutputs) {
   expect_sent("01 03 30 38 00 01");
   expect_line({"-a", "1", "-t", "4", "-r", "0x1E8"}, "Written 1 references.", {"1"});
   expect_line({"-a", "1", "-t", "0", "-r", "0x104"}, "Written 1 references.", {"1"});
-  while (mbpoll({"-a", "1", "-t", "0", "-r", "0x10D"}).output.find("]: \t0") != std::string::npos) {
-  }
+  EXPECT_TRUE(becomes_true([this] {
+    return mbpoll({"-a", "1", "-t", "0", "-r", "0x10D"}).output.find("]: \t0") == std::string::npos;
+  }));
   const std::string blocked = "Slave device or server failure";
   expect_refusal({"-a", "1", "-t", "0", "-r", "0"}, blocked, {"1"});
   expect_refusal({"-a", "1", "-t", "0", "-r", "0"}, blocked, {"1", "1"});

@@ -7,11 +7,9 @@
 #include <string>
 #include <vector>
 
-namespace ex9000::rig {
+#include "tests/support/hang.hpp"
 
-/// The maximum time for which a function waits without receiving a byte. The limit only detects a hang: the
-/// emulator usually replies in milliseconds, or in seconds on a busy host.
-inline constexpr std::chrono::seconds kHang{60};
+namespace ex9000::rig {
 
 /// A connection. The functions that send or receive throw std::runtime_error on errors.
 class UnixSocket {

@@ -14,6 +14,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "tests/support/hang.hpp"
+
 namespace ex9000::pico {
 
 namespace {
@@ -86,7 +88,6 @@ std::string EmulatorProcess::execute(const std::string& command) {
 }
 
 std::string EmulatorProcess::read_line() {
-  constexpr int kHangMilliseconds = 60'000;  // this limit only detects an emulator that hangs
   std::size_t end = unread_.find('\n');
   while (end == std::string::npos) {
     std::array<char, 4096> buffer{};

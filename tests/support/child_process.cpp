@@ -12,6 +12,8 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "tests/support/hang.hpp"
+
 namespace ex9000::system {
 
 namespace {
@@ -84,7 +86,6 @@ ChildProcess::~ChildProcess() {
 }
 
 bool ChildProcess::read_more() {
-  constexpr int kHangMilliseconds = 60'000;  // only detects a program that hangs
   pollfd ready{out_, POLLIN, 0};
   const int result = poll(&ready, 1, kHangMilliseconds);
   if (result == 0) {
@@ -129,7 +130,12 @@ Finished run(const std::vector<std::string>& command, const std::string& directo
   close(error.write_end);
   Finished finished{};
   std::array<pollfd, 2> ready{{{out.read_end, POLLIN, 0}, {error.read_end, POLLIN, 0}}};
-  while ((ready[0].fd >= 0 || ready[1].fd >= 0) && poll(ready.data(), ready.size(), -1) > 0) {
+  while (ready[0].fd >= 0 || ready[1].fd >= 0) {
+    if (poll(ready.data(), ready.size(), kHangMilliseconds) <= 0) {
+      kill(pid, SIGKILL);
+      finished.error += "killed, because it has printed nothing for 60 s";
+      break;  // its children may keep the pipes open
+    }
     if (ready[0].revents != 0 && !append_from(out.read_end, finished.output)) {
       ready[0].fd = -1;
     }

@@ -50,7 +50,8 @@ struct Finished {
 };
 
 /// Runs a command in the working directory `directory` and waits until it ends. The first word is a path, or
-/// the name of a program in a directory of PATH. Throws std::runtime_error if the command does not start.
+/// the name of a program in a directory of PATH. Kills a command that prints nothing for 60 s and says so in
+/// `error`. Throws std::runtime_error if the command does not start.
 Finished run(const std::vector<std::string>& command, const std::string& directory = "/");
 
 }  // namespace ex9000::system

@@ -9,6 +9,8 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "tests/support/hang.hpp"
+
 namespace ex9000::system {
 
 ControlClient::ControlClient(const std::string& path) : fd_(socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
@@ -40,7 +42,6 @@ void ControlClient::close_writing() { shutdown(fd_, SHUT_WR); }
 /// if neither bytes nor the end of the connection arrive within 60 s. This timeout only detects a program
 /// that hangs.
 bool ControlClient::read_more() {
-  constexpr int kHangMilliseconds = 60'000;
   pollfd ready{fd_, POLLIN, 0};
   if (poll(&ready, 1, kHangMilliseconds) != 1) {
     throw std::runtime_error("the simulator has sent nothing for 60 s");

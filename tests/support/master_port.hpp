@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/hang.hpp"
 #include "tests/support/socket_client.hpp"
 #include "tests/support/terminal.hpp"
 
@@ -38,7 +39,6 @@ class TerminalPort final : public MasterPort {
     return true;
   }
 
-  static constexpr std::chrono::seconds kHang{60};
   static std::vector<std::uint8_t> not_empty(std::vector<std::uint8_t> bytes) {
     if (bytes.empty()) {
       throw std::runtime_error(
@@ -56,9 +56,7 @@ class TcpPort final : public MasterPort {
   explicit TcpPort(std::uint16_t port) : client_(port) {}
 
   void write(const std::vector<std::uint8_t>& bytes) override { client_.send(bytes); }
-  std::vector<std::uint8_t> read() override {
-    return TerminalPort::not_empty(client_.receive_some(TerminalPort::kHang));
-  }
+  std::vector<std::uint8_t> read() override { return TerminalPort::not_empty(client_.receive_some(kHang)); }
   bool set_baud(std::uint32_t /*rate*/) override { return false; }
 
  private:

@@ -10,14 +10,9 @@
 #include <array>
 #include <stdexcept>
 
+#include "tests/support/hang.hpp"
+
 namespace ex9000::system {
-
-namespace {
-
-/// A timeout that only detects a program that hangs.
-constexpr std::chrono::milliseconds kHang{60'000};
-
-}  // namespace
 
 SocketClient::SocketClient(std::uint16_t port) : fd_(socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
   sockaddr_in address{};
@@ -88,7 +83,7 @@ bool SocketClient::hears_nothing_for(std::chrono::milliseconds time) {
 bool SocketClient::closed() {
   pollfd ready{fd_, POLLIN, 0};
   char byte = 0;
-  return poll(&ready, 1, static_cast<int>(kHang.count())) == 1 && recv(fd_, &byte, 1, 0) <= 0;
+  return poll(&ready, 1, kHangMilliseconds) == 1 && recv(fd_, &byte, 1, 0) <= 0;
 }
 
 }  // namespace ex9000::system

@@ -17,6 +17,7 @@
 #include <utility>
 
 #include "sim/app/play/modbus_frame.hpp"
+#include "tests/support/hang.hpp"
 
 namespace ex9000::bench {
 
@@ -83,7 +84,6 @@ void PollingMaster::ask(const std::vector<std::uint8_t>& request, std::uint8_t u
   }
   std::array<std::uint8_t, kReply> reply{};
   for (std::size_t size = 0; size < reply.size();) {
-    constexpr int kHangMilliseconds = 60'000;  // reached only if the server hangs
     pollfd waits{fd_, POLLIN, 0};
     if (poll(&waits, 1, kHangMilliseconds) != 1) {
       throw std::runtime_error("no reply within 60 s");

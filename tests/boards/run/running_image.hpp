@@ -16,6 +16,7 @@
 
 #include "tests/support/child_process.hpp"
 #include "tests/support/directory.hpp"
+#include "tests/support/hang.hpp"
 #include "tests/support/terminal.hpp"
 
 namespace ex9000::system {
@@ -24,9 +25,6 @@ namespace fs = std::filesystem;
 using Arguments = std::vector<std::string>;
 
 inline const std::string kRun = EX9000_RUN;
-/// A limit that only detects hangs: the program and the emulator respond within seconds even on a busy
-/// machine.
-inline constexpr std::chrono::seconds kHang{60};
 /// The time that a master waits for a reply, long enough for a busy machine.
 inline constexpr std::chrono::seconds kMasterReplyTimeout{10};
 

@@ -13,6 +13,7 @@
 #include "tests/firmware/settings/stored_bytes.hpp"
 #include "tests/sim/app/main/persistent_simulator.hpp"
 #include "tests/support/directory.hpp"
+#include "tests/support/hang.hpp"
 
 namespace ex9000::system {
 namespace {
@@ -165,8 +166,7 @@ TEST(Persistence, AHostWatchdogTimeoutSurvivesARestart) {
     EXPECT_EQ(simulator.ask("~013101"), "!01");
     // Polls through the control socket, because commands on the line would be logged. This loop does not read
     // the log, and a full pipe would block the program.
-    while (simulator.tell("1 led") != "flashing") {
-    }
+    EXPECT_TRUE(becomes_true([&] { return simulator.tell("1 led") == "flashing"; }));
     EXPECT_EQ(simulator.ask("~010"), "!0184");
     EXPECT_EQ(simulator.ask("~01ONEW"), "!01");  // the module has stored the timeout before it replies
     simulator.process().end(SIGKILL);

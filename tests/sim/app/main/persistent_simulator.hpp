@@ -11,6 +11,7 @@
 
 #include "tests/support/control_client.hpp"
 #include "tests/support/directory.hpp"
+#include "tests/support/hang.hpp"
 #include "tests/support/simulator_process.hpp"
 #include "tests/support/terminal.hpp"
 
@@ -72,9 +73,6 @@ class Simulator {
   [[nodiscard]] const std::string& greeting() const { return process_.output(); }
 
  private:
-  /// The timeout for replies. It expires only if the program hangs.
-  static constexpr std::chrono::seconds kHang{60};
-
   static Arguments arguments(Arguments words) {
     words.insert(words.end(), {"--control", "control", "--line", "instant", "--log"});
     return words;

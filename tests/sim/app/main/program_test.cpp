@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "firmware/model/model.hpp"
+#include "tests/support/hang.hpp"
 #include "tests/support/simulator_process.hpp"
 #include "tests/support/socket_client.hpp"
 
@@ -97,7 +98,6 @@ TEST(Program, AFullDiskForStandardOutputIsReported) {
 /// previous page is full, so the number of bytes in the pipe may never reach its capacity. Returns false if
 /// the wait takes longer than 60 s, for example because the program hangs, or if FIONREAD fails.
 bool wait_until_full(int pipe) {
-  constexpr std::chrono::seconds kHang{60};
   const int capacity = fcntl(pipe, F_GETPIPE_SZ);
   const auto began = std::chrono::steady_clock::now();
   for (int waiting = 0; waiting < capacity - capacity / 8;) {
@@ -113,7 +113,6 @@ bool wait_until_full(int pipe) {
 /// 60 s. Does not read the output of the process, in contrast to SimulatorProcess::end. Call
 /// SimulatorProcess::end after this function.
 bool ends_unread(int pid, int signal) {
-  constexpr int kHangMilliseconds = 60'000;
   const auto process = static_cast<int>(syscall(SYS_pidfd_open, pid, 0));
   pollfd ended{process, POLLIN, 0};
   kill(pid, signal);

@@ -14,6 +14,7 @@
 
 #include "tests/support/control_client.hpp"
 #include "tests/support/directory.hpp"
+#include "tests/support/hang.hpp"
 #include "tests/support/simulator_process.hpp"
 #include "tests/support/socket_client.hpp"
 #include "tests/support/terminal.hpp"
@@ -22,7 +23,6 @@ namespace ex9000::system {
 namespace {
 
 /// A timeout for events. Only a program that hangs reaches it.
-constexpr std::chrono::seconds kHang{60};
 
 namespace fs = std::filesystem;
 using std::chrono::milliseconds;
@@ -365,12 +365,12 @@ std::string occurrences(const std::string& seed) {
   std::string counts;
   for (const char digit : std::string("123456789ABCDEF123456789ABCDEF")) {
     terminal.type("@01000" + std::string(1, digit) + "\r");
-    while (control.ok("1 outputs") != "000" + std::string(1, digit)) {
-    }
-    std::string faults = control.ok("faults");
-    while (has(faults, "*")) {  // the fault is in progress until the reply ends
+    EXPECT_TRUE(becomes_true([&] { return control.ok("1 outputs") == "000" + std::string(1, digit); }));
+    std::string faults;
+    EXPECT_TRUE(becomes_true([&] {
       faults = control.ok("faults");
-    }
+      return !has(faults, "*");  // the fault is in progress until the reply ends
+    }));
     counts += faults.substr(faults.find(" x"), 4) + ",";
   }
   return counts;

@@ -16,6 +16,7 @@
 #include <string>
 
 #include "firmware/line/crc16.hpp"
+#include "tests/support/hang.hpp"
 #include "tests/support/simulator_process.hpp"
 #include "tests/support/socket_client.hpp"
 #include "tests/support/terminal.hpp"
@@ -286,7 +287,6 @@ class Cable {
 
  private:
   bool read_one(std::string& bytes) const {
-    constexpr int kHangMilliseconds = 60'000;  // only a program that hangs reaches this timeout
     pollfd ready{far_, POLLIN, 0};
     char byte = 0;
     if (poll(&ready, 1, kHangMilliseconds) != 1 || ::read(far_, &byte, 1) != 1) {

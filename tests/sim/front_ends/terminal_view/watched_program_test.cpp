@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/hang.hpp"
 #include "tests/support/simulator_process.hpp"
 #include "tests/support/terminal.hpp"
 
@@ -113,8 +114,7 @@ TEST(WatchedProgram, AModuleRepliesWhileTheTerminalIsNotRead) {
   command += " --line instant --watch --input '1 0 square 20ms' > " + window.device();
   ChildProcess process({"sh", "-c", command}, directory.path());
   const std::string link = directory / "ex9000.tty";
-  while (!std::filesystem::exists(link)) {
-  }
+  ASSERT_TRUE(becomes_true([&link] { return std::filesystem::exists(link); }));
   std::string greeting;
   while (greeting.find("press Ctrl-C to end") == std::string::npos) {
     greeting += window.read_some();
