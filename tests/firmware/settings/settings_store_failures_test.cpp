@@ -165,6 +165,40 @@ TEST(SettingsStore, AnInvalidationWithoutEffectIsNoticed) {
   EXPECT_TRUE(Boot(memory).stored() == numbered(1));
 }
 
+TEST(SettingsStore, AnInvalidationOfSeveralPagesWithoutEffectIsNoticed) {
+  FakeMemory memory;
+  put_longer(memory, 0, numbered(1), 7, 96);
+  SettingsStore store(the_model());
+  ASSERT_TRUE(drive(store, memory));
+  store.begin_saving(numbered(21));
+  for (int jobs = 0; jobs < 6; ++jobs) {  // writes and verifies three of four pages
+    store.done(*memory.run(store.job()));
+  }
+  memory.noisy_reads = kAttempts;
+  memory.ignored_after = kAttempts;
+  ASSERT_TRUE(drive(store, memory));
+  EXPECT_FALSE(store.saved());
+  ASSERT_TRUE(Boot(memory).stored() == numbered(21)) << "the copy is valid, so this test can fail";
+  EXPECT_TRUE(store.needs_invalidation());
+}
+
+TEST(SettingsStore, AnInvalidationThatCannotBeReadBackIsRepeated) {
+  FakeMemory memory;
+  SettingsStore store(the_model());
+  ASSERT_TRUE(drive(store, memory));
+  memory.noisy_reads = kAttempts;
+  store.begin_saving(numbered(21));
+  for (std::size_t jobs = 0; jobs < 2 * kAttempts + 1; ++jobs) {  // three attempts, and the invalidation
+    store.done(*memory.run(store.job()));
+  }
+  memory.failing_reads = 1;
+  ASSERT_TRUE(drive(store, memory));
+  EXPECT_TRUE(store.needs_invalidation());
+  store.begin_invalidating();
+  ASSERT_TRUE(drive(store, memory));
+  EXPECT_FALSE(store.needs_invalidation());
+}
+
 // A worn cell that keeps its value does not make the copy valid, so it is not written again and again.
 TEST(SettingsStore, AnInvalidationThatIsIncompleteButSufficientIsNotRepeated) {
   FakeMemory memory;
