@@ -28,7 +28,10 @@ std::string path_of(const SetupError& error) {
 
 bool is_bus_file(const std::string& argument) {
   const std::string ending = ".json";
-  return argument.size() > ending.size() &&
+  const auto comma = argument.find(',');
+  const bool has_settings = comma != std::string::npos && argument.find('=', comma) != std::string::npos &&
+                            argument.find('/') > comma;
+  return !has_settings && argument.size() > ending.size() &&
          argument.compare(argument.size() - ending.size(), ending.size(), ending) == 0;
 }
 

@@ -7,7 +7,9 @@
 
 namespace ex9000::sim {
 
-/// Returns whether an argument names a bus file: it ends with `.json` and has other characters before that.
+/// Returns whether an argument names a bus file: it ends with `.json`, has other characters before that, and
+/// is not MODEL[@ADDR],KEY=VALUE, whose last value may be a path that ends with `.json`. With a `/` before
+/// its first comma, such a path names a bus file too.
 bool is_bus_file(const std::string& argument);
 
 /// Reads and checks a bus file. Throws std::invalid_argument with a one-line message, `PATH:LINE: KEY: TEXT`.

@@ -56,6 +56,12 @@ TEST(Arguments, ModulesKeepTheirOrder) {
   EXPECT_EQ(arguments.modules[2].settings.protocol, Protocol::Ascii);
 }
 
+TEST(Arguments, AnEepromFileMayEndWithJson) {
+  const LineSetup arguments = accepted({"EX9042D@01,eeprom=a.json", "EX9052D@02"});
+  ASSERT_EQ(arguments.modules.size(), 2U);
+  EXPECT_EQ(arguments.modules[0].eeprom, "a.json");
+}
+
 TEST(Arguments, OptionsMayComeBeforeAfterAndBetweenModules) {
   const LineSetup arguments = accepted({"--log", "EX9042D", "--baud", "1200", "EX9052D@02", "--strict-gaps"});
   EXPECT_EQ(arguments.modules.size(), 2U);

@@ -384,6 +384,15 @@ TEST(BusFile, IsRecognizedByTheExtensionJson) {
   EXPECT_FALSE(is_bus_file("EX9042D"));
 }
 
+TEST(BusFile, IsNoModuleWhoseLastValueEndsWithJson) {
+  EXPECT_FALSE(is_bus_file("EX9042D@01,eeprom=a.json"));
+  EXPECT_FALSE(is_bus_file("EX9042D,eeprom=folder/a.json"));
+  EXPECT_FALSE(is_bus_file("EX1,baud=9600,eeprom=a.json"));
+  EXPECT_TRUE(is_bus_file("north,2.json"));
+  EXPECT_TRUE(is_bus_file("room=2.json"));
+  EXPECT_TRUE(is_bus_file("./plant,room=2.json"));
+}
+
 TEST(BusFile, IsRefusedWithItsPathIfItIsNotARegularFile) {
   const system::Directory directory;
   std::filesystem::create_directory(directory / "folder.json");
