@@ -13,7 +13,7 @@ namespace ex9000::sim {
 
 namespace {
 
-constexpr const char* kShape = "requires TIME [after N] [quiet], for example advance 250ms after 8";
+constexpr const char* kShape = "requires TIME [after N] [quiet], for example advance 250ms after 8 quiet";
 
 }  // namespace
 
@@ -33,17 +33,16 @@ Stepper::Request Stepper::parse(const std::string& command) {
   }
   Request request;
   request.time = parse_time(words[1]);
-  std::size_t next = 2;
-  if (next + 1 < words.size() && words[next] == "after") {
-    request.after = parse_whole_number(words[next + 1], 0, SteppedLine::kMostBytes);
-    next += 2;
-  }
-  if (next < words.size() && words[next] == "quiet") {
-    request.quiet = true;
-    ++next;
-  }
-  if (next != words.size()) {
-    throw std::invalid_argument(kShape);
+  bool counts = false;
+  for (std::size_t next = 2; next < words.size(); ++next) {
+    if (words[next] == "quiet" && !request.quiet) {
+      request.quiet = true;
+    } else if (words[next] == "after" && !counts && next + 1 < words.size()) {
+      counts = true;
+      request.after = parse_whole_number(words[++next], 0, SteppedLine::kMostBytes);
+    } else {
+      throw std::invalid_argument(kShape);
+    }
   }
   return request;
 }

@@ -28,7 +28,7 @@ class Stepper {
 
   /// Returns whether the first word of `command` is `advance`.
   static bool is_advance(const std::string& command);
-  /// Carries out `advance TIME [after N] [quiet]` in these steps:
+  /// Carries out `advance TIME [after N] [quiet]`, with the last two in either order, in these steps:
   /// - Counts the bytes that have arrived, except those that an earlier `advance` has put on a line. If there
   ///   are fewer than N, returns. The first call of `arrived` that finds at least N such bytes then carries
   ///   out the next steps.

@@ -151,20 +151,29 @@ constexpr std::array<Verb, 12> kVerbs{{
     {"status", "", 0, 0, "reads the model, the settings in force, the mode and the watchdogs", status},
 }};
 
-/// A command for one line. `line NAME` may precede the command.
-struct LineVerb {
+/// A command that is not a Verb, as the help shows it.
+struct Form {
   std::string_view shape;
-  std::string_view does;
+  std::string_view does;  ///< may have several lines
 };
 
-constexpr std::array<LineVerb, 6> kLineVerbs{{
+constexpr std::array<Form, 12> kOtherForms{{
+    {"N fault FAULT", "adds a fault of module N, see below; replies with its number"},
     {"baud RATE",
      "sets the line's baud rate until bytes from a pseudo-terminal set it; rejected with a serial port"},
     {"format FORMAT", "sets the line's format: 8N1, 8N2, 8E1 or 8O1; rejected with a serial port"},
     {"sent", "reads how many bytes the line has written to each of its ports"},
-    {"fault FAULT", "adds a fault, see below; replies with its number. 'N fault FAULT': for module N"},
+    {"fault FAULT", "adds a fault of the line or of all its modules, see below; replies with its number"},
     {"fault off K|all", "removes the fault with this number, or all faults"},
     {"faults", "lists the faults: number, * if in progress, x and number of occurrences, module, text"},
+    {"line NAME ...", "one of the six above, for that line; required if there are several lines"},
+    {"advance TIME [after N] [quiet]",
+     "\nrequires --speed step. With 'after N', first waits until N bytes have arrived at the ports."
+     "\nSends all arrived bytes on the lines, and advances the time by TIME. With 'quiet', stops as"
+     "\nsoon as nothing is pending. Replies with the time"},
+    {"list", "lists the modules"},
+    {"help", "lists the commands"},
+    {"quit", "ends the simulator"},
 }};
 
 std::string shape(const Verb& verb) {
@@ -172,14 +181,14 @@ std::string shape(const Verb& verb) {
 }
 
 std::string all_shapes() {
-  std::string text;
+  Words shapes;
   for (const Verb& verb : kVerbs) {
-    text += shape(verb) + ", ";
+    shapes.push_back(shape(verb));
   }
-  for (const LineVerb& verb : kLineVerbs) {
-    text += std::string(verb.shape) + ", ";
+  for (const Form& form : kOtherForms) {
+    shapes.emplace_back(form.shape);
   }
-  return text + "advance TIME [after N] [quiet], list, help, quit";
+  return joined(shapes, ", ");
 }
 
 std::string where(const SimulatedModule& module) {
@@ -376,17 +385,16 @@ std::string control_commands() {
   for (const Verb& verb : kVerbs) {
     row(shape(verb), verb.does);
   }
-  for (const LineVerb& verb : kLineVerbs) {
-    row(verb.shape, verb.does);
+  for (const Form& form : kOtherForms) {
+    const std::string_view does = form.does;
+    auto end = does.find('\n');
+    row(form.shape, does.substr(0, end));
+    while (end != std::string_view::npos) {
+      const auto begin = end + 1;
+      end = does.find('\n', begin);
+      row("", does.substr(begin, end - begin));
+    }
   }
-  row("line NAME ...", "one of the six above, for that line; required if there are several lines");
-  row("advance TIME [after N] [quiet]", "");
-  row("", "requires --speed step. With 'after N', first waits until N bytes have arrived at the ports.");
-  row("", "Sends all arrived bytes on the lines, and advances the time by TIME. With 'quiet', stops as");
-  row("", "soon as nothing is pending. Replies with the time");
-  row("list", "lists the modules");
-  row("help", "lists the commands");
-  row("quit", "ends the simulator");
   return text.str();
 }
 

@@ -231,6 +231,15 @@ TEST_F(StepperTest, QuietEndsWhenTheReplyIsComplete) {
   EXPECT_LT(took, 0.0147);
 }
 
+TEST_F(StepperTest, QuietMayComeBeforeAfter) {
+  EXPECT_EQ(advance("10s quiet after 5"), "");
+  other_.port->write("$01M\r");
+  other_.port->tell();
+  ASSERT_EQ(answers_.size(), 1U);
+  EXPECT_EQ(other_.port->take_read(), "!019052\r");
+  EXPECT_LT(std::stod(answers_[0].substr(3)) - 0.1, 0.0147);  // not 10 s
+}
+
 TEST_F(StepperTest, QuietWaitsForTheSilenceThatEndsAModbusFrame) {
   line_.port->write(with_crc({7, 1, 0, 0, 0, 13}));  // no module has this address
   const double took = std::stod(advance("10s after 8 quiet").substr(3)) - 0.1;
@@ -367,8 +376,9 @@ TEST_F(StepperTest, BytesBeyondTheMaximumAreNotReadBeforeAnAdvance) {
 }
 
 TEST_F(StepperTest, AnInvalidAdvanceIsRefusedAndDoesNotAdvance) {
-  for (const char* wrong : {"", "soon", "1", "-1s", "1s after", "1s after x", "1s after -1", "1s after 65537",
-                            "1s quietly", "1s quiet after 5", "1s after 5 quiet now", "1s 5"}) {
+  for (const char* wrong :
+       {"", "soon", "1", "-1s", "1s after", "1s after x", "1s after -1", "1s after 65537", "1s quietly",
+        "1s quiet quiet", "1s after 5 quiet now", "1s quiet after", "1s after 5 after 5", "1s 5"}) {
     const std::string answer = advance(wrong);
     EXPECT_EQ(answer.rfind("error: ", 0), 0U) << wrong << ": " << answer;
     EXPECT_EQ(line_.stepped->now(), milliseconds(100));

@@ -62,6 +62,8 @@ TEST(ControlLine, TheCommandHelpAndTheOptionHelpShowTheseCommands) {
                                  "fault FAULT",
                                  "fault off K|all",
                                  "faults",
+                                 "N fault FAULT",
+                                 "line NAME ...",
                                  "list",
                                  "help",
                                  "quit",
