@@ -151,10 +151,14 @@ void Pacer::report_joined(Bytes bytes) {
   }
 }
 
-void Pacer::now(const std::function<void()>& action) {
+void Pacer::reach_present() {
   const VirtualTime present = wall();
   catch_up(present);
   line_.bus().run_until(std::max(present, line_.clock().virtual_now()));
+}
+
+void Pacer::now(const std::function<void()>& action) {
+  reach_present();
   action();
   follow();
 }

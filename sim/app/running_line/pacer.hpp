@@ -53,11 +53,14 @@ class Pacer final {
   [[nodiscard]] VirtualTime present() const { return std::max(wall(), line_.clock().virtual_now()); }
   /// Advances the line to its present time, then runs `action`, which may use the line.
   void now(const std::function<void()>& action);
+  /// The two halves of `now`, for an action that uses several lines. Between them, the caller may use the
+  /// line.
+  void reach_present();
+  void follow();
 
  private:
   [[nodiscard]] VirtualTime wall() const;
   [[nodiscard]] std::chrono::steady_clock::time_point when(VirtualTime time) const;
-  void follow();
   void catch_up(VirtualTime until);
   [[nodiscard]] bool leads(VirtualTime next) const;
   [[nodiscard]] bool is_full() const;

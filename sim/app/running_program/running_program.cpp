@@ -153,11 +153,15 @@ Control::Reply RunningProgram::carry_out(const std::string& command) {
     return control_->carry_out(command);
   }
   Control::Reply reply;
-  std::function<void()> action = [&] { reply = control_->carry_out(command); };
-  for (const auto& running : lines_) {
-    action = [&pacer = running->pacer(), action] { pacer.now(action); };
-  }
-  threads_.pause_for(action);
+  threads_.pause_for([&] {
+    for (const auto& running : lines_) {
+      running->pacer().reach_present();
+    }
+    reply = control_->carry_out(command);
+    for (const auto& running : lines_) {
+      running->pacer().follow();
+    }
+  });
   return reply;
 }
 
