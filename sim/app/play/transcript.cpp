@@ -21,7 +21,7 @@ namespace ex9000::play {
 namespace {
 
 using sim::fail;
-using sim::open_regular_file;
+using sim::open_text_file;
 using sim::parse_hex_byte;
 using sim::parse_hex_bytes;
 using sim::parse_hex_word;
@@ -375,7 +375,7 @@ std::vector<std::string> transcript_files(const std::string& directory) {
 }
 
 std::vector<Transcript> load(const std::string& path) {
-  std::ifstream file = open_regular_file(path);
+  std::ifstream file = open_text_file(path);
   if (!file.is_open()) {
     fail(path + ": cannot be read; name a transcript, a scenario or a folder of such files");
   }

@@ -50,7 +50,7 @@ Setup parse_bus_file(const std::string& path, const std::string& text) {
 }
 
 Setup read_bus_file(const std::string& path) {
-  const std::ifstream file = open_regular_file(path);
+  const std::ifstream file = open_text_file(path);
   if (!file.is_open()) {
     fail(path + ": is not a file that can be read; 'ex9000-sim --example' prints a bus file");
   }

@@ -6,17 +6,29 @@
 #include <string>
 #include <system_error>
 
+#include "sim/text/fail.hpp"
+
 namespace ex9000::sim {
 
 /// Opens a regular file for reading. Returns a stream that is not open if `path` is not a regular file or is
 /// not readable. Does not open a pipe, because opening a pipe may block. Does not open a device, because a
-/// device may deliver bytes without end.
-inline std::ifstream open_regular_file(const std::string& path) {
+/// device may deliver bytes without end. Skips the byte-order mark of UTF-8. Throws std::invalid_argument
+/// with a one-line message if the file is UTF-16.
+inline std::ifstream open_text_file(const std::string& path) {
   std::ifstream file;
   std::error_code unknown;
   if (std::filesystem::is_regular_file(path, unknown)) {
     file.open(path, std::ios::binary);
   }
+  std::string first(3, ' ');
+  file.read(first.data(), 3);
+  const std::string two = first.substr(0, 2);
+  const bool half_nul = (two[0] == '\0') != (two[1] == '\0');  // ASCII characters as UTF-16
+  if (two == "\xFF\xFE" || two == "\xFE\xFF" || half_nul) {
+    fail(path + ": is UTF-16; save it as UTF-8");
+  }
+  file.clear();
+  file.seekg(first == "\xEF\xBB\xBF" ? 3 : 0);
   return file;
 }
 

@@ -405,6 +405,23 @@ TEST(BusFile, IsRefusedWithItsPathIfItIsNotARegularFile) {
   }
 }
 
+TEST(BusFile, MayBeginWithAByteOrderMark) {
+  const system::Directory directory;
+  const std::string path = directory / "bus.json";
+  system::write_file(path, "\xEF\xBB\xBF" + example_bus_file());
+  EXPECT_EQ(read_bus_file(path).lines.size(), parse_bus_file(path, example_bus_file()).lines.size());
+}
+
+TEST(BusFile, IsRefusedAsUtf16WithAndWithoutAByteOrderMark) {
+  using namespace std::string_literals;
+  const system::Directory directory;
+  const std::string path = directory / "bus.json";
+  for (const std::string& text : {"\xFF\xFE{\0}\0"s, "\xFE\xFF\0{\0}"s, "{\0}\0"s, "\0{\0}"s}) {
+    system::write_file(path, text);
+    EXPECT_EQ(refusal([&] { read_bus_file(path); }), path + ": is UTF-16; save it as UTF-8");
+  }
+}
+
 Parsed parse(const std::vector<std::string>& words) {
   std::vector<const char*> argv{"ex9000-sim"};
   for (const std::string& word : words) {
