@@ -229,13 +229,21 @@ TEST(Persistence, AnImageOfGarbageGivesFactorySettings) {
   }
 }
 
-TEST(Persistence, ABlankImageGivesFactorySettingsDespitePresets) {
+TEST(Persistence, ABlankImageGivesFactorySettingsDespitePresetsAndTheGreetingReportsIt) {
   const Directory directory;
   write_file(directory / "image", std::string(kImageSize, '\xFF'));
-  Simulator simulator({"EX9042D@0B,name=TYPED" + image_in(directory)});
-  EXPECT_EQ(simulator.ask("$01M"), "!019042D");
-  EXPECT_EQ(simulator.tell("1 led"), "on");
-  EXPECT_TRUE(has(simulator.greeting(), "not from the command line")) << simulator.greeting();
+  {
+    Simulator simulator({"EX9042D@0B,name=TYPED" + image_in(directory)});
+    EXPECT_EQ(simulator.ask("$01M"), "!019042D");
+    EXPECT_EQ(simulator.tell("1 led"), "on");
+    EXPECT_TRUE(has(simulator.greeting(),
+                    directory / "image" + " is blank: factory settings, not from the command line\n"))
+        << simulator.greeting();
+    EXPECT_FALSE(has(simulator.greeting(), "settings from")) << simulator.greeting();
+    EXPECT_EQ(simulator.ask("~01OPUMP"), "!01");
+  }
+  Simulator simulator({"EX9042D" + image_in(directory)});
+  EXPECT_TRUE(has(simulator.greeting(), "; settings from " + directory / "image\n")) << simulator.greeting();
 }
 
 }  // namespace
