@@ -14,6 +14,7 @@
 #include "sim/text/fail.hpp"
 #include "sim/text/values.hpp"
 #include "sim/text/words.hpp"
+#include "sim/virtual_line/line/module_spec.hpp"
 #include "sim/virtual_line/line/named_settings.hpp"
 
 namespace ex9000::play {
@@ -56,7 +57,7 @@ unsigned channel(const std::string& text) {
 const Model& model_named(const std::string& name) {
   const Model* model = find_model(name);
   if (model == nullptr) {
-    fail("'" + name + "' is not a model; 'ex9000-sim --models' lists all models");
+    sim::refuse_model(name);
   }
   return *model;
 }

@@ -2,25 +2,91 @@
 
 #include <algorithm>
 #include <cctype>
+#include <iterator>
+#include <numeric>
 #include <set>
 #include <sstream>
+#include <string_view>
+#include <utility>
 
 #include "sim/text/fail.hpp"
 #include "sim/text/values.hpp"
+#include "sim/text/words.hpp"
 #include "sim/virtual_line/line/named_settings.hpp"
 
 namespace ex9000::sim {
 
-const Model& model_called(const std::string& name) {
-  std::string wanted = name;
-  std::transform(name.begin(), name.end(), wanted.begin(),
+namespace {
+
+/// Returns the designation that `name` abbreviates: in upper case, with EX.
+std::string full_name(std::string name) {
+  std::transform(name.begin(), name.end(), name.begin(),
                  [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
-  for (const std::string& designation : {wanted, "EX" + wanted}) {
-    if (const Model* model = find_model(designation)) {
-      return *model;
+  return name.rfind("EX", 0) == 0 ? name : "EX" + name;
+}
+
+std::string digits_of(std::string_view text) {
+  std::string digits;
+  std::copy_if(text.begin(), text.end(), std::back_inserter(digits),
+               [](char c) { return c >= '0' && c <= '9'; });
+  return digits;
+}
+
+/// Returns the number of characters to insert, delete or replace that turns `a` into `b`.
+std::size_t edits_between(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = std::exchange(row[0], i + 1);
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({replaced, row[j + 1] + 1, row[j] + 1});
     }
   }
-  fail("'" + name + "' is not a model; 'ex9000-sim --models' lists all models");
+  return row.back();
+}
+
+/// Returns the models with the number in `name`, or else those whose names differ least from `name`, by one
+/// or two characters. The result is empty if there are none.
+Words nearest_models(const std::string& name) {
+  constexpr std::size_t kFarthest = 2;
+  constexpr std::size_t kLongest = 16;
+  const std::string number = digits_of(name);
+  Words same_number;
+  Words nearest;
+  std::size_t least = kFarthest;
+  for (const Model& model : kModels) {
+    if (digits_of(model.designation) == number) {
+      same_number.emplace_back(model.designation);
+    }
+    const std::size_t edits =
+        name.size() > kLongest ? kFarthest + 1 : edits_between(full_name(name), model.designation);
+    if (edits < least) {
+      nearest.clear();
+      least = edits;
+    }
+    if (edits == least) {
+      nearest.emplace_back(model.designation);
+    }
+  }
+  return same_number.empty() ? nearest : same_number;
+}
+
+}  // namespace
+
+void refuse_model(const std::string& name) {
+  const Words nearest = nearest_models(name);
+  fail("'" + name + "' is not a model; " +
+       (nearest.empty() ? "" : "nearest: " + joined(nearest, ", ") + "; ") +
+       "'ex9000-sim --models' lists all models");
+}
+
+const Model& model_called(const std::string& name) {
+  if (const Model* model = find_model(full_name(name))) {
+    return *model;
+  }
+  refuse_model(name);
 }
 
 ModuleSpec factory_fresh(const Model& model) {

@@ -40,5 +40,8 @@ void check(const ModuleSpec& spec);
 /// Returns the model with this designation, in upper or lower case, with or without EX. Throws like
 /// parse_module_spec.
 const Model& model_called(const std::string& name);
+/// Throws the std::invalid_argument for `name`, which is not a model. The message has one line, and names the
+/// models with similar names.
+[[noreturn]] void refuse_model(const std::string& name);
 
 }  // namespace ex9000::sim

@@ -53,6 +53,23 @@ TEST(ModuleSpec, AModelCanBeInLowerCaseAndWithoutEX) {
   EXPECT_EQ(parse_module_spec("9042d").model->designation, "EX9042D");
 }
 
+TEST(ModuleSpec, AMistypedModelGetsTheNearestNames) {
+  const std::string all = "; 'ex9000-sim --models' lists all models";
+  for (const auto& [name, nearest] : std::vector<std::pair<std::string, std::string>>{
+           {"EX9055D-M", "; nearest: EX9055D"},  // one character from EX9052D-M, but the number tells more
+           {"9042", "; nearest: EX9042D, EX9042D-M"},
+           {"ex9042m", "; nearest: EX9042D, EX9042D-M"},
+           {"9066d-m", "; nearest: EX9066D"},
+           {"EX905D", "; nearest: EX9052D, EX9050D, EX9053D, EX9055D, EX9065D"},
+           {"EY9060D", "; nearest: EX9060D, EX9060D-M"},
+           {"EX8100D", ""},
+           {"EX1", ""},
+           {"pump", ""},
+           {std::string(10'000, '9'), ""}}) {
+    EXPECT_EQ(error_of(name), name + ": '" + name + "' is not a model" + nearest + all);
+  }
+}
+
 TEST(ModuleSpec, TheAddressIsHex) {
   EXPECT_EQ(parse_module_spec("EX9042D@0A").settings.address, 0x0A);
   EXPECT_EQ(parse_module_spec("EX9042D@0a").settings.address, 0x0A);
