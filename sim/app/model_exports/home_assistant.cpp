@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <array>
+#include <iomanip>
+#include <sstream>
 
 #include "firmware/model/baud.hpp"
 #include "sim/app/model_exports/formats.hpp"
@@ -40,9 +42,7 @@ class Hub {
              {"timeout", kTimeoutSeconds},
              {"message_wait_milliseconds", kWaitMilliseconds}};
     for (const Shown& shown : shown_by(model_)) {
-      for (unsigned index = 0; index < shown.width; ++index) {
-        add(shown, index, hub);
-      }
+      add(shown, hub);
     }
     return hub;
   }
@@ -90,31 +90,47 @@ class Hub {
     return "#   " + action(kind, row->first, value);
   }
 
-  [[nodiscard]] Json entity(const Shown& shown, unsigned index, unsigned seconds) const {
-    return {{"name", std::string(model_.designation) + " " + hex_byte_text(network_address_.address) + " " +
-                         shown.name_of(index)},
-            {"unique_id", key_ + "_" + shown.key_of(index)},
+  [[nodiscard]] Json entity(const std::string& name, const std::string& key, unsigned address,
+                            unsigned seconds) const {
+    return {{"name",
+             std::string(model_.designation) + " " + hex_byte_text(network_address_.address) + " " + name},
+            {"unique_id", key_ + "_" + key},
             {"slave", network_address_.address},
-            {"address", shown.first + index},
+            {"address", address},
             {"scan_interval", seconds}};
   }
 
-  /// Adds an entity to the list of its platform. Items with the roles Preset and Button have no entity: a
+  /// Adds one entity for each output.
+  void add_switches(const Shown& shown, Json& hub) const {
+    for (unsigned index = 0; index < shown.width; ++index) {
+      const unsigned address = shown.first + index;
+      Json entity = this->entity(shown.name_of(index), shown.key_of(index), address, kOftenSeconds);
+      // Without `verify`, the switch would show the last command, even after a timeout of the host watchdog
+      // or a write by another master.
+      entity.update({{"write_type", "coil"}, {"verify", {{"input_type", "coil"}, {"address", address}}}});
+      hub["switches"].push_back(entity);
+    }
+  }
+
+  /// Adds a row to the lists of its platform. Items with the roles Preset and Button have no entity: a
   /// dashboard should not change the presets, and the integration has no buttons.
-  void add(const Shown& shown, unsigned index, Json& hub) const {
+  ///
+  /// The integration reads a row of sensors or binary sensors with one request if an entity has the key
+  /// virtual_count, which is the number of further entities. It has no such key for switches. It appends 1, 2
+  /// and so on to the name and to the unique_id of the further entities.
+  void add(const Shown& shown, Json& hub) const {
     const auto add_to = [&](const char* platform, unsigned seconds, const Json& more) {
-      Json entity = this->entity(shown, index, seconds);
+      Json entity = this->entity(std::string(shown.name), shown.key(), shown.first, seconds);
+      if (shown.width > 1) {
+        entity["virtual_count"] = shown.width - 1;
+      }
       entity.update(more);
       hub[platform].push_back(entity);
     };
     const Json input_type = kInputTypes[static_cast<std::size_t>(shown.table)];
     switch (shown.role) {
       case Role::Output:
-        // Without `verify`, the switch would show the last command, even after a timeout of the host watchdog
-        // or a write by another master.
-        add_to(
-            "switches", kOftenSeconds,
-            {{"write_type", "coil"}, {"verify", {{"input_type", "coil"}, {"address", shown.first + index}}}});
+        add_switches(shown, hub);
         break;
       case Role::Input:
         add_to("binary_sensors", kOftenSeconds, {{"input_type", input_type}});
@@ -149,6 +165,48 @@ class Hub {
   std::string key_;
 };
 
+/// Returns the number of bytes of the request that polls an entity, and of its reply.
+std::size_t bytes_of_poll(const Json& entity) {
+  constexpr std::size_t kRequest = 8;
+  constexpr std::size_t kReplyWithoutData = 5;
+  const std::size_t count = 1 + entity.value("virtual_count", 0U);
+  const bool registers = entity.contains("data_type");
+  return kRequest + kReplyWithoutData + (registers ? 2 * count : (count + 7) / 8);
+}
+
+/// Returns the number and the duration of the requests that poll the entities with this scan_interval, as a
+/// text. A poll takes its bytes, the silence before the reply, and the wait of Home Assistant.
+std::string round_of(const Json& hub, unsigned interval) {
+  constexpr unsigned kCharacterBits = bits_of_character(LineFormat::k8N1);
+  constexpr unsigned kSilenceBits = 39;  // 3.5 characters of 11 bits
+  unsigned requests = 0;
+  std::size_t bits = 0;
+  for (const char* platform : {"switches", "binary_sensors", "sensors"}) {
+    for (const Json& entity : hub.value(platform, Json::array())) {
+      if (entity["scan_interval"] == interval) {
+        ++requests;
+        bits += bytes_of_poll(entity) * kCharacterBits + kSilenceBits;
+      }
+    }
+  }
+  const std::size_t milliseconds =
+      bits * 1000 / baud_rate(kFactoryBaudCode) + 1 + std::size_t{requests} * kWaitMilliseconds;
+  std::ostringstream seconds;
+  seconds << std::fixed << std::setprecision(2) << static_cast<double>(milliseconds) / 1000;
+  return std::to_string(requests) + " requests every " + std::to_string(interval) + " s take " +
+         seconds.str() + " s";
+}
+
+std::string polls(const Model& model, const Json& hub) {
+  return "# At " + std::to_string(baud_rate(kFactoryBaudCode)) + " baud, the " +
+         round_of(hub, kOftenSeconds) + ", and the " + round_of(hub, kSeldomSeconds) +
+         ". The sum for all modules of the hub must be less than " + std::to_string(kOftenSeconds) + " s.\n" +
+         (model.inputs == 0 ? ""
+                            : "# With virtual_count, one request reads all channels. The entity without a "
+                              "number is channel 0.\n") +
+         (model.outputs == 0 ? "" : "# Home Assistant reads each switch with its own request.\n");
+}
+
 std::string head(const Model& model, const NetworkAddress& network_address) {
   return "# " + std::string(model.designation) + " at address " + hex_byte_text(network_address.address) +
          ", for Home Assistant's modbus integration. In configuration.yaml:\n"
@@ -171,7 +229,8 @@ std::string head(const Model& model, const NetworkAddress& network_address) {
 
 std::string home_assistant_hub(const Model& model, const NetworkAddress& network_address) {
   const Hub hub(model, network_address);
-  return head(model, network_address) + yaml_of(Json::array({hub.hub()})) +
+  const Json entities = hub.hub();
+  return head(model, network_address) + polls(model, entities) + yaml_of(Json::array({entities})) +
          "# Actions for items without an entity:\n" + hub.actions() + hub.watchdog_actions();
 }
 

@@ -96,7 +96,11 @@ std::string Shown::name_of(unsigned index) const {
 }
 
 std::string Shown::key_of(unsigned index) const {
-  std::string key = std::string(id) + (per_channel ? "_" + std::to_string(index) : "");
+  return key() + (per_channel ? "_" + std::to_string(index) : "");
+}
+
+std::string Shown::key() const {
+  std::string key(id);
   std::replace(key.begin(), key.end(), '-', '_');
   return key;
 }

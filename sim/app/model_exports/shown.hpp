@@ -41,6 +41,8 @@ struct Shown {
   /// Returns the id with the channel, for example `outputs_3`, or only the id if the row has no channels. The
   /// result contains `_` in place of `-`, and is unique in the model.
   [[nodiscard]] std::string key_of(unsigned index) const;
+  /// Returns the id with `_` in place of `-`.
+  [[nodiscard]] std::string key() const;
 };
 
 /// Returns the rows and buttons in the order of the map; empty if the model does not support Modbus. A row

@@ -82,8 +82,12 @@ class EveryMap(unittest.TestCase):
             for switch in switches:
                 verify = switch["verify"]
                 self.expect_switch(line, (verify["input_type"], verify["address"]), switch["address"])
+            inputs = CHANNELS[model][1]
             for sensor in sensors:
-                self.assertEqual(len(line.read(sensor["input_type"], sensor["address"])), 1)
+                count = 1 + sensor.get("virtual_count", 0)
+                self.assertEqual(len(line.read(sensor["input_type"], sensor["address"], count)), count)
+                # a row of channels with one request
+                self.assertEqual(count, 1 if "Host watchdog" in sensor["name"] else inputs, sensor["name"])
             actions = re.findall(r"modbus\.write_coil .* address: (\d+), state: true", text)
             cleared = {address for address, _ in coils_to_write(model)} - set(range(CHANNELS[model][0]))
             enable = 0x0104  # enables the host watchdog

@@ -67,30 +67,46 @@ TEST(DescribeHomeAssistant, OutputsAreSwitchesThatAreReadBack) {
 TEST(DescribeHomeAssistant, InputsAndLatchesAreBinarySensors) {
   const std::string text = configuration_of("EX9052D-M");
   EXPECT_TRUE(has_once(text,
-                       "    - name: EX9052D-M 01 Input 7\n"
-                       "      unique_id: ex9052d_m_01_inputs_7\n"
+                       "    - name: EX9052D-M 01 Input\n"
+                       "      unique_id: ex9052d_m_01_inputs\n"
                        "      slave: 1\n"
-                       "      address: 7\n"
+                       "      address: 0\n"
                        "      scan_interval: 5\n"
+                       "      virtual_count: 7\n"
                        "      input_type: discrete_input\n"));
   EXPECT_TRUE(has_once(text,
-                       "      unique_id: ex9052d_m_01_latch_low_0\n"
+                       "      unique_id: ex9052d_m_01_latch_low\n"
                        "      slave: 1\n"
                        "      address: 96\n"  // 0x60
                        "      scan_interval: 5\n"
+                       "      virtual_count: 7\n"
                        "      input_type: coil\n"));
 }
 
 TEST(DescribeHomeAssistant, CountersAreSensorsWithTheStateClassTotalIncreasing) {
   EXPECT_TRUE(has_once(configuration_of("EX9052D-M"),
-                       "    - name: EX9052D-M 01 Counter 7\n"
-                       "      unique_id: ex9052d_m_01_counters_7\n"
+                       "    - name: EX9052D-M 01 Counter\n"
+                       "      unique_id: ex9052d_m_01_counters\n"
                        "      slave: 1\n"
-                       "      address: 7\n"
+                       "      address: 0\n"
                        "      scan_interval: 5\n"
+                       "      virtual_count: 7\n"
                        "      input_type: input\n"
                        "      data_type: uint16\n"
                        "      state_class: total_increasing\n"));
+}
+
+// A poll takes a request of 8 bytes, a reply of 5 bytes and its data, T3.5 before the reply (38.5 bits), and
+// the 33 ms that Home Assistant waits. A byte has 10 bits.
+TEST(DescribeHomeAssistant, StatesHowLongTheRequestsOfARoundTake) {
+  // Three rows of 16 bits and 16 registers: 3 * 15 + 45 bytes are 94 ms; 4 silences and waits are 148 ms.
+  // Two coils and a register: 14 + 14 + 15 bytes are 45 ms; 3 silences and waits are 111 ms.
+  EXPECT_TRUE(
+      has_once(configuration_of("EX9053D-M"),
+               "# At 9600 baud, the 4 requests every 5 s take 0.24 s, and the 3 requests every 30 s take "
+               "0.16 s. The sum for all modules of the hub must be less than 5 s.\n"));
+  // 16 switches: 16 * 14 bytes are 233 ms; 16 silences and waits are 592 ms.
+  EXPECT_TRUE(has_once(configuration_of("EX9043D-M"), "the 16 requests every 5 s take 0.83 s, "));
 }
 
 TEST(DescribeHomeAssistant, TheHostWatchdogIsShown) {

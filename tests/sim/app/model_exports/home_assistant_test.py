@@ -28,6 +28,15 @@ def entities(hub):
     return [(kind, entity) for kind in LISTS for entity in hub.get(kind, [])]
 
 
+def with_further_entities(hub):
+    """Returns the entities and those that the integration adds for virtual_count: it appends a space and a number to
+    the name, and _ and the number to the unique_id."""
+    for kind, entity in entities(hub):
+        yield kind, entity
+        for number in range(1, entity.get("virtual_count", 0) + 1):
+            yield kind, entity | {"name": f"{entity['name']} {number}", "unique_id": f"{entity['unique_id']}_{number}"}
+
+
 def serial_alternative(text):
     """Returns a list with the hub in `text`. The keys in the comment about serial ports replace type, host and port."""
     lines = text.splitlines()
@@ -60,7 +69,8 @@ class HomeAssistant(unittest.TestCase):
     def test_names_and_ids_are_unique(self):
         for model in models_with_modbus():
             with self.subTest(model=model):
-                all_entities = entities(hubs(model)[0]) + entities(hubs(model, "--address", "02")[0])
+                all_entities = [entity for address in ("01", "02")
+                                for entity in with_further_entities(hubs(model, "--address", address)[0])]
                 ids = [entity["unique_id"] for _, entity in all_entities]
                 names = [(kind, entity["name"]) for kind, entity in all_entities]
                 self.assertEqual(len(set(ids)), len(ids))
@@ -114,6 +124,7 @@ class HomeAssistant(unittest.TestCase):
             (outputs, entity_with("switches", verify=True)),
             (outputs, entity_with("switches", verify={"input_type": "discrete"})),
             (outputs, entity_with("switches", input_type="coil")),
+            (outputs, entity_with("switches", virtual_count=12)),
             (outputs, entity_with("switches", address=-1)),
             (outputs, entity_with("switches", address="0")),
             (outputs, entity_with("switches", slave="01")),
