@@ -281,7 +281,7 @@ class Refuses(unittest.TestCase):
 
     def test_texts_for_people_are_refused(self) -> None:
         self.refused(
-            "section .text: contains the text 'clear both latches'; an image must not contain it",
+            "section .text: contains the text 'clear both latches of all channels'; an image must not contain it",
             """
             extern const char text[];
             const char text[] = "clear both latches of all channels";

@@ -3,6 +3,7 @@ floating point, 64-bit division, globals that are initialised at run time, and t
 
 from __future__ import annotations
 
+import pathlib
 import re
 from collections.abc import Iterable
 
@@ -31,9 +32,23 @@ _SECTIONS = [
         (r"\.(preinit_array|init_array|fini_array|ctors|dtors)", "globals initialised at run time"),
     )
 ]
-# Texts of a command, a function and a coil from the tables of the core. Such texts are only for people, so an image
-# must not contain them.
-_TEXTS = (b"clear both latches", b"Write Single Coil", b"host watchdog timeout status")
+_FIRMWARE = pathlib.Path(__file__).resolve().parents[2] / "firmware"
+# The tables of the core whose texts are only for people, so an image must not contain them.
+_TABLES = ("dcon/commands.hpp", "modbus/functions.hpp", "modbus/registers.hpp")
+_SHORTEST_TEXT = 12  # an image may contain a shorter text by chance, or for another reason
+
+
+def texts_for_people() -> set[bytes]:
+    """Returns the texts in the tables of the core that have at least 12 characters."""
+    found: set[bytes] = set()
+    for name in _TABLES:
+        source = (_FIRMWARE / name).read_bytes()
+        rows = b"".join(re.findall(rb"table<\w+>\(\{.*?\n\}\);", source, re.DOTALL))
+        texts = {text for text in re.findall(rb'"([^"\n]*)"', rows) if len(text) >= _SHORTEST_TEXT}
+        if not texts:
+            raise ValueError(f"{_FIRMWARE / name}: contains no table with texts; correct check_image/forbidden.py")
+        found |= texts
+    return found
 
 
 def problems(elf: Elf, records: Iterable[Record], disassembly: Disassembly) -> list[str]:
@@ -48,7 +63,7 @@ def problems(elf: Elf, records: Iterable[Record], disassembly: Disassembly) -> l
         for pattern, what in _SECTIONS:
             if section.size and pattern.match(section.name):
                 found.append(f"section {section.name}: {what}; an image must not contain this section")
-        for text in _TEXTS:
+        for text in sorted(texts_for_people()):
             if text in section.data:
                 found.append(
                     f"section {section.name}: contains the text '{text.decode()}'; an image must not contain it"
