@@ -1,15 +1,20 @@
-// Tests modules whose EEPROM is a file. The power fails, or the program is killed, at random times. Each
-// command that stores must take effect either completely or not at all. If the module has sent a valid
-// reply to the command, the command must have taken effect completely (wire.md section 8).
+// Tests modules whose EEPROM is a file. The power fails, or the program is killed, at random times in line
+// time. Each command that stores must take effect either completely or not at all. If the module has sent a
+// valid reply to the command, the command must have taken effect completely (wire.md section 8). Line time is
+// stepped, so the same seed always interrupts the same stores at the same moments.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <chrono>
 #include <csignal>
+#include <cstdint>
 #include <cstdio>
+#include <functional>
 #include <map>
 #include <random>
+#include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "tests/oracles/reference/hexadecimal.hpp"
 #include "tests/sim/app/main/persistent_simulator.hpp"
@@ -17,8 +22,6 @@
 
 namespace ex9000::system {
 namespace {
-
-using std::chrono::microseconds;
 
 /// The reply to each of the commands that read settings. Together, these commands read every setting that
 /// class Stores changes.
@@ -76,6 +79,54 @@ class Stores {
   std::mt19937 random_;
 };
 
+/// The program in stepped time, with a master on its line.
+class SteppedSimulator {
+ public:
+  explicit SteppedSimulator(const std::string& module)
+      : process_({module, "--control", "control", "--line", "instant", "--speed", "step"}),
+        terminal_(process_.tty(), 9600),
+        control_(process_.directory() + "/control") {}
+
+  /// Sends a command to the control socket. See ControlClient::ok.
+  std::string tell(const std::string& command) { return control_.ok(command); }
+  /// Sends `command` and a CR on the line, and lets `time` pass. Returns the bytes that the module has sent.
+  std::string ask_for(const std::string& time, const std::string& command) {
+    terminal_.type(command + "\r");
+    tell("advance " + time + " after " + std::to_string(command.size() + 1));
+    return received();
+  }
+  /// Sends `command` and a CR on the line. Returns the reply without its CR.
+  std::string ask(const std::string& command) {
+    const std::string reply = ask_for("1s", command);
+    return reply.substr(0, reply.find('\r'));
+  }
+  void power_off() { tell("1 power off"); }
+  void power_on() {
+    tell("1 power on");
+    tell("advance 1s quiet");
+  }
+  void kill() { process_.end(SIGKILL); }
+
+ private:
+  std::string received() {
+    const std::uint64_t sent = std::stoull(tell("sent"));
+    std::string text;
+    while (terminal_.received() < sent) {
+      const std::vector<std::uint8_t> bytes =
+          terminal_.read(std::chrono::seconds(60));  // only detects a hang
+      if (bytes.empty()) {
+        throw std::runtime_error("the simulator has sent " + std::to_string(sent) + " bytes; got fewer");
+      }
+      text.append(bytes.begin(), bytes.end());
+    }
+    return text;
+  }
+
+  SimulatorProcess process_;
+  Terminal terminal_;
+  ControlClient control_;
+};
+
 /// Sends commands that store, and checks the module's settings after each power failure or SIGKILL.
 class PowerFailureChecker {
  public:
@@ -86,7 +137,7 @@ class PowerFailureChecker {
   /// Expects that the command that `begin_cut` sent last has taken effect either completely or not at all. If
   /// the test has received the reply to this command, the command must have taken effect completely. Call
   /// this function after each start of the module.
-  void check(Simulator& simulator) {
+  void check(SteppedSimulator& simulator) {
     Answers answers;
     for (const auto& [question, answer] : before_) {
       answers[question] = simulator.ask(question);
@@ -98,13 +149,14 @@ class PowerFailureChecker {
     // not blank and contains no settings that the module can read (wire.md D8).
     EXPECT_TRUE(!anything_stored_ || simulator.tell("1 led") == "on");
     ++(acknowledged_ ? acknowledged_count_ : answers == after_ ? done_count_ : not_done_count_);
+    half_written_count_ += !acknowledged_ && answers == before_ && answers != after_ && written_ ? 1 : 0;
     before_ = after_ = answers;
     acknowledged_ = true;
   }
 
   /// Sends up to two commands that store, and waits for the reply to each. Then sends another command that
-  /// stores. Waits for the reply to this command for a random time, which may be too short.
-  void begin_cut(Simulator& simulator) {
+  /// stores, lets a random time pass, mostly too little for the store and its reply, and calls `cut`.
+  void cut(SteppedSimulator& simulator, const std::function<void()>& cut) {
     for (unsigned i = stores_.below(3); i > 0; --i) {
       const Store store = begin(simulator);
       EXPECT_EQ(simulator.ask(store.command), "!01") << store.command;
@@ -112,20 +164,30 @@ class PowerFailureChecker {
       anything_stored_ = true;
     }
     const Store store = begin(simulator);
+    const std::string image = bytes_of_file(directory_ / "image");
     constexpr unsigned kMostMicroseconds = 13'000;  // a store takes about 10 ms
-    acknowledged_ =
-        simulator.is_acknowledged_within(microseconds(stores_.below(kMostMicroseconds)), store.command);
+    const std::string time = std::to_string(stores_.below(kMostMicroseconds)) + "us";
+    acknowledged_ = simulator.ask_for(time, store.command) == "!01\r";
+    cut();
+    written_ = bytes_of_file(directory_ / "image") != image;
   }
 
   bool toss() { return stores_.below(2) == 0; }
 
-  void report(const char* what) const {
-    std::printf("%s: %d acknowledged, %d done but not acknowledged, %d not done\n", what, acknowledged_count_,
-                done_count_, not_done_count_);
+  /// Expects that at least half of the cuts were before the reply, and that some of them were after the store
+  /// and others before its end. If `may_tear`, a cut interrupts a write, so some must have changed the EEPROM
+  /// although the module still uses the old settings. A kill does not: the file gets each write as a whole.
+  void expect_hits(const char* what, bool may_tear) const {
+    std::printf("%s: %d acknowledged, %d done but not acknowledged, %d not done, %d of these half written\n",
+                what, acknowledged_count_, done_count_, not_done_count_, half_written_count_);
+    EXPECT_GE(done_count_ + not_done_count_, acknowledged_count_);
+    EXPECT_GT(done_count_, 0);
+    EXPECT_GT(not_done_count_, 0);
+    EXPECT_EQ(half_written_count_ > 0, may_tear);
   }
 
  private:
-  Store begin(Simulator& simulator) {
+  Store begin(SteppedSimulator& simulator) {
     const Store store = stores_.any();
     if (!store.before.empty()) {
       EXPECT_EQ(simulator.ask(store.before), ">") << store.before;
@@ -144,53 +206,53 @@ class PowerFailureChecker {
   Answers after_ = before_;
   bool acknowledged_ = true;
   bool anything_stored_ = false;
+  bool written_ = false;  ///< the last store has changed the image before the cut
   int acknowledged_count_ = 0;
   int done_count_ = 0;
   int not_done_count_ = 0;
+  int half_written_count_ = 0;
 };
 
 TEST(Persistence, AKillNeverLeavesACommandHalfStoredOrLosesAnAcknowledgedCommand) {
   PowerFailureChecker checker(1);
   for (int round = 0; round < 60 && !HasFailure(); ++round) {
-    Simulator simulator({checker.module()});
+    SteppedSimulator simulator(checker.module());
     checker.check(simulator);
-    checker.begin_cut(simulator);
-    simulator.process().end(SIGKILL);
+    checker.cut(simulator, [&] { simulator.kill(); });
   }
-  Simulator simulator({checker.module()});
+  SteppedSimulator simulator(checker.module());
   checker.check(simulator);
-  checker.report("SIGKILL");
+  checker.expect_hits("SIGKILL", false);
 }
 
 TEST(Persistence, APowerCutNeverLeavesACommandHalfStoredOrLosesAnAcknowledgedCommand) {
   PowerFailureChecker checker(2);
-  Simulator simulator({checker.module()});
+  SteppedSimulator simulator(checker.module());
   for (int round = 0; round < 40 && !HasFailure(); ++round) {
     checker.check(simulator);
-    checker.begin_cut(simulator);
-    simulator.power_cycle();
+    checker.cut(simulator, [&] { simulator.power_off(); });
+    simulator.power_on();
   }
   checker.check(simulator);
-  checker.report("power off");
+  checker.expect_hits("power off", true);
 }
 
 TEST(Persistence, APowerCutBeforeAKillNeverLeavesACommandHalfStored) {
   PowerFailureChecker checker(3);
   for (int round = 0; round < 15 && !HasFailure(); ++round) {
-    Simulator simulator({checker.module()});
+    SteppedSimulator simulator(checker.module());
     checker.check(simulator);
     if (checker.toss()) {
-      checker.begin_cut(simulator);
-      simulator.power_cycle();
+      checker.cut(simulator, [&] { simulator.power_off(); });
+      simulator.power_on();
       checker.check(simulator);
     }
-    checker.begin_cut(simulator);
-    simulator.power_off();
-    simulator.process().end(SIGKILL);
+    checker.cut(simulator, [&] { simulator.power_off(); });
+    simulator.kill();
   }
-  Simulator simulator({checker.module()});
+  SteppedSimulator simulator(checker.module());
   checker.check(simulator);
-  checker.report("power off and SIGKILL");
+  checker.expect_hits("power off and SIGKILL", true);
 }
 
 }  // namespace
