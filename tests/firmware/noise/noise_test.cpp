@@ -55,11 +55,10 @@ TEST_P(Checks, MissAsManyDamagedFramesAsTheTheoryExpects) {
     std::printf("  %llu exchanges with a command that may store something\n",
                 static_cast<unsigned long long>(tally.storing));
     EXPECT_LE(tally.storing, 1 + tally.sent / 10'000);
-    // The limits are twice as far from the count as those of the 95 % interval. With the interval itself, too
-    // many runs would fail, because there are twelve comparisons: four error rates for each of three checks.
-    const double centre = static_cast<double>(tally.taken_in_data);
-    EXPECT_GE(tally.expected, centre - 2 * (centre - seen.low));
-    EXPECT_LE(tally.expected, centre + 2 * (seen.high - centre));
+    // A lower limit than this one would miss more errors; a higher one would reject too many seeds, because
+    // there are twelve comparisons: four error rates for each of three checks. With 10,000 frames, the theory
+    // expects no accepted frame from the CRC: the comparison then only finds a module that accepts one.
+    EXPECT_GE(tail(tally.taken_in_data, tally.expected), 0.0005);
     EXPECT_GT(tally.damaged, 0U);
   }
 }

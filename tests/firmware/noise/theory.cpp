@@ -170,21 +170,49 @@ double dcon_misses(const std::string& frame, bool checksum, double flipped_bit) 
   return taken - untouched;
 }
 
+namespace {
+
+constexpr std::uint64_t kMany = 400;  // events from which the normal approximation is good enough
+
+/// Returns the probability of at most `events` events. `mean`: at most a few hundred.
+double at_most(std::uint64_t events, double mean) {
+  double term = std::exp(-mean);
+  double sum = term;
+  for (std::uint64_t i = 1; i <= events; ++i) {
+    term *= mean / static_cast<double>(i);
+    sum += term;
+  }
+  return sum;
+}
+
+}  // namespace
+
+double tail(std::uint64_t count, double mean) {
+  if (mean > static_cast<double>(kMany)) {
+    const double deviations = std::abs(static_cast<double>(count) - mean) / std::sqrt(mean);
+    return std::erfc(deviations / std::sqrt(2.0)) / 2;
+  }
+  if (static_cast<double>(count) < mean) {
+    return at_most(count, mean);
+  }
+  // the sum of the probabilities of `count` and more events; 1 - at_most would round a small result to 0
+  double term = std::exp(-mean);
+  for (std::uint64_t i = 1; i <= count; ++i) {
+    term *= mean / static_cast<double>(i);
+  }
+  double sum = 0;
+  for (std::uint64_t i = count + 1; term > sum * 1e-12; ++i) {
+    sum += term;
+    term *= mean / static_cast<double>(i);
+  }
+  return sum;
+}
+
 Interval interval_of(std::uint64_t count) {
   // For at most `kMany` events, finds two means by bisection. At the lower mean, the probability of at least
   // `count` events is 2.5 %. At the higher mean, the probability of at most `count` events is 2.5 %.
   // Exception: for 0 events, the lower mean is 0. For more than `kMany` events, uses the normal
   // approximation.
-  const auto at_most = [](std::uint64_t events, double mean) {
-    double term = std::exp(-mean);
-    double sum = term;
-    for (std::uint64_t i = 1; i <= events; ++i) {
-      term *= mean / static_cast<double>(i);
-      sum += term;
-    }
-    return sum;
-  };
-  constexpr std::uint64_t kMany = 400;
   if (count > kMany) {
     const double half_width = 1.96 * std::sqrt(static_cast<double>(count));
     return {static_cast<double>(count) - half_width, static_cast<double>(count) + half_width};

@@ -33,4 +33,8 @@ struct Interval {
 /// Returns the interval for a variable that has produced `count` events.
 Interval interval_of(std::uint64_t count);
 
+/// Returns the probability that a Poisson variable with this mean is at least as far from the mean as
+/// `count`, on the same side. The result is about 0.5 if `count` is near the mean.
+double tail(std::uint64_t count, double mean);
+
 }  // namespace ex9000::noise

@@ -73,5 +73,17 @@ TEST(Theory, ExpectsNoMissOfOneToThreeFlipsInAFrameOf11Bytes) {
   }
 }
 
+// The expected values are from a table of the Poisson distribution, and the last one from a table of the
+// normal distribution (0.994 standard deviations).
+TEST(Theory, TheTailIsTheProbabilityOfACountAtLeastAsFarFromTheMean) {
+  EXPECT_EQ(tail(0, 0), 1);
+  EXPECT_NEAR(tail(1, 5.47e-10), 5.47e-10, 1e-15);
+  EXPECT_NEAR(tail(2, 0.022), 2.385e-4, 1e-7);
+  EXPECT_NEAR(tail(0, 7.5), 5.531e-4, 1e-7);
+  EXPECT_NEAR(tail(5, 5), 0.5595, 1e-4);
+  EXPECT_NEAR(tail(4, 5), 0.4405, 1e-4);
+  EXPECT_NEAR(tail(2580, 2530), 0.1601, 1e-4);
+}
+
 }  // namespace
 }  // namespace ex9000::noise
