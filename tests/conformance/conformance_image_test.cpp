@@ -66,7 +66,7 @@ TEST(Conformance, TheImagesOfTheManualsModelsPassEveryTranscriptForThem) {
       play_run(runs[mine], target);
     }
   });
-  expect_the_result_of_the_core("images", runs);
+  expect_all_steps_passed("images", runs);
 }
 
 }  // namespace

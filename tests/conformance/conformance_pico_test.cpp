@@ -34,7 +34,7 @@ std::chrono::nanoseconds play_all(std::vector<Played>& runs, pico::Memory memory
 TEST(Conformance, TheImagesForThePicoPassEveryTranscriptOfTheManualsModels) {
   std::vector<Played> runs = runs_of_the_manuals();
   const auto played = play_all(runs, pico::Memory::Flash);
-  expect_the_result_of_the_core("pico", runs);
+  expect_all_steps_passed("pico", runs);
   std::printf("in %lld s of virtual time\n",
               static_cast<long long>(std::chrono::ceil<std::chrono::seconds>(played).count()));
 }
@@ -47,7 +47,7 @@ TEST(Conformance, AnImageForThePicoWithAnEepromPassesEveryTranscriptOfItsModel) 
   runs.erase(others, runs.end());
   ASSERT_FALSE(runs.empty());
   play_all(runs, pico::Memory::Eeprom);
-  expect_the_result_of_the_core("pico with an EEPROM", runs);
+  expect_all_steps_passed("pico with an EEPROM", runs);
 }
 
 }  // namespace

@@ -44,7 +44,7 @@ TEST_P(Conformance, TheSimulatorPassesEveryTranscriptOnEveryModelThatTheTranscri
       play_on_a_simulator(&runs[first], std::min(kLines, runs.size() - first), GetParam());
     }
   });
-  expect_the_result_of_the_core("process", runs);
+  expect_all_steps_passed("process", runs);
 }
 
 std::string name_of(const testing::TestParamInfo<Over>& over) {
