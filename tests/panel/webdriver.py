@@ -1,6 +1,7 @@
 """Controls a browser over the WebDriver protocol."""
 
 import base64
+import contextlib
 import json
 import os
 import pathlib
@@ -160,6 +161,17 @@ class Browser:
         prefers-color-scheme to dark. Ends the emulation of all other media features."""
         media = [{"name": "prefers-" + name.replace("_", "-"), "value": value} for name, value in features.items()]
         self.devtools("Emulation.setEmulatedMedia", features=media)
+
+    @contextlib.contextmanager
+    def patient(self):
+        """Pages that are opened in the `with` block run each timer of a second or more a thousand times later."""
+        script = self.devtools("Page.addScriptToEvaluateOnNewDocument", source="""
+            const usual = window.setTimeout;
+            window.setTimeout = (run, delay, ...rest) => usual(run, delay < 1000 ? delay : 1000 * delay, ...rest);""")
+        try:
+            yield
+        finally:
+            self.devtools("Page.removeScriptToEvaluateOnNewDocument", identifier=script["identifier"])
 
     def logged_errors(self):
         """Returns the messages that the browser has logged since the previous call, at all levels. Omits messages about
