@@ -1,5 +1,12 @@
 #include "tests/qemu/emulator.hpp"
 
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <stdexcept>
+#include <utility>
+
+#include "sim/files_and_ports/files/file_descriptor.hpp"
 #include "tests/qemu/processor.hpp"
 #include "tests/qemu/uart_registers.hpp"
 
@@ -52,6 +59,16 @@ std::vector<std::string> command_of(const std::string& image, const std::string&
           "chardev:gdb"};
 }
 
+/// Returns the emulator's connection. Throws std::runtime_error if the emulator ends first.
+UnixSocket accepted(UnixListener& listener, int pid) {
+  const sim::FileDescriptor ended(static_cast<int>(syscall(SYS_pidfd_open, pid, 0)));
+  std::optional<UnixSocket> connection = listener.accept(ended.get());
+  if (!connection) {
+    throw std::runtime_error("emulator: it has ended; expected it to connect");
+  }
+  return std::move(*connection);
+}
+
 }  // namespace
 
 Emulator::Emulator(const std::string& image, const std::string& memory) {
@@ -62,11 +79,17 @@ Emulator::Emulator(const std::string& image, const std::string& memory) {
   UnixListener gdb(directory_ / "gdb");
   UnixListener gate(directory_ / "gate");
   process_.emplace(command_of(image, memory), directory_.path(), system::ChildProcess::Errors::WithOutput);
-  uart_.emplace(uart.accept());
-  qmp_.emplace(qmp.accept());
-  bus_.emplace(qtest.accept());
-  gdb_.emplace(gdb.accept());
-  gate_.emplace(gate.accept());
+  try {
+    uart_.emplace(accepted(uart, pid()));
+    qmp_.emplace(accepted(qmp, pid()));
+    bus_.emplace(accepted(qtest, pid()));
+    gdb_.emplace(accepted(gdb, pid()));
+    gate_.emplace(accepted(gate, pid()));
+  } catch (const std::runtime_error&) {
+    const int status = process_->wait();
+    throw std::runtime_error("emulator: it has ended with status " + std::to_string(status) + ": " +
+                             process_->output());
+  }
 }
 
 /// With reboot=shutdown, the emulator halts the machine when a reset is requested. Therefore this function

@@ -31,7 +31,7 @@ class Emulator {
   static constexpr std::uint32_t kGate = 0x2000'9048;
 
   /// Loads the ELF file `image`. `memory` is the file with the 8192 bytes of the EEPROM. Throws
-  /// std::runtime_error if the emulator does not start.
+  /// std::runtime_error with the emulator's output if the emulator does not start.
   Emulator(const std::string& image, const std::string& memory);
 
   /// Resets the machine like the reset pin. The machine must be halted and stays halted. Inputs read 0 after

@@ -116,10 +116,15 @@ UnixListener::UnixListener(const std::string& path) : fd_(socket(AF_UNIX, SOCK_S
 
 UnixListener::~UnixListener() { close(fd_); }
 
-UnixSocket UnixListener::accept() {
-  if (!readable(fd_, kHang)) {
+std::optional<UnixSocket> UnixListener::accept(int ended) {
+  std::array<pollfd, 2> ready{{{fd_, POLLIN, 0}, {ended, POLLIN, 0}}};
+  const auto limit = std::chrono::duration_cast<std::chrono::milliseconds>(kHang);
+  if (poll(ready.data(), ready.size(), static_cast<int>(limit.count())) <= 0) {
     throw std::runtime_error(
         "emulator: it has not connected for 60 s; expected it to connect when it starts");
+  }
+  if (ready[0].revents == 0) {
+    return std::nullopt;
   }
   return UnixSocket(accept4(fd_, nullptr, nullptr, SOCK_CLOEXEC));
 }

@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -49,8 +50,9 @@ class UnixListener {
   UnixListener(const UnixListener&) = delete;
   UnixListener& operator=(const UnixListener&) = delete;
 
-  /// Returns the connection. Throws std::runtime_error if no program connects within `kHang`.
-  UnixSocket accept();
+  /// Returns the connection; nullopt if the descriptor `ended` becomes readable first. Throws
+  /// std::runtime_error if neither happens within `kHang`.
+  std::optional<UnixSocket> accept(int ended);
 
  private:
   int fd_;
