@@ -1,15 +1,21 @@
 """Runs an image in QEMU in emulated time, with access to its line, its pins, and its execution log."""
 
+import contextlib
 import ctypes
 import json
 import os
 import pathlib
 import re
+import select
 import signal
 import socket
 import struct
 import subprocess
 import tempfile
+
+from instruction_counts.refusal import Refusal, message_of_end, require_file, require_program
+
+QEMU = "qemu-system-arm"
 
 # QEMU logs these events and the instructions in the order in which they occur.
 EVENTS = ["pl011_read", "pl011_write", "nvic_acknowledge_irq", "nvic_complete_irq"]
@@ -66,6 +72,14 @@ class Emulator:
     interrupt. The option -singlestep makes QEMU execute one instruction at a time, so that QEMU logs each one.
     """
 
+    @staticmethod
+    def check(image, gate):
+        """Raises Refusal if a file or a program is missing."""
+        require_file(image, "build it with `boards/build-images lm3s6965evb`")
+        require_file(gate, "build it with `cmake --preset host-debug && cmake --build --preset host-debug --target"
+                     " ex9000_gate`, or name another one with --gate")
+        require_program(QEMU, "qemu-system-arm")
+
     def __init__(self, image, gate):
         self._image = os.path.abspath(image)
         self._gate = os.path.abspath(gate)
@@ -73,16 +87,15 @@ class Emulator:
         folder = self._directory.name
         with open(f"{folder}/memory", "wb") as file:
             file.write(b"\xff" * 8192)
-        os.mkfifo(f"{folder}/log")
         self.log = None
+        self._process = None
+        self._connections = []
 
     def power_up(self, pins):
         """Starts the emulator with these pin levels and the stored EEPROM content. The emulator executes no instruction
-        before `run_for`."""
+        before `run_for`. Raises Refusal if the emulator ends."""
         folder = self._directory.name
-        names = ("uart", "qmp", "qtest", "gate")
-        listeners = [self._listen(f"{folder}/{name}") for name in names]
-        command = ["qemu-system-arm", "-machine", "lm3s6965evb", "-display", "none", "-nodefaults", "-nic", "none"]
+        command = [QEMU, "-machine", "lm3s6965evb", "-display", "none", "-nodefaults", "-nic", "none"]
         command += ["-kernel", self._image, "-S", "-icount", "shift=3,sleep=off", "-singlestep"]
         command += ["-plugin", f"{self._gate},socket=gate,address={GATE}"]
         command += ["-chardev", "socket,id=uart,path=uart", "-serial", "chardev:uart"]
@@ -92,20 +105,33 @@ class Emulator:
         command += ["-device", "at24c-eeprom,bus=i2c,address=0x50,rom-size=8192,drive=memory", "-D", "log"]
         for event in EVENTS:
             command += ["-trace", event]
-        self._process = subprocess.Popen(
-            command, cwd=folder, stderr=subprocess.DEVNULL, preexec_fn=die_with_parent
-        )
-        self.log = open(f"{folder}/log", "rb", buffering=1 << 20)
-        self.line, self._monitor, self._bus, self._at_gate = (listener.accept()[0] for listener in listeners)
-        for listener, name in zip(listeners, names):
-            listener.close()
-            os.unlink(f"{folder}/{name}")
+        self._errors = open(f"{folder}/errors", "w+b")
+        # A new log each time: the thread that reads the previous log may not have ended yet.
+        pathlib.Path(f"{folder}/log").unlink(missing_ok=True)
+        os.mkfifo(f"{folder}/log")
+        self.log = open(os.open(f"{folder}/log", os.O_RDONLY | os.O_NONBLOCK), "rb", buffering=1 << 20)
+        with contextlib.ExitStack() as at_the_end:
+            # Keeps the log open until QEMU has opened it.
+            at_the_end.enter_context(open(f"{folder}/log", "wb"))
+            os.set_blocking(self.log.fileno(), True)
+            listeners = [
+                at_the_end.enter_context(self._listen(f"{folder}/{name}")) for name in ("uart", "qmp", "qtest", "gate")
+            ]
+            self._process = subprocess.Popen(
+                command, cwd=folder, stderr=self._errors, preexec_fn=die_with_parent
+            )
+            try:
+                self._connections = [self._accept(listener) for listener in listeners]
+                self.line, self._monitor, self._bus, self._at_gate = self._connections
+                self._answers = self._monitor.makefile("rb")
+                self._read_answer()  # the greeting, after QEMU has opened the log
+            except BaseException:
+                self.log.close()
+                raise
         for connection in (self._monitor, self._bus, self._at_gate):
             connection.settimeout(HANG)
         self.line.setblocking(False)
-        self._answers = self._monitor.makefile("rb")
         self._bus_answers = self._bus.makefile("rb")
-        self._answers.readline()
         self._execute("qmp_capabilities")
         for pin, level in pins.items():
             self.set_pin(pin, level)
@@ -113,11 +139,30 @@ class Emulator:
 
     @staticmethod
     def _listen(path):
+        pathlib.Path(path).unlink(missing_ok=True)
         listener = socket.socket(socket.AF_UNIX)
         listener.bind(path)
         listener.listen(1)
-        listener.settimeout(HANG)
         return listener
+
+    def _accept(self, listener):
+        """Waits until QEMU connects, or has ended."""
+        ended = os.pidfd_open(self._process.pid)
+        try:
+            ready, _, _ = select.select([listener, ended], [], [], HANG)
+        finally:
+            os.close(ended)
+        if listener not in ready:
+            raise Refusal(self._why())
+        return listener.accept()[0]
+
+    def _why(self):
+        """Returns a line about the end of QEMU. Kills QEMU if it has not ended."""
+        try:
+            self._process.wait(1)  # QEMU closes its connections before it ends
+        except subprocess.TimeoutExpired:
+            self._process.kill()
+        return message_of_end(self._process, QEMU, self._errors)
 
     def _set_alarm_up(self):
         vectors = bytearray.fromhex(self._ask_bus(f"read 0 {VECTORS * 4}").split()[1][2:])
@@ -151,7 +196,7 @@ class Emulator:
         while len(told) < 4:
             piece = self._at_gate.recv(4 - len(told))
             if not piece:
-                raise RuntimeError("emulator: it has ended; expected it to run until the alarm")
+                raise Refusal(self._why())
             told += piece
 
     def put(self, byte):
@@ -189,10 +234,13 @@ class Emulator:
         self._ask_bus(f"set_irq_in /machine/unattached/device[{device}] unnamed-gpio-in {pin[1]} {level:d}")
 
     def power_down(self):
+        if self._process is None:
+            return
         self._process.kill()
         self._process.wait()
-        for connection in (self.line, self._monitor, self._bus, self._at_gate):
+        for connection in self._connections:
             connection.close()
+        self._errors.close()
 
     def close(self):
         self.power_down()
@@ -201,11 +249,17 @@ class Emulator:
     def _execute(self, command, **arguments):
         self._monitor.sendall(json.dumps({"execute": command, "arguments": arguments}).encode() + b"\n")
         while True:
-            answer = json.loads(self._answers.readline())
+            answer = self._read_answer()
             if "error" in answer:
                 raise RuntimeError(f"{command}: {answer['error']['desc']}")
             if "return" in answer:
                 return
+
+    def _read_answer(self):
+        line = self._answers.readline()
+        if not line:
+            raise Refusal(self._why())
+        return json.loads(line)
 
     def _write(self, address, word):
         self._ask_bus(f"writel {address:#x} {word:#x}")
@@ -216,6 +270,8 @@ class Emulator:
     def _ask_bus(self, command):
         self._bus.sendall(command.encode() + b"\n")
         answer = self._bus_answers.readline()
+        if not answer:
+            raise Refusal(self._why())
         if not answer.startswith(b"OK"):
             raise RuntimeError(f"{command}: {answer}")
         return answer.decode()

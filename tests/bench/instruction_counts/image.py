@@ -4,6 +4,8 @@ import bisect
 import struct
 import subprocess
 
+from instruction_counts.refusal import Refusal, require_program
+
 
 class Image:
     """An ELF file, read with the arm-none-eabi tools."""
@@ -22,7 +24,12 @@ class Image:
     @staticmethod
     def _tool(name, *arguments, text=None):
         command = [f"arm-none-eabi-{name}", *arguments]
-        return subprocess.run(command, input=text, check=True, stdout=subprocess.PIPE).stdout
+        require_program(command[0], "binutils-arm-none-eabi")
+        finished = subprocess.run(command, input=text, capture_output=True, check=False)
+        if finished.returncode != 0:
+            why = finished.stderr.decode(errors="replace").strip().partition("\n")[0]
+            raise Refusal(f"{why or command[0]}; name the ELF file of an image")
+        return finished.stdout
 
     def handlers(self):
         """Returns the address of the first instruction of each exception handler, by exception number."""

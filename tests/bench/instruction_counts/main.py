@@ -3,6 +3,7 @@
 import argparse
 import collections
 import concurrent.futures
+import multiprocessing
 import os
 import pathlib
 import sys
@@ -11,6 +12,7 @@ from instruction_counts import execution
 from instruction_counts.boards import BOARDS
 from instruction_counts.capacity import Found
 from instruction_counts.emulator import ROOT, die_with_parent
+from instruction_counts.refusal import Refusal
 from instruction_counts.requests import Model
 from instruction_counts.session import REST, Session
 
@@ -67,13 +69,16 @@ def count_of(row):
     return -(-row.passes.count // row.served)
 
 
+def image_of(options, model):
+    return os.path.join(options.folder, f"{model.name}.elf")
+
+
 def run_session(options, model, is_ascii, general):
     """Returns the rows to print, the profiles, and the input for `capacity`."""
     board = BOARDS[options.board]
     label = f"{model.name} {'ASCII' if is_ascii else 'RTU'}"
     everything = not options.only
-    image = os.path.join(options.folder, f"{model.name}.elf")
-    with Session(board, image, options.gate, model, is_ascii) as session:
+    with Session(board, image_of(options, model), options.gate, model, is_ascii) as session:
         session.set_up()
         session.count_requests(
             general or options.all, lambda request: options.only in f"{label} {request.name}", options.passes
@@ -91,6 +96,22 @@ def run_session(options, model, is_ascii, general):
     found = Found()
     found.add(session.counter)
     return [(row.name, count_of(row), row.until) for row in rows], profiles, found
+
+
+def results(options):
+    """Runs all sessions, and yields the result of each in the order of SESSIONS. If a session raises an exception, ends
+    the other sessions and raises this exception."""
+    with concurrent.futures.ProcessPoolExecutor(options.jobs, initializer=die_with_parent) as pool:
+        sessions = [pool.submit(run_session, options, *session) for session in SESSIONS]
+        try:
+            for finished in concurrent.futures.as_completed(list(sessions)):
+                finished.result()
+                while sessions and sessions[0].done():
+                    yield sessions.pop(0).result()
+        except BaseException:
+            for process in multiprocessing.active_children():
+                process.kill()
+            raise
 
 
 def recorded(record):
@@ -125,7 +146,8 @@ def main(arguments):
         "the median of the passes (see --passes). The tool also counts the instructions of single interrupts, of the "
         "tick's turn of the main loop, and of a millisecond at rest. For interrupts and for that turn, the result is "
         "the highest count. The tool also prints the difference from the record. Without --record, the exit status is "
-        "1 if a count has grown by more than 5 % since it was recorded.",
+        "1 if a count has grown by more than 5 % since it was recorded. It is 2 if a file or a program is missing or "
+        "fails.",
     )
     parser.add_argument("folder", help="folder with the images, as ELF files")
     parser.add_argument(
@@ -165,14 +187,18 @@ def main(arguments):
     before = recorded(board.record)
     counts = {}
     found = Found()
-    with concurrent.futures.ProcessPoolExecutor(options.jobs, initializer=die_with_parent) as pool:
-        for session in [pool.submit(run_session, options, *session) for session in SESSIONS]:
-            rows, profiles, its = session.result()
+    try:
+        for model, _, _ in SESSIONS:
+            board.emulator.check(image_of(options, model), options.gate)
+        for rows, profiles, its in results(options):
             counts |= {name: count for name, count, _ in rows}
             found.merge(its)
             for name, count, until in rows:
                 print(text_of(name, count, until, before.get(name)))
             print("\n".join(profiles), end="", flush=True)
+    except (Refusal, RuntimeError) as error:
+        print(f"instructions: {error}", file=sys.stderr)
+        return 2
     if not options.only and board.capacity:
         print(board.capacity(found))
     if options.record:
