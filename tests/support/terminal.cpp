@@ -12,6 +12,7 @@
 #include <stdexcept>
 
 #include "sim/files_and_ports/ports/termios_rates.hpp"
+#include "tests/support/any_rate.hpp"
 
 namespace ex9000::system {
 
@@ -40,6 +41,12 @@ void Terminal::set_baud(std::uint32_t baud) {
   cfsetspeed(&settings, sim::termios_speed(baud).value());
   if (tcsetattr(fd_, TCSANOW, &settings) != 0) {
     fail("tcsetattr");
+  }
+}
+
+void Terminal::set_any_rate(std::uint32_t baud) {
+  if (!system::set_any_rate(fd_, baud)) {
+    fail("TCSETS2");
   }
 }
 

@@ -18,6 +18,8 @@ class Terminal {
   Terminal& operator=(const Terminal&) = delete;
 
   void set_baud(std::uint32_t baud);
+  /// Sets any rate; see system::set_any_rate. Throws std::runtime_error if that fails.
+  void set_any_rate(std::uint32_t baud);
   /// Writes all bytes with one system call. Throws std::runtime_error if that fails.
   void write(const std::vector<std::uint8_t>& bytes);
   void type(const std::string& text);

@@ -45,7 +45,7 @@ class Port {
   virtual void sent() {}
 
   /// Returns the rate of this port, in bits per second; nullopt if masters cannot set a rate at this port, or
-  /// if the rate is not a known one.
+  /// if the rate is 0.
   [[nodiscard]] virtual std::optional<std::uint32_t> baud() const { return std::nullopt; }
   /// Returns whether the port is connected to a real line. If it is, the transmission time of the bytes has
   /// already passed when they arrive.

@@ -113,9 +113,4 @@ std::size_t Pty::write(const std::vector<std::uint8_t>& bytes) {
   return bytes.size() - (written < 0 ? 0 : static_cast<std::size_t>(written));
 }
 
-std::optional<std::uint32_t> Pty::baud() const {
-  termios settings{};
-  return tcgetattr(master_fd(), &settings) == 0 ? termios_rate(settings) : std::nullopt;
-}
-
 }  // namespace ex9000::sim

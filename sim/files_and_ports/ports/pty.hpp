@@ -8,6 +8,7 @@
 
 #include "sim/files_and_ports/files/file_descriptor.hpp"
 #include "sim/files_and_ports/ports/claim.hpp"
+#include "sim/files_and_ports/ports/terminal_rate.hpp"
 
 namespace ex9000::sim {
 
@@ -42,8 +43,8 @@ class Pty {
   /// would wait for the next master.
   std::size_t write(const std::vector<std::uint8_t>& bytes);
 
-  /// Returns the rate set on the slave, in bits per second; nullopt if it is not a known rate.
-  [[nodiscard]] std::optional<std::uint32_t> baud() const;
+  /// Returns the rate set on the slave, see `terminal_rate`.
+  [[nodiscard]] std::optional<std::uint32_t> baud() const { return terminal_rate(master_fd()); }
 
  private:
   [[nodiscard]] bool visited() const;

@@ -58,7 +58,7 @@ void set_up(int fd, hal::SerialMode mode) {
   const auto speed = termios_speed(mode.baud);
   termios taken{};  // tcsetattr succeeds even if it applies only a part of the settings
   if (!speed || cfsetspeed(&settings, *speed) != 0 || tcsetattr(fd, TCSANOW, &settings) != 0 ||
-      tcgetattr(fd, &taken) != 0 || termios_rate(taken) != mode.baud ||
+      tcgetattr(fd, &taken) != 0 || cfgetospeed(&taken) != *speed ||
       ((taken.c_cflag ^ settings.c_cflag) & kTermiosFormat) != 0) {
     tcsetattr(fd, TCSANOW, &before);
     fail("cannot be set to " + mode_text(mode.baud, mode.format) +

@@ -7,8 +7,7 @@ namespace ex9000::sim {
 
 namespace {
 
-/// All rates for which Linux has a termios constant. A master may set any of them on a pseudo-terminal, but
-/// modules support only some of them.
+/// All rates for which Linux has a termios constant. Modules support only some of them.
 constexpr std::array<std::pair<speed_t, std::uint32_t>, 30> kSpeeds{
     {{B50, 50},           {B75, 75},           {B110, 110},         {B134, 134},
      {B150, 150},         {B200, 200},         {B300, 300},         {B600, 600},
@@ -25,15 +24,6 @@ std::optional<speed_t> termios_speed(std::uint32_t baud) {
   for (const auto& [speed, rate] : kSpeeds) {
     if (rate == baud) {
       return speed;
-    }
-  }
-  return std::nullopt;
-}
-
-std::optional<std::uint32_t> termios_rate(const termios& settings) {
-  for (const auto& [speed, rate] : kSpeeds) {
-    if (cfgetospeed(&settings) == speed) {
-      return rate;
     }
   }
   return std::nullopt;

@@ -12,8 +12,6 @@ namespace ex9000::sim {
 
 /// Returns the termios constant for a rate in bits per second, or nullopt if there is none.
 std::optional<speed_t> termios_speed(std::uint32_t baud);
-/// Returns the output rate in `settings`, in bits per second, or nullopt if it is not a known rate.
-std::optional<std::uint32_t> termios_rate(const termios& settings);
 
 /// The flags of `c_cflag` that define a line format together with CS8.
 constexpr tcflag_t kTermiosFormat = CSTOPB | PARENB | PARODD;

@@ -72,5 +72,48 @@ TEST(Dcon, TheLineUsesTheBaudRateOfTheMasterAndTheProgramReportsAMismatch) {
   EXPECT_EQ(terminal.read_line(std::chrono::milliseconds(500)), "");
 }
 
+// The Rust crates serialport and serial2 set every rate with TCSETS2 and BOTHER, also 9600.
+TEST(Dcon, TheLineUsesARateThatWasSetWithBother) {
+  SimulatorProcess simulator(
+      {"EX9042D@05", "EX9052D@06,baud=19200", "--speed", "step", "--control", "control"});
+  ControlClient control(simulator.directory() + "/control");
+  Terminal terminal(simulator.tty(), 19200);
+  const auto ask = [&](const std::string& request) {
+    terminal.type(request);
+    control.ok(
+        "advance 1s after 5");  // the line is idle at the end, so no receiver is in the middle of a byte
+    return terminal.read_line();
+  };
+  EXPECT_EQ(ask("$06M\r"), "!069052\r");
+  terminal.set_any_rate(9600);
+  EXPECT_EQ(ask("$05M\r"), "!059042D\r");
+  terminal.set_any_rate(19200);
+  EXPECT_EQ(ask("$06M\r"), "!069052\r");
+}
+
+TEST(Dcon, TheLineUsesARateThatNoModuleSupports) {
+  SimulatorProcess simulator({"EX9042D@05"});
+  Terminal terminal(simulator.tty(), 9600);
+  terminal.set_any_rate(250'000);
+  terminal.type("$05M\r");
+  EXPECT_TRUE(simulator.wait_for("the line is at 250000 baud 8N1, EX9042D at 05 listens at 9600 baud 8N1"))
+      << simulator.output();
+}
+
+class ExtremeRate : public testing::TestWithParam<std::uint32_t> {};
+
+TEST_P(ExtremeRate, DoesNotStopTheProgram) {
+  SimulatorProcess simulator({"EX9042D@05", "--control", "control"});
+  ControlClient control(simulator.directory() + "/control");
+  Terminal terminal(simulator.tty(), 9600);
+  terminal.set_any_rate(GetParam());
+  terminal.type("$");
+  EXPECT_TRUE(simulator.wait_for("the line is at " + std::to_string(GetParam()) + " baud 8N1"))
+      << simulator.output();
+  EXPECT_EQ(control.ok("1 outputs"), "0000");
+}
+
+INSTANTIATE_TEST_SUITE_P(Dcon, ExtremeRate, testing::Values(1U, 4'294'967'295U));
+
 }  // namespace
 }  // namespace ex9000::system
