@@ -3,10 +3,12 @@ Also tests at which addresses and ports the server listens, how the simulator en
 happens if a page does not read."""
 
 import json
+import os
 import pathlib
 import random
 import socket
 import subprocess
+import tempfile
 import threading
 import unittest
 
@@ -285,6 +287,27 @@ class Start(unittest.TestCase):
         self.addCleanup(simulator.close)
         with self.assertRaises(OSError):
             socket.create_connection(("::1", simulator.port), HANG)
+
+
+class Broken(unittest.TestCase):
+    def test_a_capture_that_fails_while_a_page_holds_an_input_ends_the_program_with_status_1(self):
+        with tempfile.TemporaryDirectory() as folder:
+            fifo = os.path.join(folder, "capture")
+            os.mkfifo(fifo)
+            reader = os.open(fifo, os.O_RDONLY | os.O_NONBLOCK)
+            # Every frame is written to the capture, so the write fails in a timer of the line, in a command of the
+            # page, or in the command that undoes it.
+            simulator = Simulator("EX9055D", "--tcp", "0", "--capture", fifo, "--line", "instant", "--speed", "50",
+                                  "--fault", "foreign-traffic 2430314D0D every 10ms", stderr=subprocess.PIPE)
+            self.addCleanup(simulator.close)
+            page = Page(simulator.port)
+            self.addCleanup(page.close)
+            page.say("1 input 3 on", undo="1 input 3 off")
+            page.until(lambda message: "reply" in message)
+            os.close(reader)
+            error = simulator.process.stderr.read()
+            self.assertEqual(simulator.process.wait(HANG), 1, error)
+            self.assertRegex(error, r"\Aex9000-sim: --capture \S+: cannot be written: Broken pipe[^\n]*\n\Z")
 
 
 class Slow(unittest.TestCase):

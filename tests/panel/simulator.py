@@ -31,17 +31,19 @@ def wait_until(holds):
 
 
 class Simulator:
-    """A running ex9000-sim. `panel` is the port after --panel: 0 means any free port, None means no port is given."""
+    """A running ex9000-sim. `panel` is the port after --panel: 0 means any free port, None means no port is given.
+    `stderr` is the argument of subprocess.Popen."""
 
-    def __init__(self, *arguments, panel=0):
+    def __init__(self, *arguments, panel=0, stderr=None):
         self._directory = tempfile.TemporaryDirectory()
         self._arguments = arguments
+        self._stderr = stderr
         self._start(panel)
 
     def _start(self, panel):
         self.process = subprocess.Popen(
             [PROGRAM, *self._arguments, "--panel", *([] if panel is None else [str(panel)])],
-            stdout=subprocess.PIPE, text=True, cwd=self._directory.name,
+            stdout=subprocess.PIPE, stderr=self._stderr, text=True, cwd=self._directory.name,
         )
         greeting = ""
         for line in self.process.stdout:
@@ -56,6 +58,8 @@ class Simulator:
         self.process.kill()
         self.process.wait()
         self.process.stdout.close()
+        if self.process.stderr:
+            self.process.stderr.close()
 
     def start_again(self, *others):
         """Starts ex9000-sim again, with the same panel port. If `others` is empty, uses the previous arguments;

@@ -100,12 +100,6 @@ class Panel::Viewer final : public PanelViewer {
     }
   }
 
-  ~Viewer() override {
-    for (const std::string& undo : held_) {
-      static_cast<void>(carry_out(undo));
-    }
-  }
-
   bool ask(const std::string& text) override {
     const Message message = Message::parse(text, nullptr, /*allow_exceptions=*/false);
     if (const std::optional<ConsoleRequest> request = parse_console_request(message)) {
@@ -170,6 +164,12 @@ class Panel::Viewer final : public PanelViewer {
     }
     last_sent_at_ = now;
     return message.dump(-1, ' ', false, Message::error_handler_t::replace);
+  }
+
+  void leave() override {
+    for (const std::string& undo : std::exchange(held_, {})) {
+      static_cast<void>(carry_out(undo));
+    }
   }
 
  private:

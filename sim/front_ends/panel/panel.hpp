@@ -26,14 +26,17 @@ class PanelViewer {
 
   /// Carries out a request of the page; a later call of `next` returns the reply. A request with a command
   /// may also contain a second command that undoes the first one. If the first command succeeds, the page
-  /// holds the action of this command active until the page sends the second command. When this object is
-  /// destroyed, it carries out the second command of each active action. Returns false if `text` is not a
-  /// valid request, or if the page would hold too many actions active.
+  /// holds the action of this command active until the page sends the second command, or until `leave`.
+  /// Returns false if `text` is not a valid request, or if the page would hold too many actions active.
   virtual bool ask(const std::string& text) = 0;
   /// Returns the next message for the page. The message contains all new replies, the new recent traffic, and
   /// the new changes that Panel::look has captured. The first message also describes the lines and their
   /// modules. Returns an empty text if there is nothing new and the last message is less than 1 s old.
   virtual std::string next() = 0;
+  /// Call this when the page has disconnected: carries out the second command of each active action. Not the
+  /// destructor does this, because a command advances a line, whose log or capture may fail; throws what the
+  /// command throws. At the end of the program, destroy this object without this call.
+  virtual void leave() = 0;
 };
 
 /// Viewers affect the lines only by the commands and requests that their pages send. Without viewers, the

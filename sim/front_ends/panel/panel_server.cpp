@@ -136,6 +136,7 @@ class PanelServer::Listener::Client : public std::enable_shared_from_this<Client
                         [self = shared_from_this()](const error_code& error, std::size_t /*size*/) {
                           self->outgoing_.clear();
                           if (error) {
+                            self->end_page();
                             self->part();
                           } else if (self->answering_) {
                             self->answer_page_request();
@@ -143,6 +144,7 @@ class PanelServer::Listener::Client : public std::enable_shared_from_this<Client
                         });
   }
 
+  /// Closes the connection.
   void part() {
     viewer_.reset();
     error_code ignored;
@@ -288,6 +290,13 @@ class PanelServer::Listener::Client : public std::enable_shared_from_this<Client
     });
   }
 
+  /// Ends the page, if there is one. The connection stays open.
+  void end_page() {
+    if (const std::unique_ptr<PanelViewer> viewer = std::move(viewer_)) {
+      viewer->leave();
+    }
+  }
+
   void close(websocket::close_code code, const char* why) {
     socket_.async_close({code, why}, [self = shared_from_this()](const error_code& /*error*/) {});
   }
@@ -295,7 +304,7 @@ class PanelServer::Listener::Client : public std::enable_shared_from_this<Client
   void read_page_request() {
     socket_.async_read(buffer_, [self = shared_from_this()](const error_code& error, std::size_t /*size*/) {
       if (error || !self->viewer_) {
-        self->viewer_.reset();
+        self->end_page();
         return;
       }
       self->answering_ = true;
@@ -314,7 +323,7 @@ class PanelServer::Listener::Client : public std::enable_shared_from_this<Client
     const std::string asked = beast::buffers_to_string(buffer_.data());
     buffer_.clear();
     if (!viewer_ || !socket_.got_text() || !viewer_->ask(asked)) {
-      viewer_.reset();
+      end_page();
       close(websocket::close_code::policy_error, "the message is not a valid request");
       return;
     }

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <functional>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -291,7 +292,7 @@ TEST(PanelMessages, ClosingAPageRunsItsUndoCommands) {
   ASSERT_TRUE(page->ask(R"({"id": 1, "do": "1 input 3 on", "undo": "1 input 3 off"})"));
   ASSERT_TRUE(page->ask(R"({"id": 2, "do": "1 input 4 on"})"));
   EXPECT_EQ(bench.module().input_levels(), 0x18U);
-  page.reset();
+  page->leave();
   EXPECT_EQ(bench.module().input_levels(), 0x10U);
 }
 
@@ -301,7 +302,7 @@ TEST(PanelMessages, ClosingAPageDoesNotRepeatAnUndoThatThePageHasDone) {
   ASSERT_TRUE(page->ask(R"({"id": 1, "do": "1 input 3 on", "undo": "1 input 3 off"})"));
   ASSERT_TRUE(page->ask(R"({"id": 2, "do": "1 input 3 off"})"));
   bench.module().set_input(3, true);
-  page.reset();
+  page->leave();
   EXPECT_EQ(bench.module().input_levels(), 0x08U);
 }
 
@@ -309,8 +310,29 @@ TEST(PanelMessages, ClosingAPageDoesNotUndoARefusedCommand) {
   PanelBench bench("EX9055D");
   auto page = bench.panel().viewer();
   ASSERT_TRUE(page->ask(R"({"id": 1, "do": "nonsense", "undo": "1 input 3 on"})"));
-  page.reset();
+  page->leave();
   EXPECT_EQ(bench.module().input_levels(), 0U);
+}
+
+TEST(PanelMessages, AnErrorOfAnUndoCommandDoesNotEndTheProcess) {
+  bool broken = false;
+  Panel panel(
+      [&broken](const std::string& /*command*/) -> Control::Reply {
+        if (broken) {
+          throw std::runtime_error("the capture cannot be written");
+        }
+        return {"ok", false};
+      },
+      nullptr, [](const std::function<void()>& action) { action(); }, 1);
+  auto leaves = panel.viewer();
+  auto stays = panel.viewer();
+  for (PanelViewer* page : {leaves.get(), stays.get()}) {
+    ASSERT_TRUE(page->ask(R"({"id": 1, "do": "1 input 3 on", "undo": "1 input 3 off"})"));
+  }
+  broken = true;
+  EXPECT_THROW(leaves->leave(), std::runtime_error);
+  leaves.reset();
+  stays.reset();  // as at the end of the program
 }
 
 TEST(PanelMessages, ARequestBeyondTheLimitOfUndoCommandsIsRejected) {
