@@ -1,27 +1,30 @@
 // Checks whether the headers of a browser's request name this machine's loopback interface.
 #pragma once
 
-#include <cstdint>
+#include <algorithm>
+#include <cctype>
 #include <string>
 #include <string_view>
 
 namespace ex9000::sim {
 
-/// Returns whether `host`, the value of the Host header, is 127.0.0.1 or localhost with the port of the
-/// server. At port 80, which browsers omit, the name alone is accepted too. A request with any other name may
-/// come from a page of another site, even if that name resolves to this machine.
-inline bool is_loopback_host(std::string_view host, std::uint16_t port) {
-  constexpr std::uint16_t kUsualPort = 80;
-  const auto is_named = [host, port](const std::string& name) {
-    return host == name + ":" + std::to_string(port) || (port == kUsualPort && host == name);
-  };
-  return is_named("127.0.0.1") || is_named("localhost");
+/// Returns whether `host`, the value of the Host header, is 127.0.0.1 or localhost, with or without a port. A
+/// request with any other name may come from a page of another site, even if that name resolves to this
+/// machine. The port proves nothing, and is another one in a browser that reaches the server through an SSH
+/// tunnel.
+inline bool is_loopback_host(std::string_view host) {
+  const std::size_t colon = std::min(host.find(':'), host.size());
+  const std::string_view name = host.substr(0, colon);
+  const std::string_view port = host.substr(std::min(colon + 1, host.size()));
+  const auto is_digit = [](unsigned char character) { return std::isdigit(character) != 0; };
+  return (name == "127.0.0.1" || name == "localhost") && std::all_of(port.begin(), port.end(), is_digit) &&
+         port.empty() == (colon == host.size());
 }
 
-/// Returns whether `origin`, the value of the Origin header, belongs to a page of the server at `port`.
-inline bool is_loopback_origin(std::string_view origin, std::uint16_t port) {
-  constexpr std::string_view kScheme = "http://";
-  return origin.substr(0, kScheme.size()) == kScheme && is_loopback_host(origin.substr(kScheme.size()), port);
+/// Returns whether `origin`, the value of the Origin header, is that of the page at `host`, the value of the
+/// Host header. A page of another server of this machine has another port, and thus another origin.
+inline bool is_origin_of(std::string_view origin, std::string_view host) {
+  return origin == "http://" + std::string(host);
 }
 
 }  // namespace ex9000::sim

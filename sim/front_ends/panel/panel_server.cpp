@@ -172,17 +172,15 @@ class PanelServer::Listener::Client : public std::enable_shared_from_this<Client
   }
 
   void serve(const Request& request) {
-    const std::uint16_t port = listener_->port();
+    const std::string_view host = view_of(request[http::field::host]);
     const auto origin = request.find(http::field::origin);
     const bool has_origin = origin != request.end();
     const bool live = request.target() == "/live";
-    if (request.count(http::field::host) != 1 ||
-        !is_loopback_host(view_of(request[http::field::host]), port)) {
+    if (request.count(http::field::host) != 1 || !is_loopback_host(host)) {
       answer(http::status::forbidden, "text/plain",
-             "the header Host is missing, wrong or repeated; expected 127.0.0.1 or localhost with the port "
-             "of the panel\n");
+             "the header Host is missing, wrong or repeated; expected 127.0.0.1 or localhost\n");
     } else if (request.count(http::field::origin) > 1 ||
-               (has_origin && !is_loopback_origin(view_of(origin->value()), port)) || (live && !has_origin)) {
+               (has_origin && !is_origin_of(view_of(origin->value()), host)) || (live && !has_origin)) {
       answer(http::status::forbidden, "text/plain",
              "the header Origin is missing, wrong or repeated; expected the origin of the panel's page\n");
     } else if (!is_fetched_by_us(request)) {
