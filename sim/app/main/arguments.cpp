@@ -320,6 +320,10 @@ Parsed parse_arguments(int argc, const char* const* argv) {
   app.add_option("--modbus-tcp", texts.line.modbus_tcp,
                  "open a Modbus TCP gateway to the Modbus modules of the line (default HOST: 127.0.0.1)")
       ->type_name("[HOST:]PORT");
+  app.add_option("--modbus-timeout", texts.line.modbus_timeout,
+                 "set how long the gateway waits for a reply, plus the time that the line needs (default: "
+                 "200ms)")
+      ->type_name("TIME");
   app.add_option("--serial", texts.line.serial, "connect the modules to a real line through this serial port")
       ->type_name("DEVICE");
   app.add_flag("--echo", texts.line.echo, "ignore the echo of a serial adapter that receives what it sends");

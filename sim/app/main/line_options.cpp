@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "sim/app/main/option_values.hpp"
+#include "sim/text/durations.hpp"
 #include "sim/text/fail.hpp"
 #include "sim/text/values.hpp"
 
@@ -72,6 +73,7 @@ LineSetup line_of(const LineTexts& texts) {
   take_option("--line", texts.kind, parse_line_kind, line.instant);
   take_option("--tcp", texts.tcp, parse_listening_address, line.tcp);
   take_option("--modbus-tcp", texts.modbus_tcp, parse_listening_address, line.modbus_tcp);
+  take_option("--modbus-timeout", texts.modbus_timeout, parse_time, line.modbus_timeout);
   return line;
 }
 
@@ -81,6 +83,7 @@ void reject_line_options(const std::string& bus_file, const LineTexts& texts) {
                                                 {"--pty", texts.pty.has_value()},
                                                 {"--tcp", texts.tcp.has_value()},
                                                 {"--modbus-tcp", texts.modbus_tcp.has_value()},
+                                                {"--modbus-timeout", texts.modbus_timeout.has_value()},
                                                 {"--serial", texts.serial.has_value()},
                                                 {"--baud", texts.baud.has_value()},
                                                 {"--line", texts.kind.has_value()},

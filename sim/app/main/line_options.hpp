@@ -17,6 +17,7 @@ struct LineTexts {
   std::optional<std::string> pty;
   std::optional<std::string> tcp;
   std::optional<std::string> modbus_tcp;
+  std::optional<std::string> modbus_timeout;
   std::optional<std::string> serial;
   std::optional<std::string> baud;
   std::optional<std::string> format;

@@ -74,7 +74,8 @@ void RunningLine::open_ports(bool stepped) {
   }
   if (setup_.modbus_tcp) {
     modbus_tcp_ = with_place(place_of(setup_.places, "modbus-tcp"), [&] {
-      return std::make_unique<ModbusTcpServer>(io_, *line_, *setup_.modbus_tcp);
+      return std::make_unique<ModbusTcpServer>(io_, *line_, *setup_.modbus_tcp,
+                                               setup_.modbus_timeout.value_or(kGatewayTimeout));
     });
     introduced_.modbus_tcp = modbus_tcp_->address();
   }

@@ -41,6 +41,9 @@ void check(const LineSetup& line, std::size_t position) {
   if (line.echo && !line.serial) {
     wrong("echo", "requires {serial}; add {serial}, or leave out {echo}");
   }
+  if (line.modbus_timeout && !line.modbus_tcp) {
+    wrong("modbus-timeout", "requires {modbus-tcp}; add {modbus-tcp}, or leave out {modbus-timeout}");
+  }
   if (line.instant && line.serial) {
     wrong("line",
           "instant cannot be combined with {serial}, because bytes on a serial line take time; "

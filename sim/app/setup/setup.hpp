@@ -27,12 +27,13 @@ std::string place_of(const Places& places, const std::string& key);
 
 struct LineSetup {
   Places places;
-  std::string name;                      ///< empty if the command line describes the line
-  std::vector<ModuleSpec> modules;       ///< at least one
-  std::optional<std::string> pty;        ///< path of the link to a pseudo-terminal
-  std::optional<TcpAddress> tcp;         ///< address on which the TCP port listens
-  std::optional<TcpAddress> modbus_tcp;  ///< address on which the Modbus TCP gateway listens
-  std::optional<std::string> serial;     ///< path of the serial port; excludes all other ports
+  std::string name;                           ///< empty if the command line describes the line
+  std::vector<ModuleSpec> modules;            ///< at least one
+  std::optional<std::string> pty;             ///< path of the link to a pseudo-terminal
+  std::optional<TcpAddress> tcp;              ///< address on which the TCP port listens
+  std::optional<TcpAddress> modbus_tcp;       ///< address on which the Modbus TCP gateway listens
+  std::optional<VirtualTime> modbus_timeout;  ///< of the gateway; nullopt: kGatewayTimeout
+  std::optional<std::string> serial;          ///< path of the serial port; excludes all other ports
   /// Returns the key of the first port that has a value, in the order pty, tcp, modbus-tcp. Returns an empty
   /// text if none of these ports has a value.
   [[nodiscard]] std::string first_port() const {

@@ -3,6 +3,7 @@
 #include <string>
 #include <utility>
 
+#include "sim/text/durations.hpp"
 #include "sim/text/values.hpp"
 #include "sim/text/words.hpp"
 
@@ -105,7 +106,7 @@ const std::array<BusFileKey<Setup>, 7> bus_keys{{
      [](Setup& setup, const Node& value) { setup.seed = parse_seed(value.number_or_text()); }},
 }};
 
-const std::array<BusFileKey<LineSetup>, 12> line_keys{{
+const std::array<BusFileKey<LineSetup>, 13> line_keys{{
     {"name", kText, "the line's name, one word (default: line1, line2, ...)",
      [](LineSetup& line, const Node& value) { line.name = value.text(); }},
     {"pty", kPath,
@@ -118,6 +119,10 @@ const std::array<BusFileKey<LineSetup>, 12> line_keys{{
      [](LineSetup& line, const Node& value) {
        line.modbus_tcp = parse_listening_address(value.number_or_text());
      }},
+    {"modbus-timeout", kText,
+     "how long the gateway of modbus-tcp waits for a reply, plus the time that the line needs (default "
+     "200ms)",
+     [](LineSetup& line, const Node& value) { line.modbus_timeout = parse_time(value.text()); }},
     {"serial", kPath, "connects the modules to this serial port",
      [](LineSetup& line, const Node& value) { line.serial = value.text(); }},
     {"echo", kFlag, "ignores the echo of an adapter that receives what it sends",

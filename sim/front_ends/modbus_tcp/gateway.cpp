@@ -32,7 +32,7 @@ bool speaks_only_ascii(const Line& line) {
 }  // namespace
 
 void ask_on_line(Line& line, const MbapFrame& request, const std::weak_ptr<void>& owner,
-                 const GatewayAnswer& answer) {
+                 const GatewayAnswer& answer, VirtualTime timeout) {
   const bool broadcast = request.unit == kRtuBroadcast;
   if (request.unit > kLastRtuAddress || speaks_only_ascii(line)) {
     answer(broadcast ? std::nullopt : std::optional(exception_pdu(request, kPathUnavailable)));
@@ -41,6 +41,8 @@ void ask_on_line(Line& line, const MbapFrame& request, const std::weak_ptr<void>
   RequestQueue::Request asked;
   asked.bytes = rtu_frame(request.unit, request.pdu);
   asked.expects_reply = !broadcast;
+  asked.timeout = timeout + line.longest_response_delay() + line.rtu_silence() +
+                  line.master().takes(rtu_reply_size({asked.bytes.data(), asked.bytes.size()}));
   asked.owner = owner;
   asked.is_reply = [sent = asked.bytes](Bytes frame) {
     return is_rtu_reply({sent.data(), sent.size()}, frame);

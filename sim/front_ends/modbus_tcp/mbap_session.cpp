@@ -24,12 +24,14 @@ void MbapSession::pass_on() {
     }
     waiting_ = true;
     const std::weak_ptr<MbapSession*> lives = lives_;
-    ask_on_line(line_, *request, lives,
-                [lives, request = *request](const std::optional<std::vector<std::uint8_t>>& pdu) {
-                  if (const auto session = lives.lock()) {
-                    (*session)->answer(request, pdu);
-                  }
-                });
+    ask_on_line(
+        line_, *request, lives,
+        [lives, request = *request](const std::optional<std::vector<std::uint8_t>>& pdu) {
+          if (const auto session = lives.lock()) {
+            (*session)->answer(request, pdu);
+          }
+        },
+        timeout_);
   }
   passing_on_ = false;
 }

@@ -22,9 +22,10 @@ class MbapSession {
   /// Sends a reply to the client. Returns false if the client accepts no more at present.
   using Send = std::function<bool(const std::vector<std::uint8_t>& bytes)>;
 
-  /// `line` must outlive this object. `answered` is called after each answer of `ask_on_line`.
-  MbapSession(Line& line, Send send, std::function<void()> answered)
-      : line_(line), send_(std::move(send)), answered_(std::move(answered)) {}
+  /// `line` must outlive this object. `answered` is called after each answer of `ask_on_line`. `timeout`: see
+  /// there.
+  MbapSession(Line& line, Send send, std::function<void()> answered, VirtualTime timeout = kGatewayTimeout)
+      : line_(line), send_(std::move(send)), answered_(std::move(answered)), timeout_(timeout) {}
   MbapSession(const MbapSession&) = delete;
   MbapSession& operator=(const MbapSession&) = delete;
 
@@ -47,6 +48,7 @@ class MbapSession {
   Line& line_;
   Send send_;
   std::function<void()> answered_;
+  VirtualTime timeout_;
   MbapReader reader_;
   bool waiting_ = false;  ///< a request has not been answered yet
   bool blocked_ = false;  ///< `send` has returned false, and `resume` has not been called yet

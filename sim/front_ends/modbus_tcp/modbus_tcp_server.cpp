@@ -34,7 +34,7 @@ struct ModbusTcpServer::Client : std::enable_shared_from_this<Client> {
               replies.insert(replies.end(), reply.begin(), reply.end());
               return server.write(shared_from_this());
             },
-            [this, &server] { server.go_on(shared_from_this()); }) {}
+            [this, &server] { server.go_on(shared_from_this()); }, server.timeout_) {}
 
   /// Returns whether the server may read more bytes of this client. Does not consider `paused_`.
   [[nodiscard]] bool may_read() const {
@@ -51,8 +51,9 @@ struct ModbusTcpServer::Client : std::enable_shared_from_this<Client> {
   MbapSession session;
 };
 
-ModbusTcpServer::ModbusTcpServer(boost::asio::io_context& io, Line& line, const TcpAddress& address)
-    : io_(io), line_(line), listener_(io, address) {}
+ModbusTcpServer::ModbusTcpServer(boost::asio::io_context& io, Line& line, const TcpAddress& address,
+                                 VirtualTime timeout)
+    : io_(io), line_(line), timeout_(timeout), listener_(io, address) {}
 
 ModbusTcpServer::~ModbusTcpServer() {
   for (const ClientPointer& client : clients_) {

@@ -11,6 +11,7 @@
 
 #include "sim/files_and_ports/ports/tcp_address.hpp"
 #include "sim/files_and_ports/ports/tcp_listener.hpp"
+#include "sim/front_ends/modbus_tcp/gateway.hpp"
 #include "sim/virtual_line/line/line.hpp"
 
 namespace ex9000::sim {
@@ -29,8 +30,9 @@ class ModbusTcpServer {
   using Received = std::function<bool(std::size_t size, std::function<void()> process)>;
 
   /// Starts to listen. Throws std::invalid_argument with a one-line message if the address is not available.
-  /// `line` must outlive this object.
-  ModbusTcpServer(boost::asio::io_context& io, Line& line, const TcpAddress& address);
+  /// `line` must outlive this object. `timeout`: see `ask_on_line`.
+  ModbusTcpServer(boost::asio::io_context& io, Line& line, const TcpAddress& address,
+                  VirtualTime timeout = kGatewayTimeout);
   ModbusTcpServer(const ModbusTcpServer&) = delete;
   ModbusTcpServer& operator=(const ModbusTcpServer&) = delete;
   ~ModbusTcpServer();
@@ -62,6 +64,7 @@ class ModbusTcpServer {
 
   boost::asio::io_context& io_;
   Line& line_;
+  VirtualTime timeout_;
   TcpListener listener_;
   Received received_;
   bool paused_ = false;

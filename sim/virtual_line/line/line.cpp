@@ -69,6 +69,17 @@ bool Line::unsettled() const {
 
 bool Line::pending() const { return unsettled() || (requests_ && requests_->busy()); }
 
+VirtualTime Line::longest_response_delay() const {
+  std::chrono::milliseconds longest{0};
+  for (const auto& module : modules_) {
+    if (module->powered()) {
+      const std::chrono::milliseconds delay{module->module().state().settings.response_delay};
+      longest = std::max(longest, delay);
+    }
+  }
+  return longest;
+}
+
 LineTiming Line::timing() const { return kind_.timing_at(master_.mode().baud, master_.mode().format); }
 
 VirtualTime Line::rtu_silence() const {

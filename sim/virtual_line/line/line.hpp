@@ -73,6 +73,8 @@ class Line {
   [[nodiscard]] bool unsettled() const;
   /// Returns whether the line is unsettled, or a request in `requests` waits or is in progress.
   [[nodiscard]] bool pending() const;
+  /// Returns the longest response delay of the modules (extensions.md, register 0x0252).
+  [[nodiscard]] VirtualTime longest_response_delay() const;
   /// Returns the silence that modules of this line require between Modbus frames, counted from the end of the
   /// first stop bit of the last byte. Except on an instant line, this is the rest of the stop bits and T3.5,
   /// at the baud rate and format of the master.

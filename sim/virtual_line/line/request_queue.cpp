@@ -63,7 +63,7 @@ void RequestQueue::send() {
   const VirtualTime earliest =
       spacing.master_was_last() ? spacing.after_own() : spacing.after_others(request.bytes[0]);
   sent_ = std::max(now, earliest) + master.takes(request.bytes.size());
-  deadline_ = sent_ + (request.expects_reply ? kReplyTimeout : kTurnaround);
+  deadline_ = sent_ + (request.expects_reply ? request.timeout : kTurnaround);
   reply_ = {};
   enter(request.expects_reply ? State::WaitsForReply : State::TurnsAround, deadline_);
   master.send(request.bytes.data(), request.bytes.size(), earliest);

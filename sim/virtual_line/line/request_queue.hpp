@@ -25,8 +25,8 @@ class Line;
 /// not wait for this queue. If one of them sends while a request is in progress, the request gets no reply.
 class RequestQueue final : private Station {
  public:
-  /// The maximum time from the end of a request to the end of the first byte of its reply. This is more than
-  /// twice the time within which a module that stores settings must begin its reply (wire.md section 7).
+  /// The usual Request::timeout, and the longest wait for a line that others use. This is more than twice the
+  /// time within which a module that stores settings must begin its reply (wire.md section 7).
   static constexpr VirtualTime kReplyTimeout = std::chrono::milliseconds(500);
   /// The turn-around time: after a request that expects no reply, the queue waits for this time, so that
   /// modules can process the request (Modbus over Serial Line V1.02, 2.4.1: 100 ms to 200 ms).
@@ -42,6 +42,8 @@ class RequestQueue final : private Station {
   struct Request {
     std::vector<std::uint8_t> bytes;  ///< the frame on the line, at least one byte
     bool expects_reply = true;
+    /// The maximum time from the end of the request to the end of the first byte of its reply.
+    VirtualTime timeout = kReplyTimeout;
     /// Returns whether `frame` is the reply. The queue ignores damaged frames, and frames for which this
     /// function returns false. If this function is empty, the first frame is the reply, even a damaged one.
     std::function<bool(Bytes frame)> is_reply;

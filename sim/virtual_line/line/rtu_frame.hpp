@@ -29,6 +29,32 @@ inline std::vector<std::uint8_t> rtu_frame(std::uint8_t address, const std::vect
 /// Returns the PDU in a frame of at least three bytes.
 inline Bytes pdu_of(Bytes frame) { return frame.first(frame.size - 2).from(1); }
 
+/// Returns the number of bytes in the reply to `request` if the reply is not an exception. 0 if the request
+/// is too short, or if its function is not 01 to 06, 0F or 10 (hex).
+inline std::size_t rtu_reply_size(Bytes request) {
+  constexpr std::size_t kAddressAndCount = 8;  // minimum size of a request that reads or writes
+  constexpr std::size_t kWithoutData = 5;      // address, function, byte count, CRC
+  if (request.size < kAddressAndCount) {
+    return 0;
+  }
+  const std::size_t count = request.word(4);
+  switch (request[1]) {
+    case 0x01:
+    case 0x02:
+      return kWithoutData + (count + 7) / 8;
+    case 0x03:
+    case 0x04:
+      return kWithoutData + 2 * count;
+    case 0x05:
+    case 0x06:
+    case 0x0F:
+    case 0x10:
+      return kAddressAndCount;
+    default:
+      return 0;
+  }
+}
+
 /// Returns whether `frame` is a valid reply, perhaps an exception, to `request`. Both begin with the address
 /// and end with the CRC. Checks the CRC, the address, the function code, and the length of an exception. If
 /// the reply is not an exception, and the function is 01 to 06, 0F or 10 (hex), also checks the length, and
@@ -36,8 +62,7 @@ inline Bytes pdu_of(Bytes frame) { return frame.first(frame.size - 2).from(1); }
 /// checks reject nearly all echoes of requests with functions 01 to 04, and most late replies to earlier
 /// requests.
 inline bool is_rtu_reply(Bytes request, Bytes frame) {
-  constexpr std::size_t kException = 5;        // size of an exception; no reply is shorter
-  constexpr std::size_t kAddressAndCount = 8;  // minimum size of a request that reads or writes
+  constexpr std::size_t kException = 5;  // size of an exception; no reply is shorter
   if (frame.size < kException || crc16(frame).value() != 0 || frame[0] != request[0] ||
       (frame[1] | kRtuException) != (request[1] | kRtuException)) {
     return false;
@@ -46,21 +71,17 @@ inline bool is_rtu_reply(Bytes request, Bytes frame) {
   if ((function & kRtuException) != 0) {
     return frame.size == kException;
   }
-  const bool reads_bits = function == 0x01 || function == 0x02;
-  const bool reads_words = function == 0x03 || function == 0x04;
+  const bool reads = function >= 0x01 && function <= 0x04;
   const bool writes = function == 0x05 || function == 0x06 || function == 0x0F || function == 0x10;
-  if (!reads_bits && !reads_words && !writes) {
+  if (!reads && !writes) {
     return true;
   }
-  if (request.size < kAddressAndCount) {
+  if (frame.size != rtu_reply_size(request)) {
     return false;
   }
-  if (writes) {  // the reply repeats the data address, and the value or the count
-    return frame.size == kAddressAndCount && std::equal(frame.begin(), frame.begin() + 6, request.begin());
-  }
-  const std::size_t count = request.word(4);
-  const std::size_t bytes = reads_bits ? (count + 7) / 8 : 2 * count;
-  return frame[2] == bytes && frame.size == kException + bytes;
+  return reads ? frame[2] + kException == frame.size
+               // the reply repeats the data address, and the value or the count
+               : std::equal(frame.begin(), frame.begin() + 6, request.begin());
 }
 
 }  // namespace ex9000::sim

@@ -193,6 +193,12 @@ TEST(Arguments, ASerialLineCannotBeCombinedWithAnotherPort) {
 
 TEST(Arguments, EchoRequiresASerialLineAndASerialLineCannotBeInstant) {
   EXPECT_FALSE(accepted({"EX9042D", "--serial", "/dev/ttyUSB0"}).echo);
+  EXPECT_EQ(accepted({"EX9042D-M", "--modbus-tcp", "0", "--modbus-timeout", "1s"}).modbus_timeout,
+            std::chrono::seconds(1));
+  expect_error({"EX9042D-M", "--modbus-timeout", "1s"}, "--modbus-timeout: ",
+               "requires --modbus-tcp; add --modbus-tcp, or leave out --modbus-timeout");
+  expect_error({"EX9042D-M", "--modbus-tcp", "0", "--modbus-timeout", "1"},
+               "--modbus-timeout: ", "'1': expected a duration");
   EXPECT_TRUE(accepted({"EX9042D", "--serial", "/dev/ttyUSB0", "--echo"}).echo);
   expect_error({"EX9042D", "--echo"}, "--echo: ", "requires --serial; add --serial, or leave out --echo");
   expect_error(

@@ -145,6 +145,7 @@ TEST(BusFile, ALineAcceptsOptionsOfTheCommandLineAsKeys) {
   EXPECT_FALSE(line_of("\"pty\": \"a\", \"line\": \"paced\"").instant);
   EXPECT_TRUE(line_of("\"pty\": \"a\", \"line\": \"instant\"").instant);
   EXPECT_TRUE(line_of("\"pty\": \"a\", \"strict-gaps\": true").strict_gaps);
+  EXPECT_EQ(line_of("\"modbus-tcp\": 0, \"modbus-timeout\": \"1s\"").modbus_timeout, std::chrono::seconds(1));
 }
 
 TEST(BusFile, AModuleAcceptsTheKeysOfTheCommandLine) {
@@ -316,6 +317,8 @@ TEST(WrongLineOfABusFile, InvalidOrConflictingKeysAreRefusedWithTheirPlace) {
             "serial: cannot be combined with 'pty', 'tcp' or 'modbus-tcp', because the master is on the "
             "serial "
             "line; leave out 'serial' or the other ports"},
+           {"\"pty\": \"a\", \"modbus-timeout\": \"1s\"",
+            "modbus-timeout: requires 'modbus-tcp'; add 'modbus-tcp', or leave out 'modbus-timeout'"},
            {"\"pty\": \"a\", \"echo\": true", "echo: requires 'serial'; add 'serial', or leave out 'echo'"},
            {"\"serial\": \"a\", \"line\": \"instant\"",
             "line: instant cannot be combined with 'serial', because bytes on a serial line take time; leave "
@@ -517,6 +520,7 @@ TEST(BusFile, CanBeCombinedWithProgramOptionsButNotWithLineOptionsOrModules) {
                                              {"--line", "paced"},
                                              {"--echo"},
                                              {"--strict-gaps"},
+                                             {"--modbus-timeout", "1s"},
                                              {"--input", "1 0 square 1s"},
                                              {"--fault", "echo 2ms"}}) {
     std::vector<std::string> words{path};

@@ -36,14 +36,14 @@ class GatewayLine {
     VirtualTime at{0};
   };
 
-  /// Sends a request to the gateway, runs the line for two seconds, and returns the answer and its time.
-  Result ask(std::uint8_t unit, const Pdu& pdu) {
+  /// Sends a request to the gateway, runs the line for `time`, and returns the answer and its time.
+  Result ask(std::uint8_t unit, const Pdu& pdu, VirtualTime time = seconds(2)) {
     Result result;
     ask_on_line(line, {1, unit, pdu}, owner, [&](const std::optional<Pdu>& answer) {
       EXPECT_FALSE(result.answered) << "answered twice";
       result = {true, answer, line.clock().virtual_now()};
     });
-    line.bus().run_for(seconds(2));
+    line.bus().run_for(time);
     return result;
   }
   Pdu reply(std::uint8_t unit, const Pdu& pdu) { return ask(unit, pdu).pdu.value_or(Pdu()); }
@@ -95,7 +95,44 @@ TEST(Gateway, AUnitWithoutModuleGetsException0BAfterTheTimeout) {
   const VirtualTime asked = bench.line.clock().virtual_now();
   const GatewayLine::Result result = bench.ask(0x02, kReadOutputs);
   EXPECT_EQ(result.pdu, (Pdu{0x81, kNoReply}));
-  EXPECT_GE(result.at - asked, RequestQueue::kReplyTimeout);
+  // 9600 baud 8N1, 10 bits a byte: the request of 8 bytes, a silence of 3.5 characters of 11 bits, and the
+  // reply of 7 bytes take 8.3 ms, 4.0 ms and 7.3 ms.
+  EXPECT_GE(result.at - asked, milliseconds(200 + 19));
+  EXPECT_LE(result.at - asked, milliseconds(200 + 22));
+}
+
+TEST(Gateway, TheTimeoutGrowsWithTheDurationOfTheReply) {
+  GatewayLine bench({"EX9042D-M@01,baud=1200"});
+  bench.line.master().set_baud(1200);
+  // 58.3 ms for the request, and 2.1 s for the reply of 255 bytes.
+  const Pdu read_125_registers{0x03, 0x00, 0x00, 0x00, 0x7D};
+  const VirtualTime asked = bench.line.clock().virtual_now();
+  const GatewayLine::Result result = bench.ask(0x02, read_125_registers, seconds(3));
+  EXPECT_EQ(result.pdu, (Pdu{0x83, kNoReply}));
+  EXPECT_GE(result.at - asked, milliseconds(200 + 58 + 2125));
+}
+
+TEST(Gateway, TheTimeoutGrowsWithTheLongestResponseDelay) {
+  GatewayLine bench({"EX9042D-M@01", "EX9042D-M@02"});
+  const auto time_until_exception = [&bench] {
+    const VirtualTime asked = bench.line.clock().virtual_now();
+    return bench.ask(0x03, kReadOutputs).at - asked;
+  };
+  const VirtualTime without = time_until_exception();
+  EXPECT_EQ(bench.reply(0x02, {0x06, 0x02, 0x52, 0x00, 0x1E}), (Pdu{0x06, 0x02, 0x52, 0x00, 0x1E}));
+  EXPECT_EQ(time_until_exception() - without, milliseconds(30));
+}
+
+TEST(Gateway, TheTimeoutCanBeSet) {
+  GatewayLine bench({"EX9042D-M@01"});
+  const VirtualTime asked = bench.line.clock().virtual_now();
+  VirtualTime answered{0};
+  ask_on_line(
+      bench.line, {1, 0x02, kReadOutputs}, bench.owner,
+      [&](const std::optional<Pdu>& /*answer*/) { answered = bench.line.clock().virtual_now(); }, seconds(1));
+  bench.line.bus().run_for(seconds(2));
+  EXPECT_GE(answered - asked, milliseconds(1019));
+  EXPECT_LE(answered - asked, milliseconds(1022));
 }
 
 TEST(Gateway, HostOkGetsException0BBecauseAModuleNeverRepliesToIt) {

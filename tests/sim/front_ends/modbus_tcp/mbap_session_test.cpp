@@ -180,7 +180,7 @@ TEST(MbapSession, ClientsTakeTurnsEvenIfOneClientSendsManyRequests) {
     many->receive({to_nobody.data(), to_nobody.size()});
   }
   one->receive({to_nobody.data(), to_nobody.size()});
-  line.bus().run_for(std::chrono::milliseconds(1200));  // two timeouts of 500 ms
+  line.bus().run_for(std::chrono::milliseconds(500));  // two timeouts of 220 ms
   EXPECT_EQ(order, (std::vector<std::string>{"many", "one"}));
 }
 

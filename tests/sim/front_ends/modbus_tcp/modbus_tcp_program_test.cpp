@@ -60,9 +60,19 @@ TEST(ModbusTcpProgram, InSteppedTimeAQuietAdvanceEndsAfterTheRepliesToTheArrived
   master.send(kFirst);
   master.send(kToNobody);
   master.send(kSecond);
-  // The module starts up in 100 ms. After the request to unit 9, the gateway waits 500 ms for a reply.
-  EXPECT_EQ(control.ok("advance 10s after 36 quiet").rfind("0.6", 0), 0U);
+  // The module starts up in 100 ms. After the request to unit 9, the gateway waits 211 ms for a reply.
+  EXPECT_EQ(control.ok("advance 10s after 36 quiet").rfind("0.3", 0), 0U);
   EXPECT_EQ(master.receive(31), kFirstReply + kNoReply + kSecondReply);
+}
+
+TEST(ModbusTcpProgram, TheTimeoutOfTheGatewayCanBeSet) {
+  SimulatorProcess simulator(
+      {"EX9042D-M@01", "--modbus-tcp", "0", "--modbus-timeout", "2s", "--speed", "step", "--control", "ctl"});
+  ControlClient control(simulator.directory() + "/ctl");
+  SocketClient master(simulator.tcp_port());
+  master.send(kToNobody);
+  EXPECT_EQ(control.ok("advance 10s after 12 quiet").rfind("2.1", 0), 0U);
+  EXPECT_EQ(master.receive(9), kNoReply);
 }
 
 TEST(ModbusTcpProgram, InSteppedTimeAnAdvanceCountsBytesThatArriveWhileRequestsWait) {
