@@ -32,10 +32,11 @@ void Pacer::start() {
   first_ = line_.clock().virtual_now();
   ports_.report_mismatches();
   for (const auto& port : ports_.all()) {
-    port->start(
-        [this, &port = *port](const std::uint8_t* bytes, std::size_t size, const Port::Positions& damaged) {
-          return receive(port, {bytes, size}, damaged);
-        });
+    port->start([this, &port = *port](const std::uint8_t* bytes, std::size_t size,
+                                      const Port::Positions& damaged, Port::Sender sender) {
+      return receive(port, {bytes, size}, damaged, sender);
+    });
+    port->on_left([this](Port::Sender sender) { line_.master().drop(sender); });
   }
   if (ports_.server() != nullptr) {
     ports_.server()->start([this](std::size_t /*size*/, const std::function<void()>& process) {
@@ -163,7 +164,7 @@ void Pacer::now(const std::function<void()>& action) {
   follow();
 }
 
-bool Pacer::receive(const Port& port, Bytes bytes, const Port::Positions& damaged) {
+bool Pacer::receive(const Port& port, Bytes bytes, const Port::Positions& damaged, Port::Sender sender) {
   const VirtualTime travelled = port.is_a_line() ? line_.master().takes(bytes.size) : VirtualTime(0);
   const auto latency = std::chrono::duration_cast<VirtualTime>(pace_.host_latency * pace_.speed);
   const VirtualTime written = wall() - latency - travelled;
@@ -177,7 +178,7 @@ bool Pacer::receive(const Port& port, Bytes bytes, const Port::Positions& damage
   }
   while (rest.size != 0) {
     const Bytes piece = rest.first(splits ? first_frame_size(rest) : rest.size);
-    line_.master().send(piece.data, piece.size, earliest_frame(piece[0]), damaged);
+    line_.master().send(piece.data, piece.size, earliest_frame(piece[0]), damaged, sender);
     rest = rest.from(piece.size);
     if (rest.size != 0) {
       catch_up(wall());

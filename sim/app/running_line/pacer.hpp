@@ -68,7 +68,7 @@ class Pacer final {
   bool pause_if_full();
   void report_delay(VirtualTime next);
   void report_joined(Bytes bytes);
-  bool receive(const Port& port, Bytes bytes, const Port::Positions& damaged);
+  bool receive(const Port& port, Bytes bytes, const Port::Positions& damaged, Port::Sender sender);
   static std::size_t first_frame_size(Bytes bytes);
   [[nodiscard]] VirtualTime earliest_frame(std::uint8_t address) const;
 

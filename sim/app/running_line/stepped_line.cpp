@@ -10,7 +10,7 @@ void SteppedLine::start(Arrived arrived) {
   for (const auto& port : ports_.all()) {
     // Only serial ports report wrong parity, and a line with a serial port cannot run in stepped time.
     port->start([this, &port = *port](const std::uint8_t* bytes, std::size_t size,
-                                      const Port::Positions& /*damaged*/) {
+                                      const Port::Positions& /*damaged*/, Port::Sender /*sender*/) {
       return receive(size, [this, &port, copy = std::vector<std::uint8_t>(bytes, bytes + size)] {
         ports_.take_rate(port);
         line_.master().send(copy.data(), copy.size());

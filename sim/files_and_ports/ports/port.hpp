@@ -15,10 +15,16 @@ class Port {
  public:
   /// Positions of bytes, in ascending order.
   using Positions = std::vector<std::size_t>;
-  /// Receives bytes that have arrived, and the positions of those with wrong parity or a framing error.
+  /// Identifies a master that can leave while its bytes wait; null for any other master. A pointer that is
+  /// never dereferenced.
+  using Sender = const void*;
+  using Left = std::function<void(Sender sender)>;
+  /// Receives bytes that have arrived, the positions of those with wrong parity or a framing error, and their
+  /// sender.
   /// Returns false if the port must wait for `resume` before it delivers more bytes of the master that has
   /// sent these bytes.
-  using Received = std::function<bool(const std::uint8_t* bytes, std::size_t size, const Positions& damaged)>;
+  using Received = std::function<bool(const std::uint8_t* bytes, std::size_t size, const Positions& damaged,
+                                      Sender sender)>;
 
   Port() = default;
   Port(const Port&) = delete;
@@ -27,6 +33,9 @@ class Port {
 
   /// Starts to deliver bytes: calls `received` while the io_context runs. Call this once.
   virtual void start(Received received) = 0;
+  /// Sets a function to call when a master has left, so that no more of its bytes need to be sent. Only TCP
+  /// reports this: the bytes of a program that has closed a pseudo-terminal are sent, as by a serial port.
+  virtual void on_left(const Left& /*left*/) {}
   /// Continues to deliver bytes after `received` has returned false.
   virtual void resume() = 0;
   /// Before this function returns, it passes all bytes that have arrived to `received`, except the bytes of

@@ -64,7 +64,7 @@ ssize_t PtyPort::take() {
   visits_.take();  // a new master must be detected before the program replies to its bytes
   const ssize_t size = ::read(pty_.master_fd(), bytes_.data(), bytes_.size());
   if (size > 0) {
-    paused_ = !received_(bytes_.data(), static_cast<std::size_t>(size), {});
+    paused_ = !received_(bytes_.data(), static_cast<std::size_t>(size), {}, nullptr);
     return size;
   }
   return size < 0 && errno == EAGAIN ? 0 : -1;

@@ -138,7 +138,7 @@ void SerialPort::take(std::size_t size) {
   for (std::size_t& position : damaged) {
     position -= echo;
   }
-  paused_ = echo < taken && !received_(buffer_.data() + echo, taken - echo, damaged);
+  paused_ = echo < taken && !received_(buffer_.data() + echo, taken - echo, damaged, nullptr);
 }
 
 std::size_t SerialPort::send(const std::vector<std::uint8_t>& bytes) {

@@ -1,5 +1,8 @@
 #include "sim/files_and_ports/ports/tcp_port.hpp"
 
+#include <netinet/tcp.h>
+#include <sys/socket.h>
+
 #include <algorithm>
 #include <array>
 #include <boost/asio/buffer.hpp>
@@ -29,10 +32,19 @@ struct TcpPort::Client {
     socket.close(ignored);
   }
 
+  [[nodiscard]] bool peer_has_closed() {
+    tcp_info info{};
+    socklen_t size = sizeof info;
+    return getsockopt(socket.native_handle(), IPPROTO_TCP, TCP_INFO, &info, &size) == 0 &&
+           (info.tcpi_state == TCP_CLOSE_WAIT || info.tcpi_state == TCP_CLOSE);
+  }
+
   std::array<std::uint8_t, 4096> bytes{};
   bool reading = false;  ///< the port waits for more bytes from the client
   bool paused = false;
   bool lingers = false;  ///< the client has closed its sending side
+  bool watched = false;  ///< see `watch_paused`
+  bool closing = false;  ///< the client has closed its sending side; see `watch_paused`
 };
 
 TcpPort::TcpPort(boost::asio::io_context& io, const TcpAddress& address, Linger linger)
@@ -80,7 +92,7 @@ boost::system::error_code TcpPort::take(Client& client) {
   boost::system::error_code error;
   const std::size_t size = client.socket.read_some(boost::asio::buffer(client.bytes), error);
   if (!error) {
-    client.paused = !received_(client.bytes.data(), size, {});
+    client.paused = !received_(client.bytes.data(), size, {}, &client);
   }
   return error;
 }
@@ -99,6 +111,7 @@ void TcpPort::read(const ClientPointer& client) {
       return;  // the client was paused during the wait
     }
     const boost::system::error_code ended = error ? error : take(*client);
+    watch_paused(client);
     if (!ended || ended == boost::asio::error::would_block) {
       read(client);
     } else if (ended == boost::asio::error::eof) {
@@ -118,6 +131,29 @@ void TcpPort::resume() {
   }
 }
 
+/// Removes a client that has closed its sending side while the port reads none of its bytes: its unread bytes
+/// hide the end of the stream. Looks once in each linger time, and removes the client at the second look at
+/// which it has closed.
+void TcpPort::watch_paused(const ClientPointer& client) {
+  if (!linger_ || client->watched || !client->paused) {
+    return;
+  }
+  client->watched = true;
+  client->linger.expires_after(*linger_);
+  client->linger.async_wait([this, client](const boost::system::error_code& error) {
+    client->watched = false;
+    if (error || !client->socket.is_open()) {
+      return;
+    }
+    const bool closed_before = std::exchange(client->closing, client->peer_has_closed());
+    if (client->paused && client->closing && closed_before) {
+      forget(client);
+    } else {
+      watch_paused(client);
+    }
+  });
+}
+
 /// Keeps a client that has closed its sending side, because the client may still receive. If there is a
 /// linger time, removes the client after this time.
 void TcpPort::let_linger(const ClientPointer& client) {
@@ -135,6 +171,7 @@ void TcpPort::let_linger(const ClientPointer& client) {
 
 void TcpPort::forget(const ClientPointer& client) {
   client->close();
+  left_(client.get());
   clients_.remove(client);
 }
 
@@ -147,6 +184,7 @@ std::size_t TcpPort::send(const std::vector<std::uint8_t>& bytes) {
     dropped = std::max(dropped, gone ? 0 : bytes.size() - written);
     if (gone) {
       client->close();
+      left_(client.get());
     }
     return gone;
   });

@@ -19,8 +19,9 @@ namespace ex9000::sim {
 /// all clients, and passes the bytes of each client to the line.
 class TcpPort final : public Port {
  public:
-  /// A client that has closed its sending side can still receive replies. The port keeps such a client for at
-  /// most this time; nullopt: no maximum.
+  /// A client that has closed its sending side can still receive replies. The port keeps such a client for
+  /// this time, or for up to twice this time if it must wait for `resume`; nullopt: forever. After this time,
+  /// or after a reset of the connection, the client has left: see `on_left`.
   using Linger = std::optional<std::chrono::milliseconds>;
   static constexpr std::chrono::milliseconds kUsualLinger{1000};
 
@@ -29,6 +30,7 @@ class TcpPort final : public Port {
   ~TcpPort() override;
 
   void start(Received received) override;
+  void on_left(const Left& left) override { left_ = left; }
   void resume() override;
   void read_waiting() override;
   std::size_t send(const std::vector<std::uint8_t>& bytes) override;
@@ -45,6 +47,7 @@ class TcpPort final : public Port {
 
   void read(const ClientPointer& client);
   [[nodiscard]] boost::system::error_code take(Client& client);
+  void watch_paused(const ClientPointer& client);
   void let_linger(const ClientPointer& client);
   void forget(const ClientPointer& client);
 
@@ -52,6 +55,7 @@ class TcpPort final : public Port {
   TcpListener listener_;
   Linger linger_;
   Received received_;
+  Left left_ = [](Sender /*sender*/) {};
   std::list<ClientPointer> clients_;
 };
 

@@ -11,11 +11,11 @@ Master::Master(Bus& bus, SerialMode mode, Receive receive)
 }
 
 void Master::send(const std::uint8_t* bytes, std::size_t size, VirtualTime not_before,
-                  const std::vector<std::size_t>& damaged) {
+                  const std::vector<std::size_t>& damaged, const void* sender) {
   const std::size_t first = waiting_.size();
   taken_ += size;
   for (std::size_t i = 0; i < size; ++i) {
-    waiting_.push_back({bytes[i], false});
+    waiting_.push_back({bytes[i], false, sender});
   }
   for (const std::size_t position : damaged) {
     waiting_[first + position].damaged = true;
@@ -26,6 +26,12 @@ void Master::send(const std::uint8_t* bytes, std::size_t size, VirtualTime not_b
       run();
     }
   }
+}
+
+void Master::drop(const void* sender) {
+  waiting_.erase(std::remove_if(waiting_.begin(), waiting_.end(),
+                                [sender](const Waiting& each) { return each.sender == sender; }),
+                 waiting_.end());
 }
 
 void Master::set_mode(SerialMode mode) {

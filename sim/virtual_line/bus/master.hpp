@@ -26,8 +26,11 @@ class Master final : public Station {
   /// follow without a gap, and `not_before` is ignored. Otherwise the first new byte begins now or at
   /// `not_before`, whichever is later. The driver is enabled from the first byte to the last. Does not block.
   /// The bytes at the positions `damaged`, counted from 0, have wrong parity if the format has a parity bit.
+  /// `sender`: see `drop`.
   void send(const std::uint8_t* bytes, std::size_t size, VirtualTime not_before = VirtualTime(0),
-            const std::vector<std::size_t>& damaged = {});
+            const std::vector<std::size_t>& damaged = {}, const void* sender = nullptr);
+  /// Removes the bytes of `sender` that wait for their start bit. `sender` is only compared.
+  void drop(const void* sender);
   /// Returns whether bytes of this master wait or are on the wires.
   [[nodiscard]] bool sending() const { return next_ != kNever; }
   /// Returns how many bytes `send` has taken so far.
@@ -57,6 +60,7 @@ class Master final : public Station {
   struct Waiting {
     std::uint8_t byte;
     bool damaged;
+    const void* sender;
   };
 
   VirtualClock& clock_;

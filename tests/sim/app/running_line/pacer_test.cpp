@@ -58,7 +58,7 @@ class PacedLine : public testing::Test {
       ASSERT_GT(io_.run_one(), 0U);
     }
   }
-  void send(const FrameBytes& bytes) { ASSERT_TRUE(received_(bytes.data(), bytes.size(), {})); }
+  void send(const FrameBytes& bytes) { ASSERT_TRUE(received_(bytes.data(), bytes.size(), {}, nullptr)); }
   /// Sends a request and runs until a reply of `answer` characters has ended.
   void ask(const FrameBytes& bytes, std::size_t answer) {
     recorder_.clear();

@@ -28,7 +28,7 @@ class FakePort final : public Port {
     if (!written_.empty() && !paused_) {
       const std::vector<std::uint8_t> bytes = std::exchange(written_, {});
       receiving_ = true;
-      paused_ = !received_(bytes.data(), bytes.size(), {});
+      paused_ = !received_(bytes.data(), bytes.size(), {}, nullptr);
       receiving_ = false;
     }
   }

@@ -65,6 +65,21 @@ TEST(ModbusTcpProgram, InSteppedTimeAQuietAdvanceEndsAfterTheRepliesToTheArrived
   EXPECT_EQ(master.receive(31), kFirstReply + kNoReply + kSecondReply);
 }
 
+TEST(ModbusTcpProgram, TheBytesOfARawClientThatHasLeftDoNotOccupyTheLine) {
+  SimulatorProcess simulator({"EX9042D-M@01", "--tcp", "0", "--modbus-tcp", "0"});
+  SocketClient master(simulator.tcp_port(1));
+  {
+    SocketClient raw(simulator.tcp_port(0));
+    raw.send(Buffer(4000, 'x'));  // more than four seconds at 9600 baud
+    // The first request waits 500 ms for the line and is not sent. So the program has read the bytes before.
+    master.send(kFirst);
+    EXPECT_EQ(master.receive(9), (Buffer{0x00, 0x01, 0x00, 0x00, 0x00, 0x03, 0x01, 0x81, 0x0B}));
+    raw.abort();
+  }
+  master.send(kFirst);
+  EXPECT_EQ(master.receive(kFirstReply.size()), kFirstReply);
+}
+
 TEST(ModbusTcpProgram, TheTimeoutOfTheGatewayCanBeSet) {
   SimulatorProcess simulator(
       {"EX9042D-M@01", "--modbus-tcp", "0", "--modbus-timeout", "2s", "--speed", "step", "--control", "ctl"});

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "sim/virtual_line/bus/master.hpp"
@@ -38,6 +39,13 @@ class Listener final : public Station {
   }
 
   void set_baud(std::uint32_t baud) { wire_.listen({baud}); }
+  [[nodiscard]] std::string text() const {
+    std::string all;
+    for (const Heard& each : heard) {
+      all += static_cast<char>(each.byte);
+    }
+    return all;
+  }
 
   std::vector<Heard> heard;
 
@@ -79,6 +87,26 @@ TEST_F(BusTest, AByteIn8N1TakesTenBitsAtItsSendersRate) {
     EXPECT_EQ(listener.heard.front().at, nanoseconds(10'000'000'000 / baud)) << baud;
     EXPECT_NEAR(static_cast<double>(listener.heard.back().at.count()), 1000e9 / baud, 2.0) << baud;
   }
+}
+
+TEST_F(BusTest, AMasterDropsTheWaitingBytesOfOneSender) {
+  Master master(bus_, SerialMode{9600}, [](std::uint8_t /*byte*/, ByteStatus /*status*/) {});
+  Listener listener(bus_, 9600);
+  const int first = 0;
+  const int second = 0;
+  const std::vector<std::uint8_t> bytes{'a', 'b', 'c'};
+  master.send(bytes.data(), bytes.size(), {}, {}, &first);
+  master.send(bytes.data(), bytes.size(), {}, {}, &second);
+  master.send(bytes.data(), bytes.size());
+  master.drop(&first);  // the start bit of its first byte has been sent
+  bus_.run_for(std::chrono::seconds(1));
+  EXPECT_EQ(listener.text(), "aabcabc");
+  EXPECT_FALSE(master.sending());
+  master.send(bytes.data(), bytes.size(), {}, {}, &first);
+  master.drop(&first);
+  bus_.run_for(std::chrono::seconds(1));
+  EXPECT_EQ(listener.text(), "aabcabca");
+  EXPECT_FALSE(bus_.busy());
 }
 
 TEST_F(BusTest, IsBusyWhileADriverIsEnabledEvenWithoutAByte) {
