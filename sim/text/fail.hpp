@@ -1,5 +1,5 @@
-// Errors in user input. A message has one line: where the error is, what is wrong and, in most cases, what
-// would be right.
+// Errors in user input, and resources that are not available. A message has one line: where the error is,
+// what is wrong and, in most cases, what would be right.
 #pragma once
 
 #include <stdexcept>
@@ -8,6 +8,10 @@
 namespace ex9000::sim {
 
 [[noreturn]] inline void fail(const std::string& what) { throw std::invalid_argument(what); }
+
+/// Throws an error that may be over at the next start of the program, although nothing in its configuration
+/// has changed: a port or a file that another program uses, an address or a device that is not there yet.
+[[noreturn]] inline void unavailable(const std::string& what) { throw std::runtime_error(what); }
 
 /// Runs `action` and returns its result. Adds the prefix `where` to the message of a std::invalid_argument or
 /// std::runtime_error that `action` throws. The prefix is, for example, `--pty: `.

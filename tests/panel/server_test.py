@@ -254,7 +254,7 @@ class Start(unittest.TestCase):
         first = Simulator("EX9042D", "--tcp", "0")
         self.addCleanup(first.close)
         second = run("EX9042D", "--tcp", "0", "--panel", str(first.port))
-        self.assertEqual(second.returncode, 2)
+        self.assertEqual(second.returncode, 1)
         self.assertEqual(
             second.stderr,
             f"ex9000-sim: --panel {first.port}: the port is in use; name another port, or end the program that uses "

@@ -72,13 +72,13 @@ _EXIT_STATUS = [
     ".It 1",
     "a file of",
     ".Ql play",
-    "has failed, or an error that is not listed under 2 has occurred; for example, a",
-    "serial port has disappeared",
+    "has failed, or something is wrong that may be right at the next start:",
+    "a port, a path or a file is in use, an address or a serial port is missing, or",
+    "a capture cannot be written",
     ".It 2",
     "an argument, a bus file or a file of",
     ".Ql play",
-    "is wrong, a path or a port is in use or cannot be used, or a file is not an",
-    "EEPROM image",
+    "is wrong, a path cannot be written, or a file is not an EEPROM image",
     ".El",
 ]
 

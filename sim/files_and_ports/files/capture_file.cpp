@@ -26,7 +26,7 @@ CaptureFile::CaptureFile(const std::string& path, const std::string& place, Give
     file_ = FileDescriptor(open(path.c_str(), kFlags));
   }
   if (!file_.is_open() && errno == ENXIO) {
-    fail(where_ + ": the pipe has no reader; start its reader first");
+    unavailable(where_ + ": the pipe has no reader; start its reader first");
   }
   struct stat status {};
   if (!file_.is_open() || fstat(file_.get(), &status) != 0 || fcntl(file_.get(), F_SETFL, O_APPEND) != 0) {
@@ -34,7 +34,8 @@ CaptureFile::CaptureFile(const std::string& path, const std::string& place, Give
   }
   regular_ = S_ISREG(status.st_mode);
   if (regular_ && flock(file_.get(), LOCK_EX | LOCK_NB) != 0) {
-    fail(where_ + ": the file is in use by another simulator; end that simulator or name another path");
+    unavailable(where_ +
+                ": the file is in use by another simulator; end that simulator or name another path");
   }
 }
 

@@ -14,8 +14,9 @@ namespace ex9000::sim {
 class CaptureFile {
  public:
   /// Creates the file if it is missing. An existing file keeps its content until `begin`. Throws
-  /// std::invalid_argument with a one-line message if the file is not writable, if it is a regular file that
-  /// another simulator uses, or if it is a pipe without a reader. All messages begin with `place` and `path`.
+  /// std::invalid_argument with a one-line message if the file is not writable, and std::runtime_error if it
+  /// is a regular file that another simulator uses, or a pipe without a reader. All messages begin with
+  /// `place` and `path`.
   CaptureFile(
       const std::string& path, const std::string& place, GivesUp gives_up = [] { return false; });
 

@@ -110,9 +110,9 @@ EepromFile::EepromFile(std::string path)
     fail(path_ + ": is read-only; make it writable with chmod u+w, or name another path");
   }
   if (flock(file_.get(), LOCK_EX | LOCK_NB) != 0) {
-    fail(path_ + ": " +
-         (errno == EWOULDBLOCK ? "is in use by another program; end that program or name another path"
-                               : reason() + "; name another path"));
+    unavailable(path_ + ": " +
+                (errno == EWOULDBLOCK ? "is in use by another program; end that program or name another path"
+                                      : reason() + "; name another path"));
   }
   found_ = image_in(file_, path_);
 }

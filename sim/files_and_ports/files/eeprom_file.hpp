@@ -25,7 +25,8 @@ std::optional<std::vector<std::uint8_t>> read_eeprom_file(const std::string& pat
 class EepromFile {
  public:
   /// Opens and locks an existing file. Throws std::invalid_argument with a one-line message if the file is
-  /// not an image, cannot be read and written, or is in use. Does not create a file.
+  /// not an image or cannot be read and written, and std::runtime_error if it is in use. Does not create a
+  /// file.
   explicit EepromFile(std::string path);
 
   /// Returns the content that the file had when the constructor opened it; nullopt if there was no file.

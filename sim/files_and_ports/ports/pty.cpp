@@ -14,6 +14,7 @@
 
 #include "sim/files_and_ports/files/new_file.hpp"
 #include "sim/files_and_ports/ports/termios_rates.hpp"
+#include "sim/text/fail.hpp"
 #include "sim/text/system_error.hpp"
 
 namespace ex9000::sim {
@@ -30,8 +31,7 @@ std::string link_target(const std::string& link) {
 /// path, or if any other file exists at the path.
 void remove_stale(const std::string& link, const Claim& claim) {
   if (!claim.held()) {
-    throw std::invalid_argument(
-        link + ": another simulator uses this path; end that simulator or name another path");
+    unavailable(link + ": another simulator uses this path; end that simulator or name another path");
   }
   if (!is_there(link)) {
     return;

@@ -18,8 +18,8 @@ class Pty {
  public:
   /// Creates a pseudo-terminal, sets its rate to `baud`, and creates a symbolic link to the slave at the path
   /// `link`. If no other simulator uses this path, replaces an existing link to a pseudo-terminal. Throws
-  /// std::invalid_argument with a one-line message if anything else exists at the path, if another simulator
-  /// uses the path, or if the link cannot be created. Throws std::runtime_error if the system cannot create
+  /// std::invalid_argument with a one-line message if anything else exists at the path, or if the link cannot
+  /// be created. Throws std::runtime_error if another simulator uses the path, or if the system cannot create
   /// or set up a pseudo-terminal. After an exception, neither a new link nor a new pseudo-terminal remains.
   Pty(std::string link, std::uint32_t baud);
   /// Removes the link if it still leads to this object's slave.

@@ -46,7 +46,7 @@ void set_up(int fd, hal::SerialMode mode) {
     fail("is not a serial port; name one, for example /dev/ttyUSB0");
   }
   if (flock(fd, LOCK_EX | LOCK_NB) != 0 || ioctl(fd, TIOCEXCL) != 0) {
-    fail(kInUse);
+    unavailable(kInUse);
   }
   termios settings = before;
   cfmakeraw(&settings);
@@ -72,7 +72,7 @@ void set_up(int fd, hal::SerialMode mode) {
 int open_port(const std::string& device, hal::SerialMode mode) {
   FileDescriptor port(open(device.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
   if (!port.is_open()) {
-    fail(errno == EBUSY ? kInUse : reason() + "; name a serial port that can be read and written");
+    unavailable(errno == EBUSY ? kInUse : reason() + "; name a serial port that can be read and written");
   }
   set_up(port.get(), mode);
   return port.release();

@@ -18,8 +18,9 @@ namespace ex9000::sim {
 class SerialPort final : public Port {
  public:
   /// Opens `device` in `mode` for exclusive use (TIOCEXCL, flock). `echo`: the adapter receives what it
-  /// sends. Throws std::invalid_argument with a one-line message if the device or the settings are not
-  /// available. All messages begin with `place` and `device`.
+  /// sends. Throws std::runtime_error with a one-line message if the device cannot be opened or is in use,
+  /// and std::invalid_argument if it is not a serial port or does not accept the settings. All messages begin
+  /// with `place` and `device`.
   SerialPort(boost::asio::io_context& io, const std::string& place, const std::string& device,
              hal::SerialMode mode, bool echo);
 

@@ -26,8 +26,8 @@ TcpListener::TcpListener(boost::asio::io_context& io, const TcpAddress& address)
     error = listen_at(acceptor_, tcp::endpoint(host, address.port));
   }
   if (error) {
-    fail(text_of(address.host, address.port) + ": " +
-         why_not_listening(error, "name an address and a free port of this machine"));
+    unavailable(text_of(address.host, address.port) + ": " +
+                why_not_listening(error, "name an address and a free port of this machine"));
   }
 }
 

@@ -18,7 +18,7 @@ class TcpListener {
   /// detects clients that have disappeared (SO_KEEPALIVE).
   using Admit = std::function<void(boost::asio::ip::tcp::socket socket)>;
 
-  /// Starts to listen. Throws std::invalid_argument with a one-line message if the address is not available.
+  /// Starts to listen. Throws std::runtime_error with a one-line message if the address is not available.
   TcpListener(boost::asio::io_context& io, const TcpAddress& address);
 
   /// Calls `admit` for each client while the io_context runs. Call this once.

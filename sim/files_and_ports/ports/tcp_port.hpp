@@ -25,7 +25,7 @@ class TcpPort final : public Port {
   using Linger = std::optional<std::chrono::milliseconds>;
   static constexpr std::chrono::milliseconds kUsualLinger{1000};
 
-  /// Starts to listen. Throws std::invalid_argument with a one-line message if the address is not available.
+  /// Starts to listen. Throws std::runtime_error with a one-line message if the address is not available.
   TcpPort(boost::asio::io_context& io, const TcpAddress& address, Linger linger);
   ~TcpPort() override;
 

@@ -27,7 +27,7 @@ constexpr std::size_t kMostClients = 64;    // at the same time
 void remove_stale(boost::asio::io_context& io, const std::string& path, const Claim& claim) {
   const std::string in_use = path + ": another program listens there; end it or name another path";
   if (!claim.held()) {
-    fail(in_use);
+    unavailable(in_use);
   }
   struct stat status {};
   if (lstat(path.c_str(), &status) != 0) {
@@ -47,7 +47,10 @@ void remove_stale(boost::asio::io_context& io, const std::string& path, const Cl
   }
   if (error != boost::asio::error::connection_refused) {
     const bool listens = !error || error == boost::asio::error::no_buffer_space;  // Asio's code for EAGAIN
-    fail(listens ? in_use : path + ": " + error.message() + "; name another path");
+    if (listens) {
+      unavailable(in_use);
+    }
+    fail(path + ": " + error.message() + "; name another path");
   }
   unlink(path.c_str());
 }

@@ -27,9 +27,10 @@ class ControlSocket {
   using CarryOut = std::function<void(const std::string& command, const Answer& answer)>;
 
   /// Starts to listen on `path`; replaces a socket of a process that has ended. Throws std::invalid_argument
-  /// with a one-line message if the path is empty, too long or in use, or cannot be created. If the member
-  /// `quit` of a reply is true, the parameter `quit` is called after the reply has been sent, or after an
-  /// attempt to send the reply has failed.
+  /// with a one-line message if the path is empty or too long, if a file that is not a socket is there, or if
+  /// it cannot be created, and std::runtime_error if another program listens there. If the member `quit` of a
+  /// reply is true, the parameter `quit` is called after the reply has been sent, or after an attempt to send
+  /// the reply has failed.
   ControlSocket(boost::asio::io_context& io, std::string path, CarryOut carry_out,
                 std::function<void()> quit);
   /// Removes the socket file if it still belongs to this object.

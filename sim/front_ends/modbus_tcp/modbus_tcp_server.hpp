@@ -29,7 +29,7 @@ class ModbusTcpServer {
   /// `resume`.
   using Received = std::function<bool(std::size_t size, std::function<void()> process)>;
 
-  /// Starts to listen. Throws std::invalid_argument with a one-line message if the address is not available.
+  /// Starts to listen. Throws std::runtime_error with a one-line message if the address is not available.
   /// `line` must outlive this object. `timeout`: see `ask_on_line`.
   ModbusTcpServer(boost::asio::io_context& io, Line& line, const TcpAddress& address,
                   VirtualTime timeout = kGatewayTimeout);

@@ -9,7 +9,6 @@
 #include <boost/beast/websocket.hpp>
 #include <chrono>
 #include <set>
-#include <stdexcept>
 #include <string_view>
 #include <utility>
 
@@ -17,6 +16,7 @@
 #include "sim/front_ends/panel/loopback.hpp"
 #include "sim/front_ends/panel/page_files.hpp"
 #include "sim/front_ends/panel/panel.hpp"
+#include "sim/text/fail.hpp"
 
 namespace ex9000::sim {
 
@@ -67,8 +67,8 @@ class PanelServer::Listener : public std::enable_shared_from_this<PanelServer::L
       error = listen_at(acceptor_, here(0));
     }
     if (error) {
-      throw std::invalid_argument(std::to_string(port.value_or(kDefaultPort)) + ": " +
-                                  why_not_listening(error, "name another port"));
+      unavailable(std::to_string(port.value_or(kDefaultPort)) + ": " +
+                  why_not_listening(error, "name another port"));
     }
     port_ = acceptor_.local_endpoint().port();
   }

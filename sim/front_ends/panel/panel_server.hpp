@@ -23,7 +23,7 @@ class Panel;
 class PanelServer {
  public:
   /// Listens on `port`. If `port` is nullopt, listens on 9042, or on any free port if 9042 is not available.
-  /// If `port` is 0, listens on any free port. Throws std::invalid_argument with a one-line message if
+  /// If `port` is 0, listens on any free port. Throws std::runtime_error with a one-line message if
   /// listening fails. `models` is the content of /models.json. `io` and `panel` must outlive this object.
   PanelServer(boost::asio::io_context& io, std::optional<std::uint16_t> port, std::string models,
               Panel& panel);

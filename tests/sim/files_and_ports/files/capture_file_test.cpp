@@ -44,6 +44,16 @@ std::string refusal(const std::string& path) {
   return "";
 }
 
+/// Returns the message of an error that may be over at the next start.
+std::string unavailability(const std::string& path) {
+  try {
+    const CaptureFile file(path, kPlace);
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+  return "";
+}
+
 TEST(CaptureFile, EachBlockIsInTheFileWhenAppendReturns) {
   const Directory directory;
   CaptureFile file(directory / "a", kPlace);
@@ -69,7 +79,7 @@ TEST(CaptureFile, AnExistingFileIsNotOverwrittenBeforeTheCaptureBegins) {
 TEST(CaptureFile, IsUsedByOneSimulatorAtATime) {
   const Directory directory;
   std::optional<CaptureFile> first(std::in_place, directory / "a", kPlace);
-  EXPECT_NE(refusal(directory / "a").find("in use by another simulator"), std::string::npos);
+  EXPECT_NE(unavailability(directory / "a").find("in use by another simulator"), std::string::npos);
   first->begin();
   first.reset();
   EXPECT_EQ(refusal(directory / "a"), "");
@@ -113,7 +123,7 @@ TEST(CaptureFile, RemovesABlockThatCouldNotBeWrittenCompletely) {
 TEST(CaptureFile, APipeIsAcceptedIfItHasAReader) {
   const Directory directory;
   ASSERT_EQ(mkfifo((directory / "a").c_str(), 0600), 0);
-  EXPECT_NE(refusal(directory / "a").find("the pipe has no reader; start its reader first"),
+  EXPECT_NE(unavailability(directory / "a").find("the pipe has no reader; start its reader first"),
             std::string::npos);
   const int reader = open((directory / "a").c_str(), O_RDONLY | O_NONBLOCK);
   CaptureFile file(directory / "a", kPlace);

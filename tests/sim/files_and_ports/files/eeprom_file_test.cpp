@@ -58,7 +58,11 @@ std::string refusal(const std::function<void()>& act) {
 }
 
 std::string refusal_of(const std::string& path) {
-  return refusal([&path] { const EepromFile file(path); });
+  try {
+    return refusal([&path] { const EepromFile file(path); });
+  } catch (const std::runtime_error& in_use) {
+    return in_use.what();
+  }
 }
 
 /// Expects a one-line message that begins with the path of the file.
