@@ -69,10 +69,12 @@ def run(arguments: argparse.Namespace, emulator: str, start: Callable[[], Machin
             signal_descriptor = _signal_descriptor()
             terminal = PseudoTerminal()
             if arguments.link:
-                terminal.link(arguments.link)
-                at_the_end.callback(terminal.unlink)
+                terminal.check_link(arguments.link)
             machine = start()
             at_the_end.callback(machine.end)
+            if arguments.link:  # not earlier: a master may send its first request as soon as the link exists
+                terminal.link(arguments.link)
+                at_the_end.callback(terminal.unlink)
             print(terminal.device)
             print(f"{arguments.image.name} runs in {emulator}; press Ctrl-C to end", flush=True)
             _carry_bytes(machine, terminal, signal_descriptor)

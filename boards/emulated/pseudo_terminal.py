@@ -40,6 +40,12 @@ class PseudoTerminal:
         self._written = False  # whether the terminal may contain unread bytes from the module
         self._link: Path | None = None
 
+    def check_link(self, path: Path) -> None:
+        """Raises the Refusal of `link`. Leaves no link, but removes a stale one."""
+        self.link(path)
+        self.unlink()
+        self._link = None
+
     def link(self, path: Path) -> None:
         """Creates a symbolic link to the terminal. Replaces a stale link, which a killed run may have left.
 
