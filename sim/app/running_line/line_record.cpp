@@ -3,6 +3,7 @@
 #include <utility>
 #include <vector>
 
+#include "sim/app/running_line/hints.hpp"
 #include "sim/text/values.hpp"
 
 namespace ex9000::sim {
@@ -68,11 +69,25 @@ void LineRecord::run() {
 }
 
 void LineRecord::listen(FrameWatch::Take take) {
-  frames_.add_receiver(std::move(take));
+  takers_.push_back(std::move(take));
   if (!listens_) {
+    frames_.add_receiver([this](const Frame& frame) { this->take(frame); });
     line_.bus().observe(frames_);
   }
   listens_ = true;
+}
+
+void LineRecord::take(const Frame& frame) {
+  constexpr std::size_t kMostHints = 300;  // there are fewer texts; only addresses vary
+  for (const FrameWatch::Take& taker : takers_) {
+    taker(frame);
+  }
+  if (gives_hints_ && hints_.size() < kMostHints) {
+    const std::string hint = hint_for(frame, line_);
+    if (!hint.empty() && hints_.insert(hint).second) {
+      note(hint);
+    }
+  }
 }
 
 }  // namespace ex9000::sim

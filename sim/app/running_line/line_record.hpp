@@ -2,7 +2,9 @@
 #pragma once
 
 #include <memory>
+#include <set>
 #include <string>
+#include <vector>
 
 #include "sim/app/setup/setup.hpp"
 #include "sim/line_monitor/capture/capture.hpp"
@@ -29,6 +31,9 @@ class LineRecord final : private Station {
   /// Starts to write frames to `capture`, which must outlive this object. `began` is the timestamp of time 0
   /// of the line in the capture, since 1970-01-01 00:00:00 UTC.
   void keep_in(Capture& capture, VirtualTime began);
+  /// From now on, a note follows each recorded frame to which no module replies, if the reason is known: see
+  /// `hint_for`. Each text is noted once.
+  void give_hints() { gives_hints_ = true; }
   /// Starts to call `take` with each frame when the frame has ended, and `note` with each note.
   void tell(FrameWatch::Take take, BusLog::Note note);
   /// Ends the log and the capture at `end` in the line's time. The line may run beyond `end`, because the
@@ -45,12 +50,16 @@ class LineRecord final : private Station {
   void run() override;
 
   void listen(FrameWatch::Take take);
+  void take(const Frame& frame);
 
   Line& line_;
   std::string name_;
   std::unique_ptr<BusLog> log_;
   FrameWatch frames_{[this] { return line_.master().mode(); }};
   BusLog::Note also_note_;
+  std::vector<FrameWatch::Take> takers_;
+  bool gives_hints_ = false;
+  std::set<std::string> hints_;
   bool listens_ = false;
   bool over_ = false;
 };

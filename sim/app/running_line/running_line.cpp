@@ -52,6 +52,7 @@ RunningLine::RunningLine(boost::asio::io_context& io, const LineSetup& setup, st
   introduce();
   open_ports(stepped);
   record_ = std::make_unique<LineRecord>(*line_, log_name(), format, print);
+  record_->give_hints();
   line_->configure_faults(seed, note_);
   with_place(place_of(setup.places, "fault"), [&] { begin_programs(*line_, setup); });
 }
@@ -75,7 +76,7 @@ void RunningLine::open_ports(bool stepped) {
   if (setup_.modbus_tcp) {
     modbus_tcp_ = with_place(place_of(setup_.places, "modbus-tcp"), [&] {
       return std::make_unique<ModbusTcpServer>(io_, *line_, *setup_.modbus_tcp,
-                                               setup_.modbus_timeout.value_or(kGatewayTimeout));
+                                               setup_.modbus_timeout.value_or(kGatewayTimeout), note_);
     });
     introduced_.modbus_tcp = modbus_tcp_->address();
   }

@@ -52,8 +52,8 @@ struct ModbusTcpServer::Client : std::enable_shared_from_this<Client> {
 };
 
 ModbusTcpServer::ModbusTcpServer(boost::asio::io_context& io, Line& line, const TcpAddress& address,
-                                 VirtualTime timeout)
-    : io_(io), line_(line), timeout_(timeout), listener_(io, address) {}
+                                 VirtualTime timeout, Notice notice)
+    : io_(io), line_(line), timeout_(timeout), notice_(std::move(notice)), listener_(io, address) {}
 
 ModbusTcpServer::~ModbusTcpServer() {
   for (const ClientPointer& client : clients_) {
@@ -73,6 +73,9 @@ void ModbusTcpServer::admit(tcp::socket socket) {
     socket.set_option(tcp::socket::send_buffer_size(kMostUnsent), ignored);
     clients_.push_back(std::make_shared<Client>(*this, std::move(socket)));
     read(clients_.back());
+  } else {
+    notice_("the Modbus TCP gateway refuses a client: " + std::to_string(kMostClients) +
+            " clients are connected, which is the maximum");
   }
 }
 
@@ -186,6 +189,12 @@ void ModbusTcpServer::go_on(const ClientPointer& client) {
   if (!sends_no_more) {
     read(client);
   } else if (client->arriving == 0 && client->session.idle() && client->replies.empty()) {
+    if (client->session.broken() && client->socket.is_open()) {
+      notice_(
+          "the Modbus TCP gateway closes a connection: a client has sent a header whose protocol is not 0 or "
+          "whose "
+          "length is not 2 to 254; if it sends Modbus RTU or ASCII over TCP, use --tcp");
+    }
     forget(client);
   }
 }

@@ -29,10 +29,14 @@ class ModbusTcpServer {
   /// `resume`.
   using Received = std::function<bool(std::size_t size, std::function<void()> process)>;
 
+  /// Receives a one-line message when the server refuses a client, or disconnects it because of its bytes.
+  using Notice = std::function<void(const std::string& text)>;
+
   /// Starts to listen. Throws std::runtime_error with a one-line message if the address is not available.
   /// `line` must outlive this object. `timeout`: see `ask_on_line`.
-  ModbusTcpServer(boost::asio::io_context& io, Line& line, const TcpAddress& address,
-                  VirtualTime timeout = kGatewayTimeout);
+  ModbusTcpServer(
+      boost::asio::io_context& io, Line& line, const TcpAddress& address,
+      VirtualTime timeout = kGatewayTimeout, Notice notice = [](const std::string& /*text*/) {});
   ModbusTcpServer(const ModbusTcpServer&) = delete;
   ModbusTcpServer& operator=(const ModbusTcpServer&) = delete;
   ~ModbusTcpServer();
@@ -65,6 +69,7 @@ class ModbusTcpServer {
   boost::asio::io_context& io_;
   Line& line_;
   VirtualTime timeout_;
+  Notice notice_;
   TcpListener listener_;
   Received received_;
   bool paused_ = false;

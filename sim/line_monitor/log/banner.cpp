@@ -1,5 +1,6 @@
 #include "sim/line_monitor/log/banner.hpp"
 
+#include <algorithm>
 #include <array>
 #include <map>
 
@@ -111,6 +112,17 @@ std::string shared_addresses(const std::vector<ModuleSummary>& modules) {
   return text;
 }
 
+/// A gateway without a module that it can reach.
+std::string useless_gateway(const LineSummary& line) {
+  const bool useless = !line.modbus_tcp.empty() &&
+                       std::all_of(line.modules.begin(), line.modules.end(),
+                                   [](const ModuleSummary& module) { return module.speaks_ascii; });
+  return useless ? "all modules speak ASCII, so each request over Modbus TCP gets exception 0A; use --tcp "
+                   "for ASCII, "
+                   "or -M models with the protocol modbus\n"
+                 : "";
+}
+
 std::string introduction(const LineSummary& line) {
   std::string text = (line.name.empty() ? "line" : line.name) + " at " +
                      mode_text(line.mode.baud, line.mode.format) +
@@ -122,7 +134,7 @@ std::string introduction(const LineSummary& line) {
             (module.remark.empty() ? "" : "; " + module.remark) + "\n";
     text += commands(line, module);
   }
-  return text + shared_addresses(line.modules);
+  return text + shared_addresses(line.modules) + useless_gateway(line);
 }
 
 }  // namespace

@@ -53,6 +53,14 @@ TEST(ModbusTcpProgram, TheGreetingNamesThePortAndACommandThatReadsAModule) {
       << simulator.output();
 }
 
+TEST(ModbusTcpProgram, TheGreetingWarnsIfTheGatewayReachesNoModule) {
+  const std::string warning = "all modules speak ASCII, so each request over Modbus TCP gets exception 0A";
+  SimulatorProcess useless({"EX9042D@01", "EX9042D-M@02,protocol=ascii", "--modbus-tcp", "0"});
+  EXPECT_NE(useless.output().find(warning), std::string::npos) << useless.output();
+  SimulatorProcess useful({"EX9042D@01", "EX9042D-M@02", "--modbus-tcp", "0"});
+  EXPECT_EQ(useful.output().find(warning), std::string::npos) << useful.output();
+}
+
 TEST(ModbusTcpProgram, InSteppedTimeAQuietAdvanceEndsAfterTheRepliesToTheArrivedRequests) {
   SimulatorProcess simulator({"EX9042D-M@01", "--modbus-tcp", "0", "--speed", "step", "--control", "ctl"});
   ControlClient control(simulator.directory() + "/ctl");

@@ -93,7 +93,10 @@ class ModbusTcpServerTest : public testing::Test {
   std::size_t arrived_ = 0;
   bool full_ = false;
   std::vector<std::function<void()>> arrivals_;
-  ModbusTcpServer server_{io_, line_, {"127.0.0.1", 0}};
+  std::vector<std::string> notes_;
+  ModbusTcpServer server_{io_, line_, {"127.0.0.1", 0}, kGatewayTimeout, [this](const std::string& text) {
+                            notes_.push_back(text);
+                          }};
 };
 
 TEST_F(ModbusTcpServerTest, RepliesHaveTheTransactionOfTheirRequests) {
@@ -129,6 +132,9 @@ TEST_F(ModbusTcpServerTest, AWrongHeaderEndsTheConnectionAfterTheRepliesToEarlie
   pass();
   EXPECT_EQ(receive(client, 11), reply(1));
   EXPECT_TRUE(closed(client));
+  ASSERT_EQ(notes_.size(), 1U);
+  EXPECT_EQ(notes_[0].rfind("the Modbus TCP gateway closes a connection: a client has sent a header ", 0), 0U)
+      << notes_[0];
 }
 
 TEST_F(ModbusTcpServerTest, LengthsOutOfRangeEndTheConnection) {
@@ -187,6 +193,9 @@ TEST_F(ModbusTcpServerTest, AClientBeyondTheLimitIsDisconnected) {
     next.read_some(boost::asio::buffer(&byte, 1), error);
   } while (error == boost::asio::error::would_block);
   EXPECT_TRUE(error == boost::asio::error::eof || error == boost::asio::error::connection_reset) << error;
+  EXPECT_EQ(notes_,
+            std::vector<std::string>{"the Modbus TCP gateway refuses a client: 64 clients are connected, "
+                                     "which is the maximum"});
   send(clients.back(), request(1));
   wait_for_arrival(12);
   pass();
