@@ -1,6 +1,7 @@
 #include "sim/virtual_line/bus_faults/faults.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <stdexcept>
 #include <utility>
 
@@ -82,18 +83,23 @@ void Faults::prepare(Trouble trouble) {
 }
 
 bool Faults::remove(std::size_t number) {
-  const auto found =
-      std::find_if(armed_.begin(), armed_.end(), [=](const Armed& armed) { return armed.number == number; });
-  if (found == armed_.end()) {
+  const auto is_it = [number](const auto& fault) { return fault.number == number; };
+  const auto found = std::find_if(armed_.begin(), armed_.end(), is_it);
+  const auto ended = std::find_if(ended_.begin(), ended_.end(), is_it);
+  if (found != armed_.end()) {
+    armed_.erase(found);
+  } else if (ended != ended_.end()) {
+    ended_.erase(ended);
+  } else {
     return false;
   }
-  armed_.erase(found);
   end_effects(number);
   return true;
 }
 
 void Faults::remove_all() {
   armed_.clear();
+  ended_.clear();
   end_effects(std::nullopt);
 }
 
@@ -107,11 +113,10 @@ void Faults::end_effects(std::optional<std::size_t> removed) {
 }
 
 std::vector<Faults::Info> Faults::list() const {
-  std::vector<Info> all;
-  for (const Armed& armed : armed_) {
-    all.push_back(
-        {armed.number, armed.fault.text, armed.fault.module, armed.in_progress(), armed.occurrences_so_far});
-  }
+  std::vector<Info> all(ended_.begin(), ended_.end());
+  std::transform(armed_.begin(), armed_.end(), std::back_inserter(all),
+                 [](const Armed& armed) { return armed.info(); });
+  std::sort(all.begin(), all.end(), [](const Info& a, const Info& b) { return a.number < b.number; });
   return all;
 }
 
@@ -150,7 +155,21 @@ void Faults::run() {
     changed_ = false;
     take_effect();
   }
+  put_ended_aside();
   end_.run_at(next());
+}
+
+/// Moves the faults that have ended to `ended_`, so that they do not slow the search for active faults.
+void Faults::put_ended_aside() {
+  const auto ended = std::stable_partition(armed_.begin(), armed_.end(),
+                                           [](const Armed& armed) { return !armed.has_ended(); });
+  for (auto each = ended; each != armed_.end(); ++each) {
+    ended_.push_back(each->info());
+    if (ended_.size() > kMostEnded) {
+      ended_.pop_front();
+    }
+  }
+  armed_.erase(ended, armed_.end());
 }
 
 /// Schedules an update of the effects at the present time. If a module is in the middle of an action, the
@@ -211,6 +230,11 @@ std::size_t Faults::Armed::in_progress() const {
   return static_cast<std::size_t>(
       std::count_if(occurrences.begin(), occurrences.end(),
                     [](const Occurrence& occurrence) { return !occurrence.waits; }));
+}
+
+bool Faults::Armed::has_ended() const {
+  const bool awaits_writes = fault.schedule.when == When::AfterWrites && counted < fault.schedule.count;
+  return occurrences.empty() && begins == kNever && !fault.schedule.of_replies() && !awaits_writes;
 }
 
 bool Faults::Armed::occurs_at(std::size_t module) const {

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -54,6 +55,10 @@ class Faults final : public Station {
     std::size_t in_progress;
     std::uint64_t occurrences_so_far;
   };
+  /// The number of faults that `list` keeps after they have ended by themselves.
+  static constexpr std::size_t kMostEnded = 100;
+  /// Returns the faults in the order of their numbers, with the last kMostEnded faults that have ended by
+  /// themselves.
   [[nodiscard]] std::vector<Info> list() const;
 
   /// Returns whether an echo or a foreign station has bytes to send, or an effect has not been applied yet.
@@ -87,6 +92,11 @@ class Faults final : public Station {
     /// Returns the number of occurrences in progress. Does not count occurrences that wait for their reply.
     [[nodiscard]] std::size_t in_progress() const;
     [[nodiscard]] bool occurs_at(std::size_t module) const;
+    /// Returns whether the fault is not in progress and will never occur again.
+    [[nodiscard]] bool has_ended() const;
+    [[nodiscard]] Info info() const {
+      return {number, fault.text, fault.module, in_progress(), occurrences_so_far};
+    }
   };
 
   [[nodiscard]] VirtualTime next() const;
@@ -99,6 +109,7 @@ class Faults final : public Station {
   void end_effects(std::optional<std::size_t> removed);
   template <class Over>
   void end_occurrences(Armed& armed, Over over);
+  void put_ended_aside();
   void say(const Armed& armed, const std::string& what) const;
   void take_effect();
   void prepare(Trouble trouble);
@@ -117,6 +128,7 @@ class Faults final : public Station {
   Notice notice_;
   Chance chance_;
   std::vector<Armed> armed_;
+  std::deque<Info> ended_;  ///< faults that have ended by themselves; only `list` and `remove` use them
   std::size_t numbers_ = 0;
   bool changed_ = false;  ///< the next call of `run` must update the effects
   std::vector<std::size_t> hanging_;

@@ -45,6 +45,28 @@ TEST(FaultsList, FaultNumbersAreNeverReused) {
   EXPECT_EQ(bench.add("lost-reply"), 4U);
 }
 
+TEST(FaultsList, KeepsTheLastFaultsThatHaveEndedByThemselves) {
+  FaultBench bench;
+  const std::size_t stays = bench.add("lost-reply at 1h");
+  for (int i = 0; i < 200; ++i) {
+    bench.add("foreign-traffic 41 at 1s");
+    bench.add("gone at 1s for 10ms");
+  }
+  bench.run_until(2s);
+  const std::vector<Faults::Info> infos = bench.faults().list();
+  ASSERT_EQ(infos.size(), 1 + Faults::kMostEnded);
+  EXPECT_EQ(infos[0].number, stays);
+  EXPECT_EQ(infos[0].occurrences_so_far, 0U);
+  for (std::size_t i = 1; i < infos.size(); ++i) {
+    EXPECT_EQ(infos[i].in_progress, 0U);
+    EXPECT_EQ(infos[i].occurrences_so_far, 1U);
+    EXPECT_LT(infos[i - 1].number, infos[i].number);
+  }
+  EXPECT_TRUE(bench.faults().remove(infos[1].number));
+  EXPECT_EQ(bench.faults().list().size(), Faults::kMostEnded);
+  EXPECT_EQ(bench.ask("$01M"), kName);
+}
+
 TEST(FaultsList, ReportsTheOccurrencesInProgressAndAllOccurrencesSoFar) {
   FaultBench bench(two());
   bench.add("gone at 1s for 1s", 2);
