@@ -44,6 +44,15 @@ void Terminal::set_baud(std::uint32_t baud) {
   }
 }
 
+bool Terminal::set_even_parity(std::uint32_t baud) {
+  termios settings{};
+  tcgetattr(fd_, &settings);
+  cfmakeraw(&settings);
+  cfsetspeed(&settings, sim::termios_speed(baud).value());
+  settings.c_cflag |= CLOCAL | CREAD | PARENB;
+  return tcsetattr(fd_, TCSANOW, &settings) == 0;
+}
+
 void Terminal::set_any_rate(std::uint32_t baud) {
   if (!system::set_any_rate(fd_, baud)) {
     fail("TCSETS2");

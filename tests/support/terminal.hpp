@@ -18,6 +18,9 @@ class Terminal {
   Terminal& operator=(const Terminal&) = delete;
 
   void set_baud(std::uint32_t baud);
+  /// Sets the rate and even parity, and CLOCAL as pyserial and libmodbus do. Returns false if that fails. A
+  /// pseudo-terminal drops the parity.
+  bool set_even_parity(std::uint32_t baud);
   /// Sets any rate; see system::set_any_rate. Throws std::runtime_error if that fails.
   void set_any_rate(std::uint32_t baud);
   /// Writes all bytes with one system call. Throws std::runtime_error if that fails.

@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <poll.h>
+#include <sys/ioctl.h>
 #include <termios.h>
 #include <unistd.h>
 
@@ -98,10 +99,19 @@ bool Pty::visited() const {
 }
 
 void Pty::take_visit() {
-  if (unread_ && !visited()) {
+  if (visited()) {
+    return;
+  }
+  if (unread_) {
     unread_ = false;
     Slave(device_).forget_unread();
   }
+  // tcsetattr() fails with EINVAL if nothing of a request takes effect. A pseudo-terminal drops parity, so a
+  // second program that asks for the settings of the first and for parity would fail. CLOCAL has no effect on
+  // a pseudo-terminal, and nearly all programs set it. Unlike tcsetattr(), this call changes nothing else,
+  // even if a master opens the slave at this moment.
+  const int off = 0;
+  ioctl(master_fd(), TIOCSSOFTCAR, &off);
 }
 
 std::size_t Pty::write(const std::vector<std::uint8_t>& bytes) {

@@ -45,6 +45,22 @@ TEST(Dcon, TheNextMasterDoesNotReceiveAnUnreadReply) {
   EXPECT_EQ(terminal.read_line(), "!05400600\r");
 }
 
+// glibc reports EINVAL if nothing of a request takes effect.
+TEST(Dcon, EachMasterCanAskForParityOnceAlthoughThePseudoTerminalDropsIt) {
+  SimulatorProcess simulator({"EX9042D@05", "--control", "control"});
+  ControlClient control(simulator.directory() + "/control");
+  for (int visit = 0; visit < 3; ++visit) {
+    {
+      Terminal terminal(simulator.tty(), 9600);
+      EXPECT_TRUE(terminal.set_even_parity(9600)) << visit;
+      terminal.type("$05M\r");
+      EXPECT_EQ(terminal.read_line(), "!059042D\r");
+    }
+    control.ok("list");  // see TheNextMasterDoesNotReceiveAnUnreadReply
+    control.ok("list");
+  }
+}
+
 TEST(Dcon, AMasterThatDisconnectsDoesNotDisconnectAnotherMaster) {
   SimulatorProcess simulator({"EX9042D@05"});
   for (int round = 0; round < 5; ++round) {
