@@ -1,6 +1,9 @@
 // Helpers for servers that listen on this machine.
 #pragma once
 
+#include <netinet/tcp.h>
+#include <sys/socket.h>
+
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <chrono>
@@ -45,11 +48,28 @@ void keep_accepting(Acceptor& acceptor, boost::asio::steady_timer& next_try, Adm
   });
 }
 
-/// Returns a text for the error, with advice for the user. The advice is `mend`, unless the port is in use.
+/// Makes the kernel probe the client, so that a client that has disappeared without a word frees its place:
+/// after 30 s without a byte, every 10 s, until three probes have no answer. By default the kernel waits two
+/// hours.
+inline void keep_alive(boost::asio::ip::tcp::socket& socket) {
+  const auto set = [&socket](int level, int name, int value) {
+    setsockopt(socket.native_handle(), level, name, &value, sizeof value);
+  };
+  set(SOL_SOCKET, SO_KEEPALIVE, 1);
+  set(IPPROTO_TCP, TCP_KEEPIDLE, 30);
+  set(IPPROTO_TCP, TCP_KEEPINTVL, 10);
+  set(IPPROTO_TCP, TCP_KEEPCNT, 3);
+}
+
+/// Returns a text for the error, with advice for the user. The advice is `mend`, unless the port is in use,
+/// or the process or the system has no free file descriptor.
 inline std::string why_not_listening(const boost::system::error_code& error, const std::string& mend) {
-  return error == boost::asio::error::address_in_use
-             ? "the port is in use; name another port, or end the program that uses it"
-             : error.message() + "; " + mend;
+  if (error == boost::system::errc::address_in_use) {
+    return "the port is in use; name another port, or end the program that uses it";
+  }
+  const bool no_files = error == boost::system::errc::too_many_files_open ||
+                        error == boost::system::errc::too_many_files_open_in_system;
+  return error.message() + "; " + (no_files ? "raise the limit with 'ulimit -n', or use fewer lines" : mend);
 }
 
 }  // namespace ex9000::sim

@@ -35,7 +35,7 @@ void TcpListener::start(Admit admit) {
   admit_ = [admit = std::move(admit)](tcp::socket socket) {
     boost::system::error_code ignored;
     socket.set_option(tcp::no_delay(true), ignored);
-    socket.set_option(tcp::socket::keep_alive(true), ignored);
+    keep_alive(socket);
     socket.non_blocking(true, ignored);
     admit(std::move(socket));
   };
