@@ -83,7 +83,13 @@ double parse_probability(const std::string& text) {
 }
 
 LineFormat parse_line_format(const std::string& text) {
-  const auto* const found = std::find(kLineFormats.begin(), kLineFormats.end(), text);
+  std::string upper = text;
+  for (char& character : upper) {
+    character = character == 'n' || character == 'e' || character == 'o'
+                    ? static_cast<char>(character - 'a' + 'A')
+                    : character;
+  }
+  const auto* const found = std::find(kLineFormats.begin(), kLineFormats.end(), upper);
   if (found == kLineFormats.end()) {
     expect(text, "a line format: 8N1, 8N2, 8E1 or 8O1");
   }

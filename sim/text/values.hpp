@@ -26,7 +26,7 @@ std::uint64_t parse_whole_number(const std::string& text, std::uint64_t least, s
 std::optional<double> decimal_number(const std::string& text, double least, double most);
 /// Parses a number above 0 and up to 1.
 double parse_probability(const std::string& text);
-/// Parses 8N1, 8N2, 8E1 or 8O1.
+/// Parses 8N1, 8N2, 8E1 or 8O1, in upper or lower case.
 LineFormat parse_line_format(const std::string& text);
 /// Returns the name that `parse_line_format` reads.
 std::string line_format_text(LineFormat format);

@@ -19,7 +19,7 @@ constexpr std::string_view kTexts = R"({"type": "array", "items": {"type": "stri
 constexpr std::string_view kRate =
     R"({"enum": [1200, 2400, 4800, 9600, 19200, 38400, 57600, 115200,
                  "1200", "2400", "4800", "9600", "19200", "38400", "57600", "115200"]})";
-constexpr std::string_view kFormat = R"({"enum": ["8N1", "8N2", "8E1", "8O1"]})";
+constexpr std::string_view kFormat = R"({"enum": ["8N1", "8N2", "8E1", "8O1", "8n1", "8n2", "8e1", "8o1"]})";
 constexpr std::string_view kPort =
     R"({"anyOf": [{"type": "integer", "minimum": 0, "maximum": 65535}, {"type": "string", "minLength": 1}]})";
 constexpr std::string_view kNumber =

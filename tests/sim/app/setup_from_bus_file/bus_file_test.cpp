@@ -145,6 +145,7 @@ TEST(BusFile, ALineAcceptsOptionsOfTheCommandLineAsKeys) {
   EXPECT_FALSE(line_of("\"pty\": \"a\", \"line\": \"paced\"").instant);
   EXPECT_TRUE(line_of("\"pty\": \"a\", \"line\": \"instant\"").instant);
   EXPECT_TRUE(line_of("\"pty\": \"a\", \"strict-gaps\": true").strict_gaps);
+  EXPECT_EQ(line_of("\"pty\": \"a\", \"format\": \"8o1\"").format, LineFormat::k8O1);
   EXPECT_EQ(line_of("\"modbus-tcp\": 0, \"modbus-timeout\": \"1s\"").modbus_timeout, std::chrono::seconds(1));
 }
 
