@@ -185,6 +185,30 @@ std::vector<std::string> with_optional_values(int argc, const char* const* argv)
   return words;
 }
 
+[[noreturn]] void refuse_missing_value(const std::string& option, const std::string& value,
+                                       const std::string& next) {
+  fail(option + ": the value is missing before " + next.substr(0, next.find('=')) + "; expected " + option +
+       " " + value);
+}
+
+/// Rejects an option without its value if the next word is an option too, because CLI11 would take that word
+/// as the value. `--NAME=VALUE` permits any value. Throws std::invalid_argument with a one-line message.
+void reject_missing_values(const CLI::App& app, const std::vector<std::string>& words) {
+  std::vector<const CLI::App*> apps =
+      app.get_subcommands([](const CLI::App* /*subcommand*/) { return true; });
+  apps.insert(apps.begin(), &app);
+  for (std::size_t i = 0; i + 1 < words.size(); ++i) {
+    const std::string& word = words[i];
+    const std::string& next = words[i + 1];
+    for (const CLI::App* each : apps) {
+      const CLI::Option* option = word.rfind("--", 0) == 0 ? each->get_option_no_throw(word) : nullptr;
+      if (option != nullptr && option->get_items_expected_min() > 0 && next.rfind("--", 0) == 0) {
+        refuse_missing_value(word, option->get_type_name(), next);
+      }
+    }
+  }
+}
+
 struct PlayTexts {
   std::string file;
   Texts bus;  ///< without the texts about writing
@@ -386,6 +410,7 @@ Parsed parse_arguments(int argc, const char* const* argv) {
   app.set_version_flag("--version", "ex9000-sim " + std::string(kFirmwareVersion));
   try {
     std::vector<std::string> words = with_optional_values(argc, argv);
+    reject_missing_values(app, words);
     std::reverse(words.begin(), words.end());  // CLI11 expects the last word first
     app.parse(words);
   } catch (const CLI::CallForHelp&) {
@@ -394,6 +419,8 @@ Parsed parse_arguments(int argc, const char* const* argv) {
     return printed(std::string(version.what()) + "\n");
   } catch (const CLI::ParseError& error) {
     return wrong(std::string(error.what()) + "; see --help");
+  } catch (const std::invalid_argument& error) {
+    return wrong(error.what());
   }
   try {
     if (models) {

@@ -193,6 +193,16 @@ TEST(Arguments, ASerialLineCannotBeCombinedWithAnotherPort) {
 
 TEST(Arguments, EchoRequiresASerialLineAndASerialLineCannotBeInstant) {
   EXPECT_FALSE(accepted({"EX9042D", "--serial", "/dev/ttyUSB0"}).echo);
+  expect_error({"EX9042D", "--tcp", "--for", "0.2s"},
+               "--tcp: ", "the value is missing before --for; expected --tcp [HOST:]PORT");
+  expect_error({"EX9042D", "--pty", "--log"},
+               "--pty: ", "the value is missing before --log; expected --pty LINK");
+  expect_error({"EX9042D", "--control", "--panel", "0"},
+               "--control: ", "the value is missing before --panel");
+  expect_error({"describe", "EX9042D", "--format", "--tcp", "0"},
+               "--format: ", "the value is missing before --tcp");
+  EXPECT_EQ(accepted({"EX9042D", "--pty=--odd"}).pty, "--odd");
+  EXPECT_EQ(accepted({"EX9042D", "--format", "8e1"}).format, LineFormat::k8E1);
   EXPECT_EQ(accepted({"EX9042D-M", "--modbus-tcp", "0", "--modbus-timeout", "1s"}).modbus_timeout,
             std::chrono::seconds(1));
   expect_error({"EX9042D-M", "--modbus-timeout", "1s"}, "--modbus-timeout: ",
