@@ -339,6 +339,9 @@ Parsed parse_arguments(int argc, const char* const* argv) {
                  std::string("create a pseudo-terminal, and a link to it at this path (default: ") +
                      kDefaultPty + " if none of --tcp, --modbus-tcp, --serial and --speed max is given)")
       ->type_name("LINK");
+  app.add_option("--pty-access", texts.line.pty_access,
+                 "set the mode and the group of the pseudo-terminal, for example 660:dialout")
+      ->type_name("MODE[:GROUP]");
   app.add_option("--tcp", texts.line.tcp, "serve the line's bytes over TCP (default HOST: 127.0.0.1)")
       ->type_name("[HOST:]PORT");
   app.add_option("--modbus-tcp", texts.line.modbus_tcp,

@@ -71,6 +71,7 @@ LineSetup line_of(const LineTexts& texts) {
   take_option("--baud", texts.baud, parse_baud_rate, line.baud);
   take_option("--format", texts.format, parse_line_format, line.format);
   take_option("--line", texts.kind, parse_line_kind, line.instant);
+  take_option("--pty-access", texts.pty_access, parse_pty_access, line.pty_access);
   take_option("--tcp", texts.tcp, parse_listening_address, line.tcp);
   take_option("--modbus-tcp", texts.modbus_tcp, parse_listening_address, line.modbus_tcp);
   take_option("--modbus-timeout", texts.modbus_timeout, parse_time, line.modbus_timeout);
@@ -81,6 +82,7 @@ void reject_line_options(const std::string& bus_file, const LineTexts& texts) {
   const std::pair<const char*, bool> given[] = {{"--input", !texts.inputs.empty()},
                                                 {"--fault", !texts.faults.empty()},
                                                 {"--pty", texts.pty.has_value()},
+                                                {"--pty-access", texts.pty_access.has_value()},
                                                 {"--tcp", texts.tcp.has_value()},
                                                 {"--modbus-tcp", texts.modbus_tcp.has_value()},
                                                 {"--modbus-timeout", texts.modbus_timeout.has_value()},

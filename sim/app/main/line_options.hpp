@@ -15,6 +15,7 @@ struct LineTexts {
   std::vector<std::string> inputs;
   std::vector<std::string> faults;
   std::optional<std::string> pty;
+  std::optional<std::string> pty_access;
   std::optional<std::string> tcp;
   std::optional<std::string> modbus_tcp;
   std::optional<std::string> modbus_timeout;

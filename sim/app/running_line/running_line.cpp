@@ -60,8 +60,9 @@ RunningLine::RunningLine(boost::asio::io_context& io, const LineSetup& setup, st
 void RunningLine::open_ports(bool stepped) {
   const SerialMode mode = line_->master().mode();
   if (setup_.pty) {
-    auto port = with_place(place_of(setup_.places, "pty"),
-                           [&] { return std::make_unique<PtyPort>(io_, *setup_.pty, mode.baud); });
+    auto port = with_place(place_of(setup_.places, "pty"), [&] {
+      return std::make_unique<PtyPort>(io_, *setup_.pty, mode.baud, setup_.pty_access);
+    });
     introduced_.pty = port->pty().link();
     introduced_.pty_device = port->pty().device();
     ports_.push_back(std::move(port));

@@ -41,6 +41,9 @@ void check(const LineSetup& line, std::size_t position) {
   if (line.echo && !line.serial) {
     wrong("echo", "requires {serial}; add {serial}, or leave out {echo}");
   }
+  if (line.pty_access && !line.pty) {
+    wrong("pty-access", "requires {pty}; add {pty}, or leave out {pty-access}");
+  }
   if (line.modbus_timeout && !line.modbus_tcp) {
     wrong("modbus-timeout", "requires {modbus-tcp}; add {modbus-tcp}, or leave out {modbus-timeout}");
   }

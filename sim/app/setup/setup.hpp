@@ -12,6 +12,7 @@
 
 #include "firmware/model/line_format.hpp"
 
+#include "sim/files_and_ports/ports/pty_access.hpp"
 #include "sim/files_and_ports/ports/tcp_address.hpp"
 #include "sim/virtual_line/bus_faults/fault.hpp"
 #include "sim/virtual_line/line/module_spec.hpp"
@@ -30,6 +31,7 @@ struct LineSetup {
   std::string name;                           ///< empty if the command line describes the line
   std::vector<ModuleSpec> modules;            ///< at least one
   std::optional<std::string> pty;             ///< path of the link to a pseudo-terminal
+  std::optional<PtyAccess> pty_access;        ///< nullopt: as the system creates it
   std::optional<TcpAddress> tcp;              ///< address on which the TCP port listens
   std::optional<TcpAddress> modbus_tcp;       ///< address on which the Modbus TCP gateway listens
   std::optional<VirtualTime> modbus_timeout;  ///< of the gateway; nullopt: kGatewayTimeout

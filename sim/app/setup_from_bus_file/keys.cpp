@@ -106,12 +106,16 @@ const std::array<BusFileKey<Setup>, 7> bus_keys{{
      [](Setup& setup, const Node& value) { setup.seed = parse_seed(value.number_or_text()); }},
 }};
 
-const std::array<BusFileKey<LineSetup>, 13> line_keys{{
+const std::array<BusFileKey<LineSetup>, 14> line_keys{{
     {"name", kText, "the line's name, one word (default: line1, line2, ...)",
      [](LineSetup& line, const Node& value) { line.name = value.text(); }},
     {"pty", kPath,
      "creates a pseudo-terminal and links it at this path (default: NAME.tty if the line has no other port)",
      [](LineSetup& line, const Node& value) { line.pty = value.text(); }},
+    {"pty-access", kText,
+     "mode and group of the pseudo-terminal: MODE[:GROUP], for example 660:dialout (default: as the system "
+     "creates it)",
+     [](LineSetup& line, const Node& value) { line.pty_access = parse_pty_access(value.text()); }},
     {"tcp", kPort, "serves the line's bytes at HOST:PORT, or at a port of 127.0.0.1",
      [](LineSetup& line, const Node& value) { line.tcp = parse_listening_address(value.number_or_text()); }},
     {"modbus-tcp", kPort,

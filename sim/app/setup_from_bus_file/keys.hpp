@@ -26,7 +26,7 @@ struct ModuleObject {
 };
 
 extern const std::array<BusFileKey<Setup>, 7> bus_keys;
-extern const std::array<BusFileKey<LineSetup>, 13> line_keys;
+extern const std::array<BusFileKey<LineSetup>, 14> line_keys;
 extern const std::array<BusFileKey<ModuleObject>, 12> module_keys;
 
 /// Reads all keys of the bus file whose root is `root`. Throws the exceptions of Node.

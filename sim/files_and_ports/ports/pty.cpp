@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <poll.h>
 #include <sys/ioctl.h>
+#include <sys/stat.h>
 #include <termios.h>
 #include <unistd.h>
 
@@ -70,7 +71,8 @@ class Slave {
 
 }  // namespace
 
-Pty::Pty(std::string link, std::uint32_t baud) : link_(std::move(link)), claim_(link_) {
+Pty::Pty(std::string link, std::uint32_t baud, const std::optional<PtyAccess>& access)
+    : link_(std::move(link)), claim_(link_) {
   remove_stale(link_, claim_);
   master_ = FileDescriptor(posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC | O_NONBLOCK));
   std::array<char, 64> name{};
@@ -81,6 +83,13 @@ Pty::Pty(std::string link, std::uint32_t baud) : link_(std::move(link)), claim_(
   device_ = name.data();
   if (!Slave(device_).set_up(baud)) {
     throw std::runtime_error(link_ + ": cannot set up " + device_ + ": " + reason());
+  }
+  if (access && access->group && chown(device_.c_str(), geteuid(), *access->group) != 0) {
+    fail(link_ + ": the group " + std::to_string(*access->group) + " is refused: " + reason() +
+         "; name a group of the user that runs the simulator");
+  }
+  if (access && chmod(device_.c_str(), access->mode) != 0) {
+    throw std::runtime_error(link_ + ": cannot set the mode of " + device_ + ": " + reason());
   }
   if (symlink(device_.c_str(), link_.c_str()) != 0) {
     throw std::invalid_argument(link_ + ": " + reason() + "; name a path that can be written");

@@ -8,6 +8,7 @@
 
 #include "sim/files_and_ports/files/file_descriptor.hpp"
 #include "sim/files_and_ports/ports/claim.hpp"
+#include "sim/files_and_ports/ports/pty_access.hpp"
 #include "sim/files_and_ports/ports/terminal_rate.hpp"
 
 namespace ex9000::sim {
@@ -20,8 +21,10 @@ class Pty {
   /// `link`. If no other simulator uses this path, replaces an existing link to a pseudo-terminal. Throws
   /// std::invalid_argument with a one-line message if anything else exists at the path, or if the link cannot
   /// be created. Throws std::runtime_error if another simulator uses the path, or if the system cannot create
-  /// or set up a pseudo-terminal. After an exception, neither a new link nor a new pseudo-terminal remains.
-  Pty(std::string link, std::uint32_t baud);
+  /// or set up a pseudo-terminal. If `access` has a value, sets the mode and the group of the slave; throws
+  /// std::invalid_argument if the user may not use that group. After an exception, neither a new link nor a
+  /// new pseudo-terminal remains.
+  Pty(std::string link, std::uint32_t baud, const std::optional<PtyAccess>& access = std::nullopt);
   /// Removes the link if it still leads to this object's slave.
   ~Pty();
   Pty(const Pty&) = delete;

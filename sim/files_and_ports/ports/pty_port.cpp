@@ -9,8 +9,9 @@
 
 namespace ex9000::sim {
 
-PtyPort::PtyPort(boost::asio::io_context& io, const std::string& link, std::uint32_t baud)
-    : pty_(link, baud),
+PtyPort::PtyPort(boost::asio::io_context& io, const std::string& link, std::uint32_t baud,
+                 const std::optional<PtyAccess>& access)
+    : pty_(link, baud, access),
       visits_(boost::asio::use_service<Visits>(io)),
       watch_(watch()),
       descriptor_(io, pty_.master_fd()) {}

@@ -18,7 +18,8 @@ namespace ex9000::sim {
 class PtyPort final : public Port {
  public:
   /// See Pty::Pty. Also throws std::runtime_error if the system cannot watch the pseudo-terminal.
-  PtyPort(boost::asio::io_context& io, const std::string& link, std::uint32_t baud);
+  PtyPort(boost::asio::io_context& io, const std::string& link, std::uint32_t baud,
+          const std::optional<PtyAccess>& access = std::nullopt);
   ~PtyPort() override;
 
   void start(Received received) override;

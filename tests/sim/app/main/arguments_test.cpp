@@ -193,16 +193,6 @@ TEST(Arguments, ASerialLineCannotBeCombinedWithAnotherPort) {
 
 TEST(Arguments, EchoRequiresASerialLineAndASerialLineCannotBeInstant) {
   EXPECT_FALSE(accepted({"EX9042D", "--serial", "/dev/ttyUSB0"}).echo);
-  expect_error({"EX9042D", "--tcp", "--for", "0.2s"},
-               "--tcp: ", "the value is missing before --for; expected --tcp [HOST:]PORT");
-  expect_error({"EX9042D", "--pty", "--log"},
-               "--pty: ", "the value is missing before --log; expected --pty LINK");
-  expect_error({"EX9042D", "--control", "--panel", "0"},
-               "--control: ", "the value is missing before --panel");
-  expect_error({"describe", "EX9042D", "--format", "--tcp", "0"},
-               "--format: ", "the value is missing before --tcp");
-  EXPECT_EQ(accepted({"EX9042D", "--pty=--odd"}).pty, "--odd");
-  EXPECT_EQ(accepted({"EX9042D", "--format", "8e1"}).format, LineFormat::k8E1);
   EXPECT_EQ(accepted({"EX9042D-M", "--modbus-tcp", "0", "--modbus-timeout", "1s"}).modbus_timeout,
             std::chrono::seconds(1));
   expect_error({"EX9042D-M", "--modbus-timeout", "1s"}, "--modbus-timeout: ",
@@ -384,6 +374,37 @@ TEST(Arguments, SteppedTimeRequiresTheControlSocketAndCannotBeCombinedWithPanelO
                "cannot be combined with --panel");
   expect_error({"EX9042D", "--speed", "step", "--control", "c", "--serial", "/dev/ttyUSB0"},
                "--speed: ", "cannot be combined with --serial");
+}
+
+TEST(Arguments, TheAccessOfAPseudoTerminalIsAModeAndAGroup) {
+  EXPECT_EQ(accepted({"EX9042D", "--pty-access", "660:root"}).pty_access->mode, 0660U);
+  EXPECT_EQ(accepted({"EX9042D", "--pty-access", "660:root"}).pty_access->group, 0U);
+  EXPECT_FALSE(accepted({"EX9042D", "--pty-access", "622"}).pty_access->group);
+  EXPECT_EQ(accepted({"EX9042D", "--pty-access", "600:4711"}).pty_access->group, 4711U);
+  for (const char* wrong : {"66", "6600", "060", "0660", "460", "670", "888", ":root", "rw"}) {
+    expect_error({"EX9042D", "--pty-access", wrong}, "--pty-access: ", "expected MODE[:GROUP]");
+  }
+  expect_error({"EX9042D", "--pty-access", "660:no-such-group"},
+               "--pty-access: ", "no group 'no-such-group'");
+  expect_error({"EX9042D", "--pty-access", "660:"}, "--pty-access: ", "no group ''");
+  expect_error({"EX9042D", "--pty-access", "660", "--tcp", "0"},
+               "--pty-access: ", "requires --pty; add --pty");
+}
+
+TEST(Arguments, AnOptionBeforeAnotherOptionRequiresItsValue) {
+  expect_error({"EX9042D", "--tcp", "--for", "0.2s"},
+               "--tcp: ", "the value is missing before --for; expected --tcp [HOST:]PORT");
+  expect_error({"EX9042D", "--pty", "--log"},
+               "--pty: ", "the value is missing before --log; expected --pty LINK");
+  expect_error({"EX9042D", "--control", "--panel", "0"},
+               "--control: ", "the value is missing before --panel");
+  expect_error({"describe", "EX9042D", "--format", "--tcp", "0"},
+               "--format: ", "the value is missing before --tcp");
+  EXPECT_EQ(accepted({"EX9042D", "--pty=--odd"}).pty, "--odd");
+}
+
+TEST(Arguments, ALineFormatMayBeInLowerCase) {
+  EXPECT_EQ(accepted({"EX9042D", "--format", "8e1"}).format, LineFormat::k8E1);
 }
 
 }  // namespace

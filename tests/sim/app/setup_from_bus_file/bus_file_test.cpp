@@ -146,6 +146,7 @@ TEST(BusFile, ALineAcceptsOptionsOfTheCommandLineAsKeys) {
   EXPECT_TRUE(line_of("\"pty\": \"a\", \"line\": \"instant\"").instant);
   EXPECT_TRUE(line_of("\"pty\": \"a\", \"strict-gaps\": true").strict_gaps);
   EXPECT_EQ(line_of("\"pty\": \"a\", \"format\": \"8o1\"").format, LineFormat::k8O1);
+  EXPECT_EQ(line_of("\"pty\": \"a\", \"pty-access\": \"660\"").pty_access->mode, 0660U);
   EXPECT_EQ(line_of("\"modbus-tcp\": 0, \"modbus-timeout\": \"1s\"").modbus_timeout, std::chrono::seconds(1));
 }
 
@@ -318,6 +319,8 @@ TEST(WrongLineOfABusFile, InvalidOrConflictingKeysAreRefusedWithTheirPlace) {
             "serial: cannot be combined with 'pty', 'tcp' or 'modbus-tcp', because the master is on the "
             "serial "
             "line; leave out 'serial' or the other ports"},
+           {"\"tcp\": 0, \"pty-access\": \"660\"",
+            "pty-access: requires 'pty'; add 'pty', or leave out 'pty-access'"},
            {"\"pty\": \"a\", \"modbus-timeout\": \"1s\"",
             "modbus-timeout: requires 'modbus-tcp'; add 'modbus-tcp', or leave out 'modbus-timeout'"},
            {"\"pty\": \"a\", \"echo\": true", "echo: requires 'serial'; add 'serial', or leave out 'echo'"},
@@ -522,6 +525,7 @@ TEST(BusFile, CanBeCombinedWithProgramOptionsButNotWithLineOptionsOrModules) {
                                              {"--echo"},
                                              {"--strict-gaps"},
                                              {"--modbus-timeout", "1s"},
+                                             {"--pty-access", "660"},
                                              {"--input", "1 0 square 1s"},
                                              {"--fault", "echo 2ms"}}) {
     std::vector<std::string> words{path};

@@ -1,5 +1,7 @@
 // Tests the simulator's pseudo-terminal with DCON commands that a person can type in a terminal program.
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <string>
 
@@ -23,6 +25,18 @@ TEST(Dcon, TypedCommandsGetRepliesAndAreLogged) {
   EXPECT_EQ(terminal.read_line(), ">8100\r");
   EXPECT_TRUE(simulator.wait_for("> master  @0A81\\r  ; @AA(Data): set all outputs")) << simulator.output();
   EXPECT_TRUE(simulator.wait_for("< 0A EX9068D-M  !0APUMP\\r  ; reply")) << simulator.output();
+}
+
+TEST(Dcon, ThePseudoTerminalHasTheModeAndTheGroupOfTheOption) {
+  SimulatorProcess simulator({"EX9042D@05", "--pty-access", "664:" + std::to_string(getegid())});
+  struct stat status {};
+  ASSERT_EQ(stat(simulator.tty().c_str(), &status), 0);
+  EXPECT_EQ(status.st_mode & 07777U, 0664U);
+  EXPECT_EQ(status.st_gid, getegid());
+  EXPECT_EQ(status.st_uid, geteuid());
+  Terminal terminal(simulator.tty(), 9600);
+  terminal.type("$05M\r");
+  EXPECT_EQ(terminal.read_line(), "!059042D\r");
 }
 
 TEST(Dcon, TheNextMasterDoesNotReceiveAnUnreadReply) {
