@@ -308,7 +308,7 @@ inline constexpr auto kWordRegisters = table<WordRegister>({
     WordRegister{
         "settings-source",
         "source of the settings at reset: 0: a good copy, and no bad one; 1: a good copy, and a bad one; 2: "
-        "factory settings, no good copy; 3: a copy of an older layout; 4: factory settings, blank memory",
+        "factory settings, no good copy; 3: an older layout, not used so far; 4: factory settings, blank memory",
         "",
         {0x0306, Width::One, Needs::Nothing, kReadRegisters, kExtension, 0, 0, read_settings_source,
          nullptr}},

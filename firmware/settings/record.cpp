@@ -116,7 +116,7 @@ class Decoder {
 
 /// Returns how many bytes of settings a record requires: up to the last setting that differs from its factory
 /// value, but at least kFirstSettings. If all settings after `safe_value` have their factory values, a record
-/// therefore takes one page, like a copy of layout 1 or 2.
+/// therefore takes one page.
 std::size_t required_size(const Model& model, const Settings& settings) {
   const Settings factory = Settings::factory(model);
   std::size_t size = 0;
@@ -173,7 +173,7 @@ std::optional<StoredSettings> read_record(const Model& model, Bytes record) {
   if (record.low_byte_first_32(checked.size) != settings_check(model, checked)) {
     return std::nullopt;
   }
-  StoredSettings stored{Settings::factory(model), {kLayout, record.low_byte_first_16(kSequenceAt)}};
+  StoredSettings stored{Settings::factory(model), record.low_byte_first_16(kSequenceAt)};
   Decoder decoder(checked.from(kSettingsAt));
 #define EX9000_DECODE(type, name, factory_value, possible) decoder.take(stored.settings.name);
   EX9000_SETTINGS(EX9000_DECODE)

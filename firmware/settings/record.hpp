@@ -12,26 +12,18 @@
 
 namespace ex9000 {
 
-/// The age of a copy. The newest good copy is used.
-struct Edition {
-  std::uint8_t layout = 0;
-  std::uint16_t sequence = 0;
-
-  /// Returns whether this copy is newer than `other`. A copy with a higher layout number is always newer. In
-  /// the same layout, the copy with the later sequence number is newer. Sequence numbers wrap: a number is
-  /// later than another one if it is 1 to 32767 ahead, modulo 65536.
-  [[nodiscard]] constexpr bool is_newer_than(const Edition& other) const {
-    constexpr std::uint16_t kHalfRange = 0x8000;
-    const auto ahead = static_cast<std::uint16_t>(sequence - other.sequence);
-    return layout == other.layout ? ahead != 0 && ahead < kHalfRange : layout > other.layout;
-  }
-};
-
-/// The contents of a good copy.
+/// The contents of a good copy. The copy with the later sequence number is used.
 struct StoredSettings {
   Settings settings;
-  Edition edition;
+  std::uint16_t sequence = 0;
 };
+
+/// Sequence numbers wrap: one is later than another if it is 1 to 32767 ahead, modulo 65536.
+constexpr bool is_later(std::uint16_t sequence, std::uint16_t than) {
+  constexpr std::uint16_t kHalfRange = 0x8000;
+  const auto ahead = static_cast<std::uint16_t>(sequence - than);
+  return ahead != 0 && ahead < kHalfRange;
+}
 
 /// Returns the check of stored settings: the CRC-32 over the model's designation and `bytes`.
 std::uint32_t settings_check(const Model& model, Bytes bytes);
@@ -39,9 +31,9 @@ std::uint32_t settings_check(const Model& model, Bytes bytes);
 /// The largest size of a copy of the settings, in bytes: four pages of an AT24C64.
 constexpr std::size_t kRecordRoom = 128;
 
-/// One copy of the settings, layout 3:
+/// One copy of the settings:
 ///
-///     0           layout, 3
+///     0           layout, 1
 ///     1           length n of the settings in bytes, 0 to 120
 ///     2-3         sequence, low byte first
 ///     4 to 3 + n  the settings in the order of EX9000_SETTINGS, without gaps: numbers with the low
@@ -58,7 +50,7 @@ constexpr std::size_t kRecordRoom = 128;
 /// is intended for other outputs. If the length is right, the CRC detects every error burst of up to 32 bits
 /// and every error of two or three bits. The probability that it does not detect another error, for example
 /// a record with only some new pages, is about 2^-32.
-constexpr std::uint8_t kLayout = 3;
+constexpr std::uint8_t kLayout = 1;
 using RecordBytes = std::array<std::uint8_t, kRecordRoom>;
 
 /// Writes a complete record with `settings` and `sequence` into `record`. Before the call, `record` must be a
@@ -70,9 +62,9 @@ void write_record(const Model& model, const Settings& settings, std::uint16_t se
 /// 0 if `beginning` is not the beginning of a record.
 std::size_t record_size(Bytes beginning);
 
-/// Returns the settings and their edition if `record`, which must have at least two bytes, begins with a
-/// complete and good record: layout, length and check are correct, and the model could have stored these
-/// settings. Otherwise returns nothing.
+/// Returns the settings and their sequence number if `record`, which must have at least two bytes, begins
+/// with a complete and good record: layout, length and check are correct, and the model could have stored
+/// these settings. Otherwise returns nothing.
 std::optional<StoredSettings> read_record(const Model& model, Bytes record);
 
 }  // namespace ex9000

@@ -19,7 +19,7 @@ void SettingsKeeper::poll(const Settings& in_force, Time now) {
     return;
   }
   end_own_save(now);
-  const bool unsaved = (may_differ_ && in_force != stored()) || store_.update_unfinished();
+  const bool unsaved = may_differ_ && in_force != stored();
   if (!unsaved && !store_.needs_invalidation()) {
     may_differ_ = false;
     retry_.disarm();

@@ -11,12 +11,10 @@ namespace ex9000 {
 /// Loads the settings at reset and stores the settings of a command. The settings in force are the current
 /// settings of the module (State::settings). In addition, the keeper does the following without a command:
 /// - It stores the settings in force after a timeout of the host watchdog has changed them.
-/// - It repeats the first save after a firmware update if that save was not finished (see
-///   SettingsStore::update_unfinished).
-/// - It invalidates copies that must not be used.
+/// - It invalidates the copies of failed saves.
 ///
-/// It repeats that first save only once. It retries the other two actions every second until they succeed or
-/// are no longer necessary (wire.md D15). For the main loop only. None of the functions blocks.
+/// It retries both every second until they succeed or are no longer necessary (wire.md D15). For the main
+/// loop only. None of the functions blocks.
 class SettingsKeeper {
  public:
   explicit constexpr SettingsKeeper(const Model& model) : store_(model) {}
@@ -36,11 +34,9 @@ class SettingsKeeper {
   [[nodiscard]] std::uint16_t saves() const { return store_.saves(); }
 
   /// Returns whether a reset now would certainly load `stored()`. This is not certain while `unreadable()`,
-  /// SettingsStore::place_unread, SettingsStore::needs_invalidation or SettingsStore::update_unfinished
-  /// returns true.
+  /// SettingsStore::place_unread or SettingsStore::needs_invalidation returns true.
   [[nodiscard]] bool certain() const {
-    return !unreadable() && !store_.place_unread() && !store_.needs_invalidation() &&
-           !store_.update_unfinished();
+    return !unreadable() && !store_.place_unread() && !store_.needs_invalidation();
   }
 
   /// Returns whether a memory access, `job()`, is waiting or running.

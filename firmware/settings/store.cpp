@@ -4,6 +4,13 @@
 
 namespace ex9000 {
 
+namespace {
+
+/// Zeros in the first bytes of a copy, which include its layout, invalidate it.
+constexpr std::size_t kInvalidatedSize = 8;
+
+}  // namespace
+
 // --- jobs ---
 
 /// Returns the size in bytes of the read or write that begins at `done_`: up to the end of the page or of the
@@ -15,15 +22,12 @@ std::size_t SettingsStore::page_size() const {
 
 MemoryJob SettingsStore::job() {
   using Kind = MemoryJob::Kind;
-  const Place& place = kPlaces[place_];
   if (step_ == Step::Invalidate) {
-    const std::size_t from = place.old ? kOldInvalidatedFrom : 0;
-    const auto address = static_cast<std::uint16_t>(place.address + from);
-    return {Kind::Write, address, {read_back_.data(), kOldInvalidatedSize}};
+    return {Kind::Write, kPlaces[place_], {read_back_.data(), kInvalidatedSize}};
   }
   const bool writing = step_ == Step::Write;
   RecordBytes& bytes = writing ? record_ : read_back_;
-  const auto address = static_cast<std::uint16_t>(place.address + done_);
+  const auto address = static_cast<std::uint16_t>(kPlaces[place_] + done_);
   return {writing ? Kind::Write : Kind::Read, address, {bytes.data() + done_, page_size()}};
 }
 
@@ -72,7 +76,6 @@ void SettingsStore::begin_reading(Step step) {
   blank_places_ = 0;
   bad_copy_ = false;
   current_place_ = kNoPlace;
-  old_copies_ = 0;
   silent_ = false;
   begin_copy(0);
 }
@@ -80,7 +83,7 @@ void SettingsStore::begin_reading(Step step) {
 /// Counts the page that was read. Returns whether the copy has more pages.
 bool SettingsStore::copy_goes_on() {
   done_ += page_size();
-  copy_size_ = copy_size(kPlaces[place_], {read_back_.data(), kMemoryPage});
+  copy_size_ = record_size({read_back_.data(), kMemoryPage});
   return done_ < copy_size_;
 }
 
@@ -88,9 +91,8 @@ void SettingsStore::read_page(bool ok) {
   if (ok && copy_goes_on()) {
     return;
   }
-  const Place& place = kPlaces[place_];
   const bool blank = ok && is_blank({read_back_.data(), kMemoryPage});
-  const auto stored = ok ? read_copy(model_.get(), place, {read_back_.data(), done_}) : std::nullopt;
+  const auto stored = ok ? read_record(model_.get(), {read_back_.data(), done_}) : std::nullopt;
   const std::uint8_t attempts = !ok && silent_ ? 1 : kAttempts;
   if (!stored && !blank && ++attempt_ < attempts) {
     done_ = 0;
@@ -106,7 +108,7 @@ void SettingsStore::read_page(bool ok) {
   if (blank) {
     ++blank_places_;
   }
-  if (!blank && !stored && !place.old) {
+  if (!blank && !stored) {
     bad_copy_ = true;
   }
   unread_places_ = ok ? unread_places_ & ~bit(place_) : unread_places_ | bit(place_);
@@ -118,17 +120,13 @@ void SettingsStore::read_page(bool ok) {
 
 /// Processes a good copy at the place that was read.
 void SettingsStore::take_copy(const StoredSettings& stored) {
-  const bool old = kPlaces[place_].old;
-  if (old) {
-    old_copies_ |= bit(place_);
-  }
   const bool refused = (copies_to_invalidate_ & bit(place_)) != 0;
-  if (refused || (current_place_ != kNoPlace && !stored.edition.is_newer_than(edition_))) {
+  if (refused || (current_place_ != kNoPlace && !is_later(stored.sequence, sequence_))) {
     return;
   }
   current_place_ = place_;
-  edition_ = stored.edition;
-  record_ = old ? RecordBytes{} : read_back_;
+  sequence_ = stored.sequence;
+  record_ = read_back_;
   if (step_ == Step::Load) {
     stored_ = stored.settings;
   }
@@ -161,23 +159,7 @@ SettingsStore::Source SettingsStore::source_of_settings() const {
   if (found_ != Found::Settings) {
     return found_ == Found::Blank ? Source::Blank : Source::NoneGood;
   }
-  if (kPlaces[current_place_].old) {
-    return Source::OlderLayout;
-  }
   return bad_copy_ ? Source::OneCopyBad : Source::Good;
-}
-
-bool SettingsStore::place_unread() const {
-  if (found_ != Found::Settings) {
-    return unread_places_ != 0;
-  }
-  // Every copy of this layout is newer than a copy of an older layout.
-  const bool current_is_old = kPlaces[current_place_].old;
-  unsigned newer = 0;
-  for (std::size_t place = 0; place < kPlaces.size(); ++place) {
-    newer |= current_is_old || !kPlaces[place].old ? bit(place) : 0U;
-  }
-  return (unread_places_ & newer) != 0;
 }
 
 // --- writing ---
@@ -192,7 +174,7 @@ void SettingsStore::begin_saving(const Settings& settings) {
 }
 
 void SettingsStore::begin_writing() {
-  write_record(model_.get(), saving_, static_cast<std::uint16_t>(edition_.sequence + 1U), record_);
+  write_record(model_.get(), saving_, static_cast<std::uint16_t>(sequence_ + 1U), record_);
   begin_copy(current_place_ == 0 ? 1 : 0);
   copy_size_ = record_size({record_.data(), record_.size()});
   step_ = Step::Write;
@@ -220,12 +202,6 @@ void SettingsStore::retry_or_give_up() {
     step_ = Step::Write;
     return;
   }
-  if (update_unfinished()) {
-    // The save to the other place of this layout has failed. The current copy was read correctly, so the old
-    // copies are not needed.
-    copies_to_invalidate_ |= old_copies_;
-    old_copies_ = 0;
-  }
   // The copy may be complete although the memory reported an error.
   copies_to_invalidate_ |= bit(place_);
   saved_ = false;
@@ -236,11 +212,9 @@ void SettingsStore::finish_writing() {
   found_ = Found::Settings;
   unread_places_ &= ~bit(place_);
   current_place_ = place_;
-  ++edition_.sequence;
-  edition_.layout = kLayout;
+  ++sequence_;
   stored_ = saving_;
-  copies_to_invalidate_ = (copies_to_invalidate_ & ~bit(place_)) | old_copies_;
-  old_copies_ = 0;
+  copies_to_invalidate_ &= ~bit(place_);
   saved_ = true;
   if (saves_ != std::numeric_limits<std::uint16_t>::max()) {
     ++saves_;
@@ -275,7 +249,7 @@ void SettingsStore::check_invalid(bool ok) {
   if (ok && copy_goes_on()) {
     return;
   }
-  if (ok && !read_copy(model_.get(), kPlaces[place_], {read_back_.data(), done_})) {
+  if (ok && !read_record(model_.get(), {read_back_.data(), done_})) {
     copies_to_invalidate_ &= ~bit(place_);
   }
   invalidate_from(place_ + 1);

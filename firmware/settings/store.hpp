@@ -28,10 +28,6 @@ struct MemoryJob {
 /// copy becomes valid only when the check at its end is written. After a power failure, the store therefore
 /// loads either the old or the new settings.
 ///
-/// If the memory contains copies of older layouts after a firmware update, the first save does not overwrite
-/// them. When the save is verified, the store invalidates these copies: they must not be used again, even if
-/// both copies of the new layout fail later.
-///
 /// The store does not access the memory. The owner of the memory carries out `job()` and then calls `done()`.
 class SettingsStore {
  public:
@@ -45,11 +41,10 @@ class SettingsStore {
 
   /// The origin of the settings that were loaded at reset: register 0x0306 (firmware/extensions.md).
   enum class Source : std::uint8_t {
-    Good,         ///< a good copy; the other place of this layout has a good copy or is blank
-    OneCopyBad,   ///< a good copy; the other place of this layout has no good copy and is not blank
-    NoneGood,     ///< no good copy, and not all places are blank: factory settings
-    OlderLayout,  ///< a copy of an older layout
-    Blank,        ///< all places are blank: factory settings
+    Good = 0,        ///< a good copy; the other place has a good copy or is blank
+    OneCopyBad = 1,  ///< a good copy; the other place has no good copy and is not blank
+    NoneGood = 2,    ///< no good copy, and not all places are blank: factory settings
+    Blank = 4,       ///< all places are blank: factory settings; 3 is for a copy of an older layout
   };
 
   /// Begins to load: reads all places, each up to three times. If the last read at a place gets no answer,
@@ -81,25 +76,15 @@ class SettingsStore {
   /// Returns whether the last save succeeded. After `begin_invalidating`, which saves nothing, returns true.
   [[nodiscard]] bool saved() const { return saved_; }
 
-  /// Returns whether the current copy has this layout, but copies of an older layout are still valid. This
-  /// happens, for example, if the power fails during the first save after a firmware update, when the new
-  /// copy is already complete. One successful read does not prove that the new copy will stay readable, so
-  /// the old copies stay valid until the settings have been saved again. If that save fails, the old copies
-  /// are invalidated nevertheless.
-  [[nodiscard]] bool update_unfinished() const {
-    return found_ == Found::Settings && old_copies_ != 0 && !kPlaces[current_place_].old;
-  }
-
   /// Returns whether the memory did not answer at a place while the settings were loaded, and a later reset
   /// may find a copy there that is newer than the current copy. If a successful save overwrites such a place,
   /// this place no longer counts.
-  [[nodiscard]] bool place_unread() const;
+  [[nodiscard]] bool place_unread() const { return unread_places_ != 0; }
 
-  /// Returns whether a reset now could load a copy that must not be used: the copy of a failed save, or a
-  /// copy of an older layout.
+  /// Returns whether a reset now could load the copy of a failed save.
   [[nodiscard]] bool needs_invalidation() const { return copies_to_invalidate_ != 0; }
-  /// Begins to invalidate the copies that must not be used. Call this only while not `busy()`. If a copy
-  /// cannot be invalidated, `needs_invalidation()` stays true.
+  /// Begins to invalidate the copies of failed saves. Call this only while not `busy()`. If a copy cannot be
+  /// invalidated, `needs_invalidation()` stays true.
   void begin_invalidating();
 
   /// Returns the settings that a reset now would load; for the exceptions, see SettingsKeeper::certain.
@@ -148,17 +133,16 @@ class SettingsStore {
   std::uint8_t attempt_ = 0;             ///< failed attempts at that copy
   bool silent_ = false;                  ///< the memory did not answer the last read at the previous place
   std::uint8_t blank_places_ = 0;
-  bool bad_copy_ = false;                 ///< a place of this layout is not blank and has no good copy
+  bool bad_copy_ = false;                 ///< a place is not blank and has no good copy
   unsigned unread_places_ = 0;            ///< places whose last read got no answer; bit n is place n
   std::size_t current_place_ = kNoPlace;  ///< place of the current copy, the newest good one; or kNoPlace
-  unsigned old_copies_ = 0;               ///< bit n: place n holds a valid copy of an older layout
   unsigned copies_to_invalidate_ = 0;     ///< bit n: the copy at place n must be invalidated
 
-  Edition edition_;          ///< edition of the current copy
-  Settings stored_;          ///< result of `stored()`
-  Settings saving_;          ///< settings that are being saved
-  RecordBytes record_{};     ///< the current record, or that of the last save; zeros if there is none
-  RecordBytes read_back_{};  ///< bytes read from the memory, or zeros to write
+  std::uint16_t sequence_ = 0;  ///< sequence number of the current copy
+  Settings stored_;             ///< result of `stored()`
+  Settings saving_;             ///< settings that are being saved
+  RecordBytes record_{};        ///< the current record, or that of the last save; zeros if there is none
+  RecordBytes read_back_{};     ///< bytes read from the memory, or zeros to write
 };
 
 }  // namespace ex9000

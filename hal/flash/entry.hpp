@@ -12,13 +12,13 @@ namespace ex9000::hal::flash {
 
 /// The size of a page in bytes. See hal/memory.hpp.
 inline constexpr std::size_t kPage = 32;
-/// The number of pages in the store. Together they have 384 bytes.
-inline constexpr std::size_t kPages = 12;
+/// The number of pages in the store. Together they have 256 bytes.
+inline constexpr std::size_t kPages = 8;
 
 /// The bytes of an entry:
 ///
 ///     0-3    sequence, low byte first: an entry replaces entries of the same page with a lower sequence
-///     4      page, 0 to 11
+///     4      page, 0 to 7
 ///     5-36   content of the page
 ///     37-40  CRC-32 over bytes 0 to 36, low byte first
 ///

@@ -17,7 +17,7 @@
 
 namespace ex9000::hal::flash {
 
-/// A memory of 12 pages of 32 bytes in the 14 sectors from address `kBegin` on. For its functions, see
+/// A memory of 8 pages of 32 bytes in the 14 sectors from address `kBegin` on. For its functions, see
 /// hal/memory.hpp; for `Flash`, see hal/flash.hpp. A page that was never written contains FF.
 ///
 /// The sectors contain a log of entries. A write appends an entry with the whole page to the log, and reads

@@ -8,8 +8,8 @@
 
 namespace ex9000::hal::flash {
 
-/// The number of sectors that the store uses. Each of the 12 pages of the store (entry.hpp) has at most one
-/// entry in force, so the entries in force are in at most 12 sectors. At least two sectors hold no entry in
+/// The number of sectors that the store uses. Each of the 8 pages of the store (entry.hpp) has at most one
+/// entry in force, so the entries in force are in at most 8 sectors. The other sectors hold no entry in
 /// force. The store can begin to write to one such sector and erase another such sector in advance.
 inline constexpr unsigned kSectors = 14;
 static_assert(kSectors >= kPages + 2);

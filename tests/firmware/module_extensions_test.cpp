@@ -11,7 +11,6 @@
 #include "sim/app/play/modbus_frame.hpp"
 #include "sim/text/values.hpp"
 #include "tests/firmware/module_bench.hpp"
-#include "tests/firmware/settings/stored_bytes.hpp"
 #include "tests/support/stored_settings.hpp"
 
 namespace ex9000::sim {
@@ -290,57 +289,16 @@ std::string settings_source(const std::string& model, const std::vector<std::uin
 
 TEST(SettingsSourceRegister, ReturnsTheSourceOfTheSettings) {
   const Model& model = *find_model("EX9043D");
-  EXPECT_EQ(settings_source("EX9043D", std::vector<std::uint8_t>(0x180, 0xFF)), "0004");
+  EXPECT_EQ(settings_source("EX9043D", std::vector<std::uint8_t>(0x100, 0xFF)), "0004");
   Settings settings = Settings::factory(model);
   settings.watchdog_timeout = 0x11;
   std::vector<std::uint8_t> memory = SimulatedModule::memory_image(model, settings);
   EXPECT_EQ(settings_source("EX9043D", memory), "0000");  // the second copy is blank
   std::vector<std::uint8_t> one_bad = memory;
-  one_bad[kPlaces[1].address] = 0x00;
+  one_bad[kPlaces[1]] = 0x00;
   EXPECT_EQ(settings_source("EX9043D", one_bad), "0001");
-  one_bad[kPlaces[0].address + 8U] ^= 1U;
+  one_bad[kPlaces[0] + 8U] ^= 1U;
   EXPECT_EQ(settings_source("EX9043D", one_bad), "0002");
-  for (const StoredBytes& stored : all_stored_bytes()) {
-    if (stored.settings.protocol == Protocol::Ascii && stored.file.rfind("layout-2-9", 0) == 0) {
-      EXPECT_EQ(settings_source(std::string(stored.model->designation) + ",baud=19200", stored.memory),
-                "0003")
-          << stored.file;
-    }
-  }
-}
-
-/// Returns a memory with two copies of the factory settings, both in layout 2.
-std::vector<std::uint8_t> memory_of_earlier_firmware(const Model& model) {
-  std::vector<std::uint8_t> memory(kStoredMemory, 0xFF);
-  put_layout_2(model, Settings::factory(model), 7, memory.data(), kPlaces[2].address);
-  put_layout_2(model, Settings::factory(model), 8, memory.data(), kPlaces[3].address);
-  return memory;
-}
-
-TEST(StoreCount, ReadsZeroAfterAnUpdateUntilTheFirstStore) {
-  ModuleBench bench("EX9043D");
-  restart_with(bench, memory_of_earlier_firmware(*find_model("EX9043D")));
-  EXPECT_EQ(bench.ask("~01X0306"), "!010003");
-  EXPECT_EQ(bench.ask("~01X0305"), "!010000");
-  ASSERT_EQ(bench.ask("~013011"), "!01");
-  EXPECT_EQ(bench.ask("~01X0305"), "!010001");
-}
-
-// The power failed during the first store after the update: the new copy is complete, and the old copies are
-// still valid.
-TEST(StoreCount, CountsTheRepetitionOfTheFirstStoreAfterAnUpdate) {
-  const Model& model = *find_model("EX9043D");
-  std::vector<std::uint8_t> memory = memory_of_earlier_firmware(model);
-  Settings settings = Settings::factory(model);
-  settings.watchdog_timeout = 0x11;
-  const std::vector<std::uint8_t> image = SimulatedModule::memory_image(model, settings);
-  std::copy_n(image.begin() + kPlaces[0].address, kMemoryPage, memory.begin() + kPlaces[0].address);
-  ModuleBench bench("EX9043D");
-  restart_with(bench, memory);
-  EXPECT_EQ(bench.ask("~01X0305"), "!010001");
-  EXPECT_EQ(bench.ask("~012"), "!01011");
-  bench.power_cycle();
-  EXPECT_EQ(bench.ask("~01X0305"), "!010000");
 }
 
 TEST(TimeoutCount, StopsAt65535) {

@@ -25,11 +25,11 @@ TEST(OneModel, ADeviceIsInitialisedAtCompileTime) {
 // same bytes in a program for all models.
 TEST(OneModel, ItsRecordIsTheSameAsInAProgramForAllModels) {
   const std::vector<std::uint8_t> from_the_factory{
-      3,    19,   1,    0,                    // layout, length, sequence
+      1,    19,   1,    0,                    // layout, length, sequence
       1,    6,    0,    1,    0xFF, 0, 0,     // from the address to the timeout status
       '9',  '0',  '4',  '2',  'M',  0, 0, 5,  // name
       0,    0,    0,    0,                    // power-on value, safe value
-      0x4C, 0x60, 0x29, 0x33,                 // check
+      0xA5, 0xB3, 0xBF, 0xDE,                 // check
   };
   RecordBytes record{};
   write_record(kOnlyModel, Settings::factory(kOnlyModel), 1, record);

@@ -40,7 +40,7 @@ class Life {
     if (settings != Settings::factory(model)) {
       RecordBytes record{};
       write_record(model, settings, 1, record);
-      std::copy(record.begin(), record.end(), session_.around().memory.begin() + kPlaces[0].address);
+      std::copy(record.begin(), record.end(), session_.around().memory.begin() + kPlaces[0]);
     }
     session_.around().init_asserted = (flags & 0x80U) != 0;
     session_.reset();

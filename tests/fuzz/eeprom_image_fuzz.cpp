@@ -3,12 +3,10 @@
 //
 // Byte 0 of the input selects the model. The bits of byte 1 have these meanings:
 //
-//     bit 0, 1   the target corrects the layout and the check of the first (bit 0) or the second (bit 1) copy
-//                of layout 2
 //     bit 2      INIT* is connected to GND
 //     bit 3      the memory does not acknowledge until the module has started
 //     bit 4, 5   the target corrects the layout, the length and the check of the first (bit 4) or the second
-//                (bit 5) copy of layout 3
+//                (bit 5) copy
 //
 // The following bytes are the content of the memory from address 0. Memory after these bytes is erased.
 #include <algorithm>
@@ -48,7 +46,7 @@ class Trial {
       : model_(model), session_(model, false) {
     auto& memory = session_.around().memory;
     std::copy_n(contents, std::min(size, memory.size()), memory.begin());
-    constexpr std::array<std::uint8_t, kStoredPlaces.size()> kSealed{0x10, 0x20, 0x01, 0x02};
+    constexpr std::array<std::uint8_t, kStoredPlaces.size()> kSealed{0x10, 0x20};
     for (std::size_t place = 0; place < kStoredPlaces.size(); ++place) {
       if ((flags & kSealed[place]) != 0) {
         StoredCopy::seal(storing_model(model), memory.data(), kStoredPlaces[place]);

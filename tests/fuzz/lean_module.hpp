@@ -48,7 +48,7 @@ struct Surroundings {
   bool init_asserted = false;
   bool memory_answers = true;
   /// The part of the EEPROM that the core uses.
-  std::array<std::uint8_t, 0x180> memory{};
+  std::array<std::uint8_t, 0x100> memory{};
 };
 
 /// The board interface is described in hal/board.hpp.

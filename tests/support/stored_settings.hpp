@@ -1,5 +1,5 @@
 // Converts the settings of a StoredCopy to the type Settings of the core, so that a test can compare them
-// with settings of the core. Also writes copies of settings in the form that older or newer firmware writes.
+// with settings of the core. Also writes copies of settings in the form that newer firmware writes.
 #pragma once
 
 #include <algorithm>
@@ -48,33 +48,6 @@ inline Settings settings_from(const Model& model, const std::uint8_t* memory) {
                                 : settings_of(StoredCopy(storing, memory, place).settings());
 }
 
-/// Stores a copy of `settings` at `place` as firmware with layout 2 does. This layout contains the line
-/// format, but not the settings of the registers 0x0240 to 0x0252. `place` must be one of the addresses for
-/// the older layouts.
-inline void put_layout_2(const Model& model, const Settings& settings, std::uint16_t sequence,
-                         std::uint8_t* memory, std::size_t place) {
-  std::uint8_t* bytes = memory + place;
-  std::fill_n(bytes, 28, std::uint8_t{0});
-  bytes[0] = settings.address;
-  bytes[1] = settings.baud_code;
-  bytes[2] = settings.format;
-  bytes[3] = settings.protocol == Protocol::ModbusRtu ? 1 : 0;
-  bytes[4] = settings.watchdog_timeout;
-  bytes[5] = settings.watchdog_enabled ? 1 : 0;
-  bytes[6] = settings.timeout_status ? 1 : 0;
-  std::copy(settings.name.bytes().begin(), settings.name.bytes().end(), bytes + 8);
-  bytes[15] = static_cast<std::uint8_t>(settings.name.bytes().size);
-  const auto put_word = [bytes](std::size_t at, unsigned value) {
-    bytes[at] = static_cast<std::uint8_t>(value % 256);
-    bytes[at + 1] = static_cast<std::uint8_t>(value / 256);
-  };
-  put_word(16, settings.power_on_value);
-  put_word(18, settings.safe_value);
-  put_word(20, sequence);
-  const StoringModel storing = storing_model(model);
-  StoredCopy::seal(storing, memory, place);
-}
-
 /// Returns an arbitrary value for the byte at position `index` of a record's settings. The byte belongs to a
 /// setting that only newer firmware supports.
 inline std::uint8_t unknown_byte(std::size_t index) { return static_cast<std::uint8_t>(0xC1U ^ index); }
@@ -98,7 +71,7 @@ inline std::size_t bytes_of_settings(const Settings& settings) {
 /// The number of bytes of all settings that this firmware supports.
 inline constexpr std::size_t kSupportedSettings = 55;
 
-/// Extends the valid record of layout 3 at `place` to `length` bytes of settings. The record must have at
+/// Extends the valid record at `place` to `length` bytes of settings. The record must have at
 /// least 19 bytes of settings, because the factory value of each later setting is 0. The settings that this
 /// firmware supports, but that the record lacks, get their factory values. The bytes after them get the
 /// values of `unknown_byte`.

@@ -95,11 +95,9 @@ Message message_of(const HostWatchdogState& guard) {
 
 Message message_of(const Stored& stored) {
   Message copies = Message::array();
-  for (std::size_t i = 0; i < stored.copies.size(); ++i) {
-    const Stored::Copy& copy = stored.copies[i];
-    copies.push_back({{"bytes", hex_text(copy.bytes)},
-                      {"sequence", copy.sequence ? Message(*copy.sequence) : Message()},
-                      {"old", kPlaces[i].old}});
+  for (const Stored::Copy& copy : stored.copies) {
+    copies.push_back(
+        {{"bytes", hex_text(copy.bytes)}, {"sequence", copy.sequence ? Message(*copy.sequence) : Message()}});
   }
   return {{"copies", std::move(copies)},
           {"current", stored.current ? Message(*stored.current) : Message()},

@@ -80,21 +80,21 @@ Stored stored_of(const SimulatedModule& module) {
   Stored stored;
   stored.settings = Settings::factory(module.model());
   stored.blank = true;
-  Edition newest;
-  for (const Place& place : kPlaces) {
-    const Bytes room{module.memory().contents().data() + place.address, kRecordRoom};
-    const auto read = read_copy(module.model(), place, room);
-    const Bytes bytes = room.first(read ? copy_size(place, room) : kMemoryPage);
+  std::uint16_t newest = 0;
+  for (const std::uint16_t place : kPlaces) {
+    const Bytes room{module.memory().contents().data() + place, kRecordRoom};
+    const auto read = read_record(module.model(), room);
+    const Bytes bytes = room.first(read ? record_size(room) : kMemoryPage);
     stored.blank = stored.blank && is_blank(bytes);
-    if (read && (!stored.current || read->edition.is_newer_than(newest))) {
+    if (read && (!stored.current || is_later(read->sequence, newest))) {
       stored.current = stored.copies.size();
       stored.settings = read->settings;
-      newest = read->edition;
+      newest = read->sequence;
     }
     Stored::Copy& copy = stored.copies.emplace_back();
     copy.bytes.assign(bytes.begin(), bytes.end());
     if (read) {
-      copy.sequence = read->edition.sequence;
+      copy.sequence = read->sequence;
     }
   }
   return stored;

@@ -150,8 +150,7 @@ std::vector<std::uint8_t> SimulatedModule::memory_image(const Model& model, cons
   if (settings != Settings::factory(model)) {
     RecordBytes record{};
     write_record(model, settings, 1, record);
-    std::copy_n(record.begin(), record_size({record.data(), record.size()}),
-                image.begin() + kPlaces[0].address);
+    std::copy_n(record.begin(), record_size({record.data(), record.size()}), image.begin() + kPlaces[0]);
   }
   return image;
 }

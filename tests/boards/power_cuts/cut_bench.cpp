@@ -17,8 +17,7 @@ constexpr milliseconds kComesUpWithin{100};
 constexpr milliseconds kRepliesWithin{25 + kLongestResponseDelay};
 constexpr std::size_t kAroundSettings = 8;  // bytes of layout, length, sequence and check
 constexpr milliseconds kStoresWithin{600};  // includes the wait until the host watchdog expires
-constexpr milliseconds kFinishesAnUpdateWithin{200};
-constexpr std::uint16_t kDriven = 0xC35A;  // the outputs before a command, if the timeout status is not set
+constexpr std::uint16_t kDriven = 0xC35A;   // the outputs before a command, if the timeout status is not set
 
 /// The size in bytes of the smallest page write that Attempt::tries counts. A write that invalidates a copy
 /// has 8 bytes.
@@ -34,36 +33,17 @@ std::uint8_t left(unsigned way, std::uint8_t old_byte, std::uint8_t new_byte) {
 
 }  // namespace
 
-/// Returns whether `contents` contain a good copy of layout 3 and a good copy of an older layout. A power cut
-/// during the first store after an update leaves such contents if the new copy is complete and the firmware
-/// has not yet invalidated all copies of older layouts.
-bool CutBench::has_unfinished_update(const Contents& contents) const {
-  const StoringModel storing = storing_model(model_);
-  const auto good = [&](std::size_t place) { return StoredCopy(storing, contents.data(), place).is_good(); };
-  return (good(kStoredPlaces[0]) || good(kStoredPlaces[1])) &&
-         (good(kStoredPlaces[2]) || good(kStoredPlaces[3]));
-}
-
 constexpr std::size_t pages_of(std::size_t bytes) { return (bytes + kStoredPage - 1) / kStoredPage; }
 
-/// Returns the number of page writes when a module with `contents` stores `settings`. Includes the writes
-/// that invalidate old copies (firmware/settings/store.hpp). If `contents` contain an unfinished update, the
-/// result is for a store after the module has finished this update.
+/// Returns the number of page writes when a module with `contents` stores `settings`.
 std::size_t CutBench::pages_of_a_store(const Contents& contents, const Settings& settings) const {
   const StoringModel storing = storing_model(model_);
   const std::size_t place = place_that_counts(storing, contents.data());
-  if (place == kStoredPlaces[0] || place == kStoredPlaces[1]) {
-    const std::size_t present = StoredCopy(storing, contents.data(), place).size();
-    // The firmware does not shorten a record of newer firmware.
-    return present > kSupportedSettings + kAroundSettings
-               ? pages_of(present)
-               : pages_of(bytes_of_settings(settings) + kAroundSettings);
-  }
-  std::size_t pages = pages_of(bytes_of_settings(settings) + kAroundSettings);
-  for (const std::size_t old : {kStoredPlaces[2], kStoredPlaces[3]}) {
-    pages += StoredCopy(storing, contents.data(), old).is_good() ? 1U : 0U;
-  }
-  return pages;
+  const std::size_t present = place == kStoredMemory ? 0 : StoredCopy(storing, contents.data(), place).size();
+  // The firmware does not shorten a record of newer firmware.
+  return present > kSupportedSettings + kAroundSettings
+             ? pages_of(present)
+             : pages_of(bytes_of_settings(settings) + kAroundSettings);
 }
 
 CutBench::CutBench(const Image& image, const Model& model) : model_(model), bench_(image) {
@@ -162,10 +142,8 @@ Found CutBench::come_up(const Contents& contents, const std::vector<Settings>& g
     }
   }
   EXPECT_EQ(shown_.changes, found.outputs.changes) << "reading has changed outputs";
-  if (!has_unfinished_update(contents)) {
-    EXPECT_EQ(CutBench::contents(), contents)
-        << "the module has written to the EEPROM without a command that stores";
-  }
+  EXPECT_EQ(CutBench::contents(), contents)
+      << "the module has written to the EEPROM without a command that stores";
   return found;
 }
 
@@ -246,7 +224,6 @@ FrameFormat CutBench::get_ready(const Contents& contents, const Settings& before
                                 const StoringCommand& command) {
   const bool init_mode = command.init == Init::SinceReset;
   power_up(contents, init_mode);
-  finish_update();
   const FrameFormat frame_format = speak_as(before, init_mode);
   if (model_.outputs != 0 && !before.timeout_status) {
     set_outputs(frame_format);
@@ -258,28 +235,6 @@ FrameFormat CutBench::get_ready(const Contents& contents, const Settings& before
   EXPECT_EQ(bench_.outputs(), outputs_before(before));
   bench_.line.drives.clear();
   return frame_format;
-}
-
-/// If a power cut has interrupted an update, waits until the module has finished the update. The module does
-/// this without a command: it stores the settings once more and invalidates the old copies.
-void CutBench::finish_update() {
-  const Instant gives_up = bench_.timeline.now() + kFinishesAnUpdateWithin;
-  while (has_unfinished_update(CutBench::contents()) && bench_.timeline.now() < gives_up) {
-    bench_.run_for(milliseconds(1));
-  }
-  ASSERT_FALSE(has_unfinished_update(CutBench::contents())) << "the update is not finished";
-  bench_.run_for(milliseconds(10));  // the driver polls until the EEPROM has ended its last write
-}
-
-Cuts CutBench::cut_while_finishing_update(const Contents& contents) {
-  Cuts cuts;
-  if (has_unfinished_update(contents)) {
-    bench_.eeprom.on_event([&] { note_cuts(cuts); });
-    power_up(contents, false);
-    finish_update();
-    bench_.eeprom.on_event(nullptr);
-  }
-  return cuts;
 }
 
 Cuts CutBench::cut_everywhere(const Contents& contents, const Settings& before,

@@ -93,11 +93,6 @@ class CutBench {
   AfterReset reset_after(Instant time, const Contents& contents, const Settings& before,
                          const StoringCommand& command);
 
-  /// If `contents` contain an unfinished update (has_unfinished_update), starts a module with `contents` and
-  /// waits until the module has finished the update. Returns the results of power cuts at all points of this
-  /// time. Returns no cuts if `contents` contain no unfinished update.
-  Cuts cut_while_finishing_update(const Contents& contents);
-
   /// Starts a module with `contents`. The settings of this module are then `before`. Then wears out a byte of
   /// the memory: from the next write of the byte at `place` on, the bits `bits` of this byte have the values
   /// that they have in `stuck`. Then sends the command, or waits until the host watchdog expires.
@@ -114,8 +109,7 @@ class CutBench {
   /// checksum, baud rate and line format of the first of `guesses` to which the module replies. No Modbus
   /// register contains the whole data format. If `thoroughly` is true, first starts the module in INIT mode
   /// and reads the data format there; otherwise, if the module uses Modbus, takes the data format from the
-  /// guess. Also checks that reading changes no output, and that the module writes nothing to the EEPROM
-  /// unless it has an update to finish.
+  /// guess. Also checks that reading changes no output, and that the module writes nothing to the EEPROM.
   Found come_up(const Contents& contents, const std::vector<Settings>& guesses, bool thoroughly);
 
  private:
@@ -124,10 +118,8 @@ class CutBench {
   void power_up(const Contents& contents, bool init);
   UartPort& uart() { return bench_.image.uart == 0 ? bench_.mcu->uart0 : bench_.mcu->uart1; }
   [[nodiscard]] Contents contents() const;
-  [[nodiscard]] bool has_unfinished_update(const Contents& contents) const;
   [[nodiscard]] std::size_t pages_of_a_store(const Contents& contents, const Settings& settings) const;
   Outputs outputs();
-  void finish_update();
   void note_cuts(Cuts& cuts);
   FrameFormat speak_as(const Settings& settings, bool init_mode);
   void send(const Bytes& frame);

@@ -95,42 +95,36 @@ class PowerCutsOf : public testing::TestWithParam<ImageName> {
   template <class Do>
   void for_some_commands_of_several_pages(Do what) {
     constexpr std::size_t kSome = 3;
-    for (const Beginning beginning : {Beginning::Updated, Beginning::Longer}) {
-      std::vector<const StoringCommand*> commands;
-      for (const StoringCommand& command : commands_) {
-        if (stores_from(begin_at(beginning, model_, command).contents, command)) {
-          commands.push_back(&command);
-        }
+    std::vector<const StoringCommand*> commands;
+    for (const StoringCommand& command : commands_) {
+      if (stores_from(begin_at(Beginning::Longer, model_, command).contents, command)) {
+        commands.push_back(&command);
       }
-      std::shuffle(commands.begin(), commands.end(), random_);
-      commands.resize(all_cases_requested() ? commands.size() : kSome);
-      for (const StoringCommand* command : commands) {
-        SCOPED_TRACE(command->name + (beginning == Beginning::Updated ? ", updated" : ", longer record"));
-        what(begin_at(beginning, model_, *command), *command);
-        ASSERT_FALSE(HasFailure());
-      }
+    }
+    std::shuffle(commands.begin(), commands.end(), random_);
+    commands.resize(all_cases_requested() ? commands.size() : kSome);
+    for (const StoringCommand* command : commands) {
+      SCOPED_TRACE(command->name + ", longer record");
+      what(begin_at(Beginning::Longer, model_, *command), *command);
+      ASSERT_FALSE(HasFailure());
     }
   }
 
-  /// Returns whether the command changes the settings in `contents`. A copy of an old layout does not contain
-  /// the newer settings. Therefore a command that gives a newer setting its factory value changes nothing.
+  /// Returns whether the command changes the settings in `contents`.
   [[nodiscard]] bool stores_from(const Contents& contents, const StoringCommand& command) const {
     const Settings settings = settings_in(model_, contents);
     return command.stores_from(settings, bench_.outputs_before(settings));
   }
 
   /// Checks at most `pairs` pairs. A pair consists of contents that a cut during `first` may leave, and of a
-  /// second command. The test cuts the power at every point of the second command. If `first` is the first
-  /// store after an update, the cut during `first` may leave the update unfinished. The module then finishes
-  /// the update before the second command, and the test also cuts the power at every point of that time. If
-  /// `pairs` is SIZE_MAX, the test combines each of the contents with every command that `storing_from`
-  /// returns. Otherwise, it combines each of the contents with one of these commands, a random one.
+  /// second command. The test cuts the power at every point of the second command. If `pairs` is SIZE_MAX,
+  /// the test combines each of the contents with every command that `storing_from` returns. Otherwise, it
+  /// combines each of the contents with one of these commands, a random one.
   void cut_twice(const State& state, const StoringCommand& first, std::size_t pairs) {
     const Cuts cuts = bench_.cut_everywhere(state.contents, state.settings, first);
     const Settings unfinished = first.done_to(state.settings, cuts.outputs);
     for (const Contents& contents : in_any_order(cuts)) {
       const Settings settings = settings_in(model_, contents);
-      judge(bench_.cut_while_finishing_update(contents), settings, settings, 1);
       for (const StoringCommand* second : storing_from(settings)) {
         if (HasFailure() || pairs == 0) {
           return;

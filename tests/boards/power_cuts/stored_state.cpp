@@ -14,8 +14,7 @@ void put(const Model& model, const Settings& settings, std::uint16_t sequence, s
          Contents& contents) {
   RecordBytes record{};
   write_record(model, settings, sequence, record);
-  std::copy_n(record.begin(), record_size({record.data(), record.size()}),
-              contents.begin() + kPlaces[copy].address);
+  std::copy_n(record.begin(), record_size({record.data(), record.size()}), contents.begin() + kPlaces[copy]);
 }
 
 /// Returns settings that differ from the factory settings as far as the model and the command permit. There
@@ -63,17 +62,11 @@ State begin_at(Beginning beginning, const Model& model, const StoringCommand& co
   State state;
   state.contents.fill(0xFF);
   state.settings = full_settings(model, command);
-  std::uint8_t* const memory = state.contents.data();
-  if (beginning == Beginning::Updated) {
-    put_layout_2(model, Settings::factory(model), 0xFFFE, memory, kPlaces[2].address);
-    put_layout_2(model, state.settings, 0xFFFF, memory, kPlaces[3].address);
-    return state;
-  }
   put(model, Settings::factory(model), 0xFFFE, 0, state.contents);
   put(model, state.settings, 0xFFFF, 1, state.contents);
   if (beginning == Beginning::Longer) {
     constexpr std::uint8_t kLength = 96;
-    lengthen(model, memory, kPlaces[1].address, kLength);
+    lengthen(model, state.contents.data(), kPlaces[1], kLength);
   }
   return state;
 }

@@ -13,8 +13,7 @@ namespace ex9000::registers {
 
 enum class Beginning : std::uint8_t {
   Factory,  ///< blank, unless the command requires other settings
-  Full,     ///< two copies of layout 3
-  Updated,  ///< two copies of layout 2, which older firmware has written
+  Full,     ///< two copies
   Longer,   ///< as Full, but the newer record has 96 bytes of settings, like a record of newer firmware
 };
 
@@ -23,11 +22,9 @@ struct State {
   Contents contents;
 };
 
-/// Returns a state from which `command` stores something. There is one exception: the state Updated lacks the
-/// settings that layout 2 does not have, so a command that gives one of them its factory value stores
-/// nothing. In all states except Factory, the newer copy has the last sequence number before the wrap, and
-/// the settings that the manuals describe differ from the factory settings as far as the model and the
-/// command permit.
+/// Returns a state from which `command` stores something. In all states except Factory, the newer copy has
+/// the last sequence number before the wrap, and the settings that the manuals describe differ from the
+/// factory settings as far as the model and the command permit.
 State begin_at(Beginning beginning, const Model& model, const StoringCommand& command);
 
 /// Returns the settings with which a module must start. Reads them with StoredCopy, which

@@ -1,4 +1,4 @@
-// Tests that SettingsKeeper stores changed settings, finishes an update, invalidates refused copies and
+// Tests that SettingsKeeper stores changed settings, invalidates refused copies and
 // retries after a failure: wire.md section 8, D6 and D15.
 #include "firmware/settings/settings_keeper.hpp"
 
@@ -166,72 +166,6 @@ TEST_F(SettingsKeeperTest, ACopyThatMayHoldRefusedSettingsIsInvalidated) {
   EXPECT_TRUE(Boot(memory_).stored() == numbered(5));
 }
 
-// wire.md section 8: the power failed during the first store after a firmware update, before the old copy was
-// invalidated.
-TEST_F(SettingsKeeperTest, AnUpdateIsFinishedWithoutACommandAndNotRetriedForever) {
-  FakeMemory memory;
-  put_old(memory, 0, numbered(5), 7);
-  put(memory, 0, numbered(6), 8);
-  SettingsKeeper keeper(the_model());
-  const auto drive_it = [&] {
-    while (keeper.busy()) {
-      keeper.done(memory.run(keeper.job()).value_or(false));
-    }
-  };
-  drive_it();
-  EXPECT_TRUE(keeper.stored() == numbered(6));
-  EXPECT_FALSE(keeper.certain());
-  memory.unanswered_writes = 4;  // three attempts, and the write that would invalidate the copy
-  keeper.poll(numbered(6), now_);
-  ASSERT_TRUE(keeper.busy());
-  drive_it();
-  keeper.poll(numbered(6), now_);
-  EXPECT_FALSE(keeper.busy());
-  EXPECT_TRUE(keeper.retry().armed());
-  keeper.poll(numbered(6), now_ + milliseconds(1000));
-  ASSERT_TRUE(keeper.busy());
-  drive_it();
-  keeper.poll(numbered(6), now_ + milliseconds(1000));
-  EXPECT_FALSE(keeper.busy());
-  EXPECT_FALSE(keeper.retry().armed());
-  EXPECT_TRUE(keeper.certain());
-  EXPECT_TRUE(Boot(memory).stored() == numbered(6));
-  // The six writes are three failed attempts to save, one failed attempt to invalidate the copy of that save,
-  // one write that invalidates the old copy, and, one second later, one write that invalidates the copy of
-  // the failed save.
-  EXPECT_EQ(memory.writes.size(), 6U);
-  keeper.poll(numbered(6), now_ + milliseconds(5000));
-  EXPECT_FALSE(keeper.busy());
-}
-
-TEST_F(SettingsKeeperTest, ACommandIsStoredEvenIfAnOldCopyCanOnlyBeInvalidatedLater) {
-  FakeMemory memory;
-  put_old(memory, 0, numbered(5), 7);
-  SettingsKeeper keeper(the_model());
-  const auto drive_it = [&] {
-    while (keeper.busy()) {
-      memory.unanswered_writes = memory.writes.size() == 1 || memory.writes.size() == 2 ? 1 : 0;
-      keeper.done(memory.run(keeper.job()).value_or(false));
-    }
-  };
-  drive_it();
-  keeper.save(numbered(6), now_);
-  drive_it();
-  EXPECT_TRUE(keeper.saved());
-  keeper.poll(numbered(6), now_);
-  EXPECT_TRUE(keeper.busy());
-  drive_it();
-  keeper.poll(numbered(6), now_);
-  EXPECT_FALSE(keeper.busy());
-  EXPECT_TRUE(keeper.retry().armed());
-  keeper.poll(numbered(6), now_ + milliseconds(1000));
-  drive_it();
-  keeper.poll(numbered(6), now_ + milliseconds(1000));
-  EXPECT_FALSE(keeper.busy());
-  EXPECT_FALSE(keeper.retry().armed());
-  EXPECT_EQ(memory.writes.size(), 4U);
-}
-
 TEST_F(SettingsKeeperTest, IfTheSettingsChangeWhileARefusedCopyIsInvalidatedTheChangeIsStoredImmediately) {
   store(numbered(5));
   memory_.unanswered_writes = 4;
@@ -314,34 +248,6 @@ TEST(SettingsKeeperAtReset, IfOneCopyCouldNotBeReadTheSettingsAreUncertainUntilA
   drive_memory();
   EXPECT_TRUE(keeper.certain());
   EXPECT_TRUE(Boot(memory).stored() == numbered(6));
-}
-
-/// Loads from `memory`, which does not answer at `place`. The places before it must be blank or readable with
-/// one read each.
-void load_without(SettingsKeeper& keeper, FakeMemory& memory, std::size_t place) {
-  for (std::size_t job = 0; keeper.busy(); ++job) {
-    memory.failing_reads = job == place ? kAttempts : memory.failing_reads;
-    keeper.done(memory.run(keeper.job()).value_or(false));
-  }
-}
-
-TEST(SettingsKeeperAtReset, AnUnreadPlaceOfAnOlderLayoutMattersOnlyIfTheCurrentCopyIsAlsoOld) {
-  constexpr std::size_t kFirstOldPlace = 2;
-  FakeMemory updating;
-  put_old(updating, 0, numbered(5), 8);
-  put_old(updating, 1, numbered(6), 7);
-  SettingsKeeper old(the_model());
-  load_without(old, updating, kFirstOldPlace);
-  ASSERT_TRUE(old.stored() == numbered(6));
-  EXPECT_FALSE(old.certain());
-
-  FakeMemory updated;
-  put(updated, 0, numbered(7), 9);
-  put_old(updated, 0, numbered(5), 8);
-  SettingsKeeper recent(the_model());
-  load_without(recent, updated, kFirstOldPlace);
-  ASSERT_TRUE(recent.stored() == numbered(7));
-  EXPECT_TRUE(recent.certain());
 }
 
 TEST_F(SettingsKeeperTest, ACommandIsStoredWithoutWaitingForTheNextRetry) {

@@ -19,8 +19,8 @@ using Found = SettingsStore::Found;
 inline constexpr std::size_t kPage = 32;
 inline constexpr std::size_t kAttempts = 3;
 /// The number of reads that a store makes at reset if the memory never answers: three reads at the first
-/// place, and one at each of the other three places.
-inline constexpr std::size_t kReadsOfASilentMemory = kAttempts + 3;
+/// place, and one at the other.
+inline constexpr std::size_t kReadsOfASilentMemory = kAttempts + 1;
 /// An offset in a page. A record contains the module's address at this offset in its first page.
 inline constexpr std::size_t kStuckCell = 4;
 
@@ -178,9 +178,8 @@ class Boot {
   SettingsStore store_;
 };
 
-/// The addresses of the two copies of the present layout, and of the two copies of older layouts.
-inline constexpr std::uint16_t kCopies[] = {0x080, 0x100};
-inline constexpr std::uint16_t kOldCopies[] = {0x000, 0x020};
+/// The addresses of the two copies.
+inline constexpr std::uint16_t kCopies[] = {0x000, 0x080};
 
 inline void put(FakeMemory& memory, std::size_t copy, const Settings& settings, std::uint16_t sequence,
                 const Model& which = the_model()) {
@@ -188,11 +187,6 @@ inline void put(FakeMemory& memory, std::size_t copy, const Settings& settings, 
   write_record(which, settings, sequence, record);
   std::copy_n(record.begin(), record_size({record.data(), record.size()}),
               memory.cells.begin() + kCopies[copy]);
-}
-
-/// Stores a copy in layout 2 (firmware/settings/old_layouts.hpp) without the firmware's code.
-inline void put_old(FakeMemory& memory, std::size_t copy, const Settings& settings, std::uint16_t sequence) {
-  put_layout_2(the_model(), settings, sequence, memory.cells.data(), kOldCopies[copy]);
 }
 
 /// Stores a record with `length` bytes of settings, which may be more than this firmware supports.

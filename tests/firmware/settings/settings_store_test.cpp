@@ -17,7 +17,7 @@ namespace {
 TEST(SettingsStore, ReadsTheFirstPageOfEachPlaceOfABlankMemoryOnce) {
   FakeMemory memory;
   const Boot run(memory);
-  EXPECT_EQ(memory.reads, (std::vector<std::uint16_t>{kCopies[0], kCopies[1], kOldCopies[0], kOldCopies[1]}));
+  EXPECT_EQ(memory.reads, (std::vector<std::uint16_t>{kCopies[0], kCopies[1]}));
 }
 
 TEST(SettingsStore, IsLoadingUntilAllCopiesAreRead) {
@@ -133,7 +133,7 @@ TEST(SettingsStore, AReadThatFailsOnceOrTwiceIsRepeated) {
     const Boot run(memory);
     EXPECT_EQ(run.found(), Found::Settings);
     EXPECT_TRUE(run.stored() == numbered(5)) << failing;
-    EXPECT_EQ(memory.reads.size(), failing + 4);
+    EXPECT_EQ(memory.reads.size(), failing + 2);
   }
 }
 
@@ -350,22 +350,6 @@ TEST(SettingsSource, ReportsTheStateOfTheCopies) {
   EXPECT_EQ(source_of(memory), Source::OneCopyBad);
   corrupt(memory, 1);
   EXPECT_EQ(source_of(memory), Source::NoneGood);
-}
-
-TEST(SettingsSource, IsTheOlderLayoutEvenIfACopyIsBad) {
-  FakeMemory memory;
-  put_old(memory, 0, numbered(5), 7);
-  EXPECT_EQ(source_of(memory), Source::OlderLayout);
-  memory.cells[kCopies[0]] = 0x55;
-  EXPECT_EQ(source_of(memory), Source::OlderLayout);
-}
-
-TEST(SettingsSource, IsGoodIfTheCopiesOfAnOlderLayoutAreInvalidated) {
-  FakeMemory memory;
-  put_old(memory, 0, numbered(5), 7);
-  Boot run(memory);
-  ASSERT_TRUE(run.save(numbered(6)));
-  EXPECT_EQ(source_of(memory), Source::Good);
 }
 
 TEST(SettingsSource, StaysTheSameAfterASave) {

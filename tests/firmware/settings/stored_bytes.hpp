@@ -1,6 +1,6 @@
-// Reads the files in stored_bytes/: memory contents that this firmware and earlier versions of it have
-// stored. The memories of modules in the field can contain these bytes. Therefore each file is committed once
-// and never regenerated, even if later firmware stores other bytes. The lines of a file:
+// Reads the files in stored_bytes/: memory contents that a firmware has stored. From the first release on, a
+// file is never regenerated, because the memories of modules in the field contain such bytes. The lines of a
+// file:
 //
 //     # comment
 //     model DESIGNATION
@@ -83,7 +83,7 @@ inline StoredBytes read_stored_bytes(const std::filesystem::path& path) {
 /// Throws std::runtime_error if a file names an unknown model or no model. Throws std::logic_error if a file
 /// lacks a setting or the number of a setting, or has a byte beyond the end of the memory.
 inline std::vector<StoredBytes> all_stored_bytes() {
-  constexpr std::size_t kAtLeast = 62;
+  constexpr std::size_t kAtLeast = 19;
   std::vector<StoredBytes> all;
   for (const auto& entry : std::filesystem::directory_iterator(EX9000_STORED_BYTES)) {
     all.push_back(read_stored_bytes(entry.path()));

@@ -88,7 +88,7 @@ TEST(PageStore, ASealedEntryIsGoodAndTheByteAfterItIsUnchanged) {
     EntryBytes entry{};
     std::uint8_t after = 0x55;
   } bytes;
-  seal(bytes.entry, 0x0102'0304, 11);
+  seal(bytes.entry, 0x0102'0304, kPages - 1);
   EXPECT_EQ(bytes.after, 0x55);
   EXPECT_TRUE(is_good(bytes.entry));
 }

@@ -209,7 +209,7 @@ struct Watchdog {
 /// A memory. A read or a write ends after `kMemoryJob` microseconds, with an interrupt.
 class Memory {
  public:
-  static constexpr std::size_t kSize = 0x180;
+  static constexpr std::size_t kSize = 0x100;
 
   void start_read(std::uint16_t address, MutableBytes destination, Time /*now*/) {
     Points::pass();

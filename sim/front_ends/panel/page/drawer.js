@@ -62,9 +62,7 @@ export class Drawer {
     }
     this.copies.forEach(({caption, bytes}, index) => {
       const copy = stored.copies[index];
-      caption.parentElement.hidden = copy.old && copyState(copy) === "blank";
-      const name = copy.old ? "Copy of earlier firmware" : `Copy ${index + 1}`;
-      setText(caption, `${name}: ${copyState(copy, index === stored.current)}`);
+      setText(caption, `Copy ${index + 1}: ${copyState(copy, index === stored.current)}`);
       setText(bytes, copy.bytes.match(/../g).join(" "));
     });
   }
