@@ -257,8 +257,8 @@ void Module::commit(Time now) {
 }
 
 void Module::drive_outputs(Time now) {
-  const Drive drive = cycle_.outcome().outputs_to_drive();
-  state_.outputs = static_cast<std::uint16_t>((state_.outputs & ~drive.mask) | (drive.value & drive.mask));
+  const BitWrite drive = cycle_.outcome().outputs_to_drive();
+  state_.outputs = drive.applied_to(state_.outputs);
   state_.output_timers.stop(drive.mask);
 
   const TimedDrive& timed = cycle_.outcome().timed_outputs_to_drive();

@@ -56,6 +56,13 @@ Refusal set_response_delay(Exchange& exchange);
 constexpr char kNoKey = 0;
 constexpr char kBroadcastKey = '*';
 
+/// The mark (I) of a command in wire.md section 4: when it needs the configuration permission.
+enum class Init : std::uint8_t {
+  NotRequired,
+  ToChangeLine,  ///< to change the baud code or the checksum
+  Required,
+};
+
 /// The part of a row of kCommands that a firmware image contains.
 struct Dispatch {
   char delimiter = 0;
@@ -66,13 +73,10 @@ struct Dispatch {
   std::uint8_t most_args = 0;
   Needs needs = Needs::Nothing;
   Handler handler = nullptr;
+  Init init = Init::NotRequired;
 };
 
 enum class Access : std::uint8_t { Read, Write, Store };
-
-/// The mark (I) of a command in wire.md section 4. Required: the command is permitted only in INIT mode or
-/// while INIT* is asserted. For `%`, this applies only to a change of the baud rate, line format or checksum.
-enum class Init : std::uint8_t { NotRequired, Required };
 
 /// A row with its documentation. The firmware never uses the texts, so an image does not contain them.
 struct Command {
@@ -81,8 +85,7 @@ struct Command {
   std::string_view reply;   ///< reply to a valid command; empty if the module does not reply
   std::string_view meaning;
   std::string_view range;  ///< range of the arguments
-  Access access;           ///< Store: may change settings; the module stores them before it replies
-  Init init;
+  Access access;  ///< for exports; Store: may change settings; the module stores them before it replies
   Dispatch dispatch;
 };
 
@@ -95,15 +98,13 @@ inline constexpr auto kCommands = table<Command>({
      "C0 for the line formats 8N2, 8E1 and 8O1; FF: 00, 40, 80 or "
      "C0; a new CC or FF is in force from the next reset on; (I) only to change CC or the checksum",
      Access::Store,
-     Init::Required,
-     {'%', kNoKey, 8, 8, Needs::Nothing, set_configuration}},
+     {'%', kNoKey, 8, 8, Needs::Nothing, set_configuration, Init::ToChangeLine}},
     {"sample",
      "#**",
      "",
      "all modules: take a synchronised sample",
      "",
      Access::Write,
-     Init::NotRequired,
      {'#', kBroadcastKey, 0, 0, Needs::Nothing, take_sample}},
     {"set-output-group",
      "#AABBDD",
@@ -112,7 +113,6 @@ inline constexpr auto kCommands = table<Command>({
      "BB: 00 or 0A outputs 0-7, 0B outputs from 8 on, DD: their bits; BB: 1c or Ac output c, Bc output 8+c, "
      "DD: 00 off, 01 on",
      Access::Write,
-     Init::NotRequired,
      {'#', kNoKey, 4, 4, Needs::Outputs, set_output_group}},
     {"read-counter",
      "#AAN",
@@ -120,7 +120,6 @@ inline constexpr auto kCommands = table<Command>({
      "read a counter",
      "N: channel, from 0",
      Access::Read,
-     Init::NotRequired,
      {'#', kNoKey, 1, 1, Needs::Inputs, read_counter}},
     {"read-configuration",
      "$AA2",
@@ -128,7 +127,6 @@ inline constexpr auto kCommands = table<Command>({
      "read the stored configuration",
      "",
      Access::Read,
-     Init::NotRequired,
      {'$', '2', 0, 0, Needs::Nothing, read_configuration}},
     {"read-sample",
      "$AA4",
@@ -136,7 +134,6 @@ inline constexpr auto kCommands = table<Command>({
      "read the synchronised sample; S is 1 on the first read of a sample, then 0",
      "",
      Access::Read,
-     Init::NotRequired,
      {'$', '4', 0, 0, Needs::Nothing, read_sample}},
     {"read-reset-status",
      "$AA5",
@@ -144,7 +141,6 @@ inline constexpr auto kCommands = table<Command>({
      "read and clear the reset status",
      "",
      Access::Read,
-     Init::NotRequired,
      {'$', '5', 0, 0, Needs::Nothing, read_reset_status}},
     {"read-channels",
      "$AA6",
@@ -152,7 +148,6 @@ inline constexpr auto kCommands = table<Command>({
      "read inputs and outputs",
      "",
      Access::Read,
-     Init::NotRequired,
      {'$', '6', 0, 0, Needs::Nothing, read_channels}},
     {"read-version",
      "$AAF",
@@ -160,7 +155,6 @@ inline constexpr auto kCommands = table<Command>({
      "read the firmware version",
      "",
      Access::Read,
-     Init::NotRequired,
      {'$', 'F', 0, 0, Needs::Nothing, read_version}},
     {"read-name",
      "$AAM",
@@ -168,7 +162,6 @@ inline constexpr auto kCommands = table<Command>({
      "read the module's name",
      "",
      Access::Read,
-     Init::NotRequired,
      {'$', 'M', 0, 0, Needs::Nothing, read_name}},
     {"clear-latches",
      "$AAC",
@@ -176,7 +169,6 @@ inline constexpr auto kCommands = table<Command>({
      "clear both latches of all channels",
      "",
      Access::Write,
-     Init::NotRequired,
      {'$', 'C', 0, 0, Needs::Inputs, clear_latches}},
     {"clear-counter",
      "$AACN",
@@ -184,7 +176,6 @@ inline constexpr auto kCommands = table<Command>({
      "clear a counter",
      "N: channel, from 0",
      Access::Write,
-     Init::NotRequired,
      {'$', 'C', 1, 1, Needs::Inputs, clear_counter}},
     {"read-latches",
      "$AALS",
@@ -192,7 +183,6 @@ inline constexpr auto kCommands = table<Command>({
      "read the latches",
      "S: 1 latch high, 0 latch low",
      Access::Read,
-     Init::NotRequired,
      {'$', 'L', 1, 1, Needs::Inputs, read_latches}},
     {"read-protocol",
      "$AAP",
@@ -200,7 +190,6 @@ inline constexpr auto kCommands = table<Command>({
      "read the stored protocol: 10 ASCII, 11 Modbus RTU",
      "",
      Access::Read,
-     Init::NotRequired,
      {'$', 'P', 0, 0, Needs::Modbus, read_protocol}},
     {"set-protocol",
      "$AAPN",
@@ -208,15 +197,13 @@ inline constexpr auto kCommands = table<Command>({
      "set the protocol, in force from the next reset on",
      "N: 0 ASCII, 1 Modbus RTU (requires a stored address of 01-F7)",
      Access::Store,
-     Init::Required,
-     {'$', 'P', 1, 1, Needs::Modbus, set_protocol}},
+     {'$', 'P', 1, 1, Needs::Modbus, set_protocol, Init::Required}},
     {"read-channels-short",
      "@AA",
      ">(First)(Second)",
      "read inputs and outputs",
      "",
      Access::Read,
-     Init::NotRequired,
      {'@', kNoKey, 0, 0, Needs::Nothing, read_channels_short}},
     {"set-outputs",
      "@AA(Data)",
@@ -225,7 +212,6 @@ inline constexpr auto kCommands = table<Command>({
      "Data: a hex number, bit 0 is output 0; 1 digit for up to 4 outputs, 2 or 1 digits for up to 8, 4 or 2 "
      "digits for more",
      Access::Write,
-     Init::NotRequired,
      {'@', kNoKey, 1, 4, Needs::Outputs, set_outputs}},
     {"set-name",
      "~AAO(Name)",
@@ -233,7 +219,6 @@ inline constexpr auto kCommands = table<Command>({
      "set the module's name",
      "Name: 1-6 characters 0x20-0x7E, 1-7 on the EX9068D-M and EX9068AD-M",
      Access::Store,
-     Init::NotRequired,
      {'~', 'O', 1, kMaxNameLength, Needs::Nothing, set_name}},
     {"host-ok",
      "~**",
@@ -241,7 +226,6 @@ inline constexpr auto kCommands = table<Command>({
      "restart the host watchdogs of all modules",
      "",
      Access::Write,
-     Init::NotRequired,
      {'~', kBroadcastKey, 0, 0, Needs::Nothing, host_ok}},
     {"read-status",
      "~AA0",
@@ -249,7 +233,6 @@ inline constexpr auto kCommands = table<Command>({
      "read the host watchdog's status",
      "",
      Access::Read,
-     Init::NotRequired,
      {'~', '0', 0, 0, Needs::Nothing, read_status}},
     {"clear-status",
      "~AA1",
@@ -257,7 +240,6 @@ inline constexpr auto kCommands = table<Command>({
      "clear the timeout status",
      "",
      Access::Store,
-     Init::NotRequired,
      {'~', '1', 0, 0, Needs::Nothing, clear_status}},
     {"read-watchdog",
      "~AA2",
@@ -265,7 +247,6 @@ inline constexpr auto kCommands = table<Command>({
      "read whether the host watchdog is enabled, and its timeout",
      "",
      Access::Read,
-     Init::NotRequired,
      {'~', '2', 0, 0, Needs::Nothing, read_watchdog}},
     {"set-watchdog",
      "~AA3EVV",
@@ -273,7 +254,6 @@ inline constexpr auto kCommands = table<Command>({
      "set the host watchdog",
      "E: 0 off, 1 on; VV: timeout 01-FF in units of 0.1 s",
      Access::Store,
-     Init::NotRequired,
      {'~', '3', 3, 3, Needs::Nothing, set_watchdog}},
     {"read-preset-value",
      "~AA4V",
@@ -281,7 +261,6 @@ inline constexpr auto kCommands = table<Command>({
      "read the power-on or safe value",
      "V: P power-on value, S safe value",
      Access::Read,
-     Init::NotRequired,
      {'~', '4', 1, 1, Needs::Outputs, read_preset_value}},
     {"store-preset-value",
      "~AA5V",
@@ -289,7 +268,6 @@ inline constexpr auto kCommands = table<Command>({
      "store the present outputs as the power-on or safe value",
      "V: P power-on value, S safe value",
      Access::Store,
-     Init::NotRequired,
      {'~', '5', 1, 1, Needs::Outputs, store_preset_value}},
     {"read-response-delay",
      "~AARD",
@@ -297,7 +275,6 @@ inline constexpr auto kCommands = table<Command>({
      "read the response delay",
      "",
      Access::Read,
-     Init::NotRequired,
      {'~', 'R', 1, 1, Needs::Nothing, read_response_delay}},
     {"set-response-delay",
      "~AARDVV",
@@ -305,7 +282,6 @@ inline constexpr auto kCommands = table<Command>({
      "set the response delay, in force from the next request on",
      "VV: 00-1E, in ms",
      Access::Store,
-     Init::NotRequired,
      {'~', 'R', 3, 3, Needs::Nothing, set_response_delay}},
     {"read-extension",
      "~AAXRRRR",
@@ -314,7 +290,6 @@ inline constexpr auto kCommands = table<Command>({
      "RRRR: its address 0240-030F. For a 32-bit value, use the address of the high word; the reply contains "
      "both words",
      Access::Read,
-     Init::NotRequired,
      {'~', 'X', 4, 4, Needs::Nothing, read_extension}},
     {"write-extension",
      "~AAXRRRRVVVV",
@@ -322,7 +297,6 @@ inline constexpr auto kCommands = table<Command>({
      "write an extension register",
      "RRRR: its address 0240-030F; VVVV: the value",
      Access::Store,
-     Init::NotRequired,
      {'~', 'X', 8, 8, Needs::Nothing, write_extension}},
 });
 

@@ -21,28 +21,15 @@ Refusal set_configuration(Exchange& exchange) {
   if (address < 0 || baud_code < 0 || format < 0 || (type != kDioType && type != kDioTypeOfTheExample)) {
     return Refusal::OutOfRange;
   }
-  const Settings& settings = exchange.state.settings;
-  const auto new_address = static_cast<std::uint8_t>(address);
-  const auto new_baud_code = static_cast<std::uint8_t>(baud_code);
-  const auto new_format = static_cast<std::uint8_t>(format);
-  if (!is_baud_code(new_baud_code) || (new_format & ~kFormatMask) != 0 ||
-      (settings.protocol == Protocol::ModbusRtu && !is_modbus_address(new_address))) {
-    return Refusal::OutOfRange;
-  }
-  const bool changes_line =
-      new_baud_code != settings.baud_code || ((new_format ^ settings.format) & kFormatChecksum) != 0;
-  if (changes_line && !exchange.state.configuration_permitted()) {
-    return Refusal::NotPermitted;
-  }
   SettingsChange& change = exchange.outcome.change();
-  change.address = new_address;
-  change.baud_code = new_baud_code;
-  change.format = new_format;
+  change.address = static_cast<std::uint8_t>(address);
+  change.baud_code = static_cast<std::uint8_t>(baud_code);
+  change.format = static_cast<std::uint8_t>(format);
   if (!exchange.state.in_force.init_mode) {
     exchange.outcome.request(Effect::TakeAddress);
   }
   exchange.reply.put('!');
-  exchange.reply.put_hex(new_address);
+  exchange.reply.put_hex(*change.address);
   return Refusal::None;
 }
 
@@ -76,14 +63,6 @@ Refusal read_name(Exchange& exchange) {
 }
 
 Refusal set_name(Exchange& exchange) {
-  if (exchange.args.size > exchange.model().longest_name) {
-    return Refusal::OutOfRange;
-  }
-  for (const std::uint8_t character : exchange.args) {
-    if (!Name::is_name_character(character)) {
-      return Refusal::OutOfRange;
-    }
-  }
   exchange.outcome.change().name = Name(exchange.args);
   put_valid(exchange);
   return Refusal::None;
@@ -98,12 +77,8 @@ Refusal read_protocol(Exchange& exchange) {
 
 Refusal set_protocol(Exchange& exchange) {
   const bool modbus = exchange.args[0] == '1';
-  if ((!modbus && exchange.args[0] != '0') ||
-      (modbus && !is_modbus_address(exchange.state.settings.address))) {
+  if (!modbus && exchange.args[0] != '0') {
     return Refusal::OutOfRange;
-  }
-  if (!exchange.state.configuration_permitted()) {
-    return Refusal::NotPermitted;
   }
   exchange.outcome.change().protocol = modbus ? Protocol::ModbusRtu : Protocol::Ascii;
   put_valid(exchange);

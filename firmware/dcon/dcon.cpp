@@ -50,6 +50,34 @@ bool refused_without_address(const Model& model, Bytes frame) {
   return frame[0] == '@';  // a refused `@` frame has data, because `@AA` without data is never refused
 }
 
+/// Returns whether the command needs the configuration permission (wire.md section 2).
+bool needs_permission(const Dispatch& row, const Exchange& exchange) {
+  const Settings& stored = exchange.state.settings;
+  switch (row.init) {  // not covered: the enumeration has no other value
+    case Init::NotRequired:
+      return false;
+    case Init::ToChangeLine: {
+      const Settings changed = exchange.outcome.change().applied_to(stored);
+      return changed.baud_code != stored.baud_code ||
+             ((changed.format ^ stored.format) & kFormatChecksum) != 0;
+    }
+    case Init::Required:
+      return true;
+  }
+  return true;
+}
+
+Refusal judge(const Dispatch& row, Exchange& exchange) {
+  const Refusal refusal = row.handler(exchange);
+  if (refusal != Refusal::None) {
+    return refusal;
+  }
+  if (!exchange.state.configuration_permitted() && needs_permission(row, exchange)) {
+    return Refusal::NotPermitted;
+  }
+  return exchange.judge_outcome();
+}
+
 void refuse(Exchange& exchange, Refusal refusal) {
   Reply& reply = exchange.reply;
   reply.clear();
@@ -99,7 +127,7 @@ void answer(Exchange& exchange) {
   const std::size_t command = find_command(exchange.model(), frame);
   if (command != kNoCommand) {
     exchange.args = arguments(kDispatch[command], frame);
-    refusal = kDispatch[command].handler(exchange);
+    refusal = judge(kDispatch[command], exchange);
   }
   exchange.outcome.refusal = refusal;
   if (refusal != Refusal::None) {

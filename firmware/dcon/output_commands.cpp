@@ -10,13 +10,9 @@ namespace {
 constexpr std::uint16_t kLowGroup = 0x00FF;
 constexpr unsigned kHighGroupShift = 8;
 
-/// Records in the outcome which outputs to drive, and writes the reply. Refuses the command while the
-/// timeout status is set. The caller must have checked syntax and range.
-Refusal drive(Exchange& exchange, Drive drive) {
-  if (exchange.state.outputs_blocked()) {
-    return Refusal::OutputsBlocked;
-  }
-  exchange.outcome.drive(drive);
+/// Records in the outcome which outputs to drive, and writes the reply.
+Refusal drive(Exchange& exchange, BitWrite outputs) {
+  exchange.outcome.drive(outputs);
   exchange.reply.put('>');
   return Refusal::None;
 }
@@ -24,7 +20,7 @@ Refusal drive(Exchange& exchange, Drive drive) {
 /// Returns the outputs that `#AABBDD` selects with BB = 00, 0A or 0B, and their levels. `selector` is the
 /// second character of BB, and `data` is the value of DD. The mask is 0 if BB has another value, if the model
 /// has no such group, or if a bit of `data` is 1 for an output that the model does not have.
-Drive group(const Model& model, std::uint8_t selector, int data) {
+BitWrite group(const Model& model, std::uint8_t selector, int data) {
   const bool high = selector == 'B';
   const unsigned channels = model.output_mask() & (high ? ~unsigned{kLowGroup} : unsigned{kLowGroup});
   const auto value = static_cast<unsigned>(data) << (high ? kHighGroupShift : 0U);
@@ -38,7 +34,7 @@ Drive group(const Model& model, std::uint8_t selector, int data) {
 /// the first character of BB. `channel` is the value of the second character of BB, or -1 if this character
 /// is not an upper-case hex digit. `data` is the value of DD. The mask is 0 if BB has another value, if the
 /// model has no such output, or if `data` is neither 0 nor 1.
-Drive single(const Model& model, std::uint8_t selector, int channel, int data) {
+BitWrite single(const Model& model, std::uint8_t selector, int channel, int data) {
   const bool high = selector == 'B';
   if ((selector != '1' && selector != 'A' && !high) || channel < 0 || channel > 7 || data > 1) {
     return {};
@@ -71,9 +67,9 @@ Refusal set_output_group(Exchange& exchange) {
   if (data < 0) {
     return Refusal::OutOfRange;
   }
-  const Drive wanted = exchange.args[0] == '0'
-                           ? group(exchange.model(), exchange.args[1], data)
-                           : single(exchange.model(), exchange.args[0], hex_value(exchange.args[1]), data);
+  const BitWrite wanted = exchange.args[0] == '0'
+                              ? group(exchange.model(), exchange.args[1], data)
+                              : single(exchange.model(), exchange.args[0], hex_value(exchange.args[1]), data);
   return wanted.mask == 0 ? Refusal::OutOfRange : drive(exchange, wanted);
 }
 

@@ -3,32 +3,20 @@
 
 namespace ex9000::modbus {
 
-namespace {
-
-constexpr std::uint16_t merge(std::uint16_t present, BitWrite bits) {
-  return static_cast<std::uint16_t>((present & ~bits.mask) | (bits.value & bits.mask));
-}
-
-}  // namespace
-
 std::uint16_t read_outputs(const State& state) { return state.outputs; }
 
 Refusal write_outputs(const State& /*state*/, BitWrite bits, Outcome& outcome) {
-  outcome.drive({bits.mask, bits.value});
+  outcome.drive(bits);
   return Refusal::None;
 }
 
-std::uint16_t read_safe_value(const State& state) { return state.settings.safe_value; }
-
 Refusal write_safe_value(const State& state, BitWrite bits, Outcome& outcome) {
-  outcome.change().safe_value = merge(state.settings.safe_value, bits);
+  outcome.change().safe_value = bits.applied_to(state.settings.safe_value);
   return write_outputs(state, bits, outcome);
 }
 
-std::uint16_t read_power_on_value(const State& state) { return state.settings.power_on_value; }
-
 Refusal write_power_on_value(const State& state, BitWrite bits, Outcome& outcome) {
-  outcome.change().power_on_value = merge(state.settings.power_on_value, bits);
+  outcome.change().power_on_value = bits.applied_to(state.settings.power_on_value);
   return write_outputs(state, bits, outcome);
 }
 
@@ -36,22 +24,13 @@ std::uint16_t read_inputs(const State& state) { return state.inputs.levels(); }
 std::uint16_t read_latch_high(const State& state) { return state.inputs.latched_high(); }
 std::uint16_t read_latch_low(const State& state) { return state.inputs.latched_low(); }
 
-std::uint16_t read_protocol(const State& state) {
-  return state.settings.protocol == Protocol::ModbusRtu ? 1 : 0;
-}
-
 Refusal write_protocol(const State& /*state*/, BitWrite bits, Outcome& outcome) {
   outcome.change().protocol = bits.value != 0 ? Protocol::ModbusRtu : Protocol::Ascii;
   return Refusal::None;
 }
 
-std::uint16_t read_watchdog_enable(const State& state) { return state.settings.watchdog_enabled ? 1 : 0; }
-
-Refusal write_watchdog_enable(const State& state, BitWrite bits, Outcome& outcome) {
+Refusal write_watchdog_enable(const State& /*state*/, BitWrite bits, Outcome& outcome) {
   const bool enable = bits.value != 0;
-  if (enable && state.settings.watchdog_timeout == 0) {
-    return Refusal::WrongValue;
-  }
   outcome.change().watchdog_enabled = enable;
   if (enable) {
     outcome.request(Effect::RestartHostWatchdog);
@@ -63,8 +42,6 @@ Refusal write_clear_latches(const State& /*state*/, BitWrite /*bits*/, Outcome& 
   outcome.request(Effect::ClearLatches);
   return Refusal::None;
 }
-
-std::uint16_t read_timeout_status(const State& state) { return state.settings.timeout_status ? 1 : 0; }
 
 Refusal write_clear_timeout_status(const State& /*state*/, BitWrite /*bits*/, Outcome& outcome) {
   outcome.change().timeout_status = false;

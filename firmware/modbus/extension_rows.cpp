@@ -42,38 +42,6 @@ Refusal write_input_filter(const State& state, unsigned index, std::uint16_t val
   return Refusal::None;
 }
 
-std::uint16_t read_inverted_inputs(const Exchange& exchange, unsigned /*index*/) {
-  return exchange.state.settings.inverted_inputs;
-}
-
-Refusal write_inverted_inputs(const State& state, unsigned /*index*/, std::uint16_t value, Outcome& outcome) {
-  if ((value & ~state.model().input_mask()) != 0) {
-    return Refusal::WrongValue;
-  }
-  outcome.change().inverted_inputs = value;
-  return Refusal::None;
-}
-
-std::uint16_t read_fed_by_requests(const Exchange& exchange, unsigned /*index*/) {
-  return exchange.state.settings.fed_by_requests ? 1 : 0;
-}
-
-Refusal write_fed_by_requests(const State& /*state*/, unsigned /*index*/, std::uint16_t value,
-                              Outcome& outcome) {
-  outcome.change().fed_by_requests = value != 0;
-  return Refusal::None;
-}
-
-std::uint16_t read_response_delay(const Exchange& exchange, unsigned /*index*/) {
-  return exchange.state.settings.response_delay;
-}
-
-Refusal write_response_delay(const State& /*state*/, unsigned /*index*/, std::uint16_t value,
-                             Outcome& outcome) {
-  outcome.change().response_delay = static_cast<std::uint8_t>(value);
-  return Refusal::None;
-}
-
 std::uint16_t read_long_counter(const Exchange& exchange, unsigned index) {
   return word_of(exchange.state.inputs.long_counter(index / 2), index % 2);
 }
@@ -101,8 +69,11 @@ std::uint16_t read_timeout_count(const Exchange& exchange, unsigned /*index*/) {
   return exchange.state.statistics.timeouts;
 }
 
-Refusal clear_timeout_count(const State& /*state*/, unsigned /*index*/, std::uint16_t /*value*/,
+Refusal clear_timeout_count(const State& /*state*/, unsigned /*index*/, std::uint16_t value,
                             Outcome& outcome) {
+  if (value != 0) {
+    return Refusal::WrongValue;
+  }
   outcome.request(Effect::ClearTimeoutCount);
   return Refusal::None;
 }

@@ -79,7 +79,10 @@ void answer(Exchange& exchange) {
   }
   reply.put(frame[0]);
   reply.put(function);
-  const Refusal refusal = row == nullptr ? Refusal::UnknownFunction : row->handler(exchange);
+  Refusal refusal = row == nullptr ? Refusal::UnknownFunction : row->handler(exchange);
+  if (refusal == Refusal::None) {
+    refusal = exchange.judge_outcome();
+  }
   exchange.outcome.refusal = refusal;
   if (exchange.broadcast) {
     reply.clear();

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
+#include <optional>
 #include <string_view>
 
 #include "firmware/modbus/host_ok.hpp"
@@ -40,21 +42,13 @@ constexpr unsigned width_of(Width width, const Model& model) {
   return width == Width::PairPerInput ? 2U * model.inputs : model.inputs;
 }
 
-/// Coils to write: each coil whose bit is set in `mask` gets the value of its bit in `value`. Bit 0 is the
-/// row's first coil.
-struct BitWrite {
-  std::uint16_t mask = 0;
-  std::uint16_t value = 0;
-};
-
 /// Additional rules for access to a row.
 using Rules = std::uint8_t;
 constexpr Rules kPlain = 0;
-constexpr Rules kDrivesOutputs = 1U << 0U;  ///< writes are refused while the timeout status is set
-constexpr Rules kOnlyOn = 1U << 1U;         ///< exception 03 for function 05 with 0000
-constexpr Rules kConfiguration = 1U << 2U;  ///< writes by broadcast are ignored
-constexpr Rules kExtension = 1U << 3U;      ///< `~AAX` accesses the row too (firmware/extensions.md)
-constexpr Rules kLong = 1U << 4U;           ///< pairs of registers with 32-bit values, high word first
+constexpr Rules kOnlyOn = 1U << 0U;         ///< exception 03 for function 05 with 0000
+constexpr Rules kConfiguration = 1U << 1U;  ///< writes by broadcast are ignored
+constexpr Rules kExtension = 1U << 2U;      ///< `~AAX` accesses the row too (firmware/extensions.md)
+constexpr Rules kLong = 1U << 3U;           ///< pairs of registers with 32-bit values, high word first
 
 /// A row of kBitRegisters without its texts. An image contains only this part of the row.
 struct BitRow {
@@ -65,6 +59,7 @@ struct BitRow {
   Rules rules = kPlain;
   /// Returns all bits of the row. Bit 0 is the value of the row's first coil or discrete input.
   std::uint16_t (*read)(const State& state) = nullptr;
+  /// Writes the coils of the row whose bit is set in `bits.mask`.
   Refusal (*write)(const State& state, BitWrite bits, Outcome& outcome) = nullptr;
 
   [[nodiscard]] constexpr bool has(Rules rule) const { return (rules & rule) != 0; }
@@ -77,8 +72,6 @@ struct WordRow {
   Needs needs = Needs::Nothing;
   Functions functions = 0;
   Rules rules = kPlain;
-  std::uint16_t lowest = 0;   ///< lowest value that may be written
-  std::uint16_t highest = 0;  ///< highest value that may be written
   /// `index`: position of the register in the row, from 0.
   std::uint16_t (*read)(const Exchange& exchange, unsigned index) = nullptr;
   Refusal (*write)(const State& state, unsigned index, std::uint16_t value, Outcome& outcome) = nullptr;
@@ -86,22 +79,41 @@ struct WordRow {
   [[nodiscard]] constexpr bool has(Rules rule) const { return (rules & rule) != 0; }
 };
 
+// --- scalar settings: every value that the type of the setting can hold is left to Settings::possible_for
+// ---
+
+template <auto setting>
+std::uint16_t read_bits_of(const State& state) {
+  return static_cast<std::uint16_t>(state.settings.*setting);
+}
+template <auto setting>
+std::uint16_t read_word_of(const Exchange& exchange, unsigned /*index*/) {
+  return static_cast<std::uint16_t>(exchange.state.settings.*setting);
+}
+template <class Value>
+Refusal write_word_to(std::optional<Value>& setting, std::uint16_t value) {
+  if (value > std::numeric_limits<Value>::max()) {
+    return Refusal::WrongValue;
+  }
+  setting = static_cast<Value>(value);
+  return Refusal::None;
+}
+template <auto setting>
+Refusal write_word_of(const State& /*state*/, unsigned /*index*/, std::uint16_t value, Outcome& outcome) {
+  return write_word_to(outcome.change().*setting, value);
+}
+
 // bit_rows.cpp
 std::uint16_t read_outputs(const State& state);
 Refusal write_outputs(const State& state, BitWrite bits, Outcome& outcome);
-std::uint16_t read_safe_value(const State& state);
 Refusal write_safe_value(const State& state, BitWrite bits, Outcome& outcome);
-std::uint16_t read_power_on_value(const State& state);
 Refusal write_power_on_value(const State& state, BitWrite bits, Outcome& outcome);
 std::uint16_t read_inputs(const State& state);
 std::uint16_t read_latch_high(const State& state);
 std::uint16_t read_latch_low(const State& state);
-std::uint16_t read_protocol(const State& state);
 Refusal write_protocol(const State& state, BitWrite bits, Outcome& outcome);
-std::uint16_t read_watchdog_enable(const State& state);
 Refusal write_watchdog_enable(const State& state, BitWrite bits, Outcome& outcome);
 Refusal write_clear_latches(const State& state, BitWrite bits, Outcome& outcome);
-std::uint16_t read_timeout_status(const State& state);
 Refusal write_clear_timeout_status(const State& state, BitWrite bits, Outcome& outcome);
 Refusal write_clear_counters(const State& state, BitWrite bits, Outcome& outcome);
 std::uint16_t read_counting_edge(const State& state);
@@ -109,21 +121,11 @@ Refusal write_counting_edge(const State& state, BitWrite bits, Outcome& outcome)
 // word_rows.cpp
 std::uint16_t read_counter(const Exchange& exchange, unsigned index);
 std::uint16_t read_module_code(const Exchange& exchange, unsigned index);
-std::uint16_t read_address(const Exchange& exchange, unsigned index);
 Refusal write_address(const State& state, unsigned index, std::uint16_t value, Outcome& outcome);
-std::uint16_t read_baud_code(const Exchange& exchange, unsigned index);
-Refusal write_baud_code(const State& state, unsigned index, std::uint16_t value, Outcome& outcome);
-std::uint16_t read_watchdog_timeout(const Exchange& exchange, unsigned index);
 Refusal write_watchdog_timeout(const State& state, unsigned index, std::uint16_t value, Outcome& outcome);
 // extension_rows.cpp
 std::uint16_t read_input_filter(const Exchange& exchange, unsigned index);
 Refusal write_input_filter(const State& state, unsigned index, std::uint16_t value, Outcome& outcome);
-std::uint16_t read_inverted_inputs(const Exchange& exchange, unsigned index);
-Refusal write_inverted_inputs(const State& state, unsigned index, std::uint16_t value, Outcome& outcome);
-std::uint16_t read_fed_by_requests(const Exchange& exchange, unsigned index);
-Refusal write_fed_by_requests(const State& state, unsigned index, std::uint16_t value, Outcome& outcome);
-std::uint16_t read_response_delay(const Exchange& exchange, unsigned index);
-Refusal write_response_delay(const State& state, unsigned index, std::uint16_t value, Outcome& outcome);
 std::uint16_t read_long_counter(const Exchange& exchange, unsigned index);
 std::uint16_t read_time_left(const Exchange& exchange, unsigned index);
 Refusal write_timed_output(const State& state, unsigned index, std::uint16_t value, Outcome& outcome);
@@ -152,12 +154,11 @@ struct WordRegister {
 };
 
 inline constexpr auto kBitRegisters = table<BitRegister>({
-    BitRegister{
-        "outputs",
-        "outputs",
-        "0 off, 1 on",
-        {0x0000, Width::PerOutput, Needs::Outputs, kReadCoils | kWriteSingleCoil | kWriteMultipleCoils,
-         kDrivesOutputs, read_outputs, write_outputs}},
+    BitRegister{"outputs",
+                "outputs",
+                "0 off, 1 on",
+                {0x0000, Width::PerOutput, Needs::Outputs,
+                 kReadCoils | kWriteSingleCoil | kWriteMultipleCoils, kPlain, read_outputs, write_outputs}},
     {"inputs",
      "inputs",
      "",
@@ -179,23 +180,23 @@ inline constexpr auto kBitRegisters = table<BitRegister>({
         "safe value; a write also drives the outputs",
         "0 off, 1 on",
         {0x0080, Width::PerOutput, Needs::Outputs, kReadCoils | kWriteSingleCoil | kWriteMultipleCoils,
-         kDrivesOutputs, read_safe_value, write_safe_value}},
+         kPlain, read_bits_of<&Settings::safe_value>, write_safe_value}},
     BitRegister{
         "power-on-value",
         "power-on value; a write also drives the outputs",
         "0 off, 1 on",
         {0x00A0, Width::PerOutput, Needs::Outputs, kReadCoils | kWriteSingleCoil | kWriteMultipleCoils,
-         kDrivesOutputs, read_power_on_value, write_power_on_value}},
+         kPlain, read_bits_of<&Settings::power_on_value>, write_power_on_value}},
     {"protocol",
      "stored protocol, in force from the next reset on",
      "0 ASCII, 1 Modbus RTU; not by broadcast",
-     {0x0100, Width::One, Needs::Nothing, kReadCoils | kWriteSingleCoil, kConfiguration, read_protocol,
-      write_protocol}},
+     {0x0100, Width::One, Needs::Nothing, kReadCoils | kWriteSingleCoil, kConfiguration,
+      read_bits_of<&Settings::protocol>, write_protocol}},
     {"watchdog-enable",
      "host watchdog enable",
      "0 off, 1 on and restart; 1 only if the timeout is not 0",
-     {0x0104, Width::One, Needs::Nothing, kReadCoils | kWriteSingleCoil, kPlain, read_watchdog_enable,
-      write_watchdog_enable}},
+     {0x0104, Width::One, Needs::Nothing, kReadCoils | kWriteSingleCoil, kPlain,
+      read_bits_of<&Settings::watchdog_enabled>, write_watchdog_enable}},
     {"clear-latches",
      "clear both latches of all channels",
      "1 only",
@@ -203,8 +204,8 @@ inline constexpr auto kBitRegisters = table<BitRegister>({
     {"timeout-status",
      "host watchdog timeout status",
      "1 only: clears it",
-     {0x010D, Width::One, Needs::Nothing, kReadCoils | kWriteSingleCoil, kOnlyOn, read_timeout_status,
-      write_clear_timeout_status}},
+     {0x010D, Width::One, Needs::Nothing, kReadCoils | kWriteSingleCoil, kOnlyOn,
+      read_bits_of<&Settings::timeout_status>, write_clear_timeout_status}},
     {"clear-counters",
      "clear the channel's counter",
      "1 clears it; 0 changes nothing and requires function 0F",
@@ -223,108 +224,107 @@ inline constexpr auto kWordRegisters = table<WordRegister>({
     {"counters",
      "input counters",
      "",
-     {0x0000, Width::PerInput, Needs::Inputs, kReadHoldingRegisters | kReadInputRegisters, kPlain, 0, 0,
+     {0x0000, Width::PerInput, Needs::Inputs, kReadHoldingRegisters | kReadInputRegisters, kPlain,
       read_counter, nullptr}},
     WordRegister{
         "module-code",
         "module code in two registers; for example, the code 0x9042 is read as 0x0090 and 0x4200",
         "",
-        {0x01E2, Width::Two, Needs::Nothing, kReadHoldingRegisters, kPlain, 0, 0, read_module_code, nullptr}},
+        {0x01E2, Width::Two, Needs::Nothing, kReadHoldingRegisters, kPlain, read_module_code, nullptr}},
     {"address",
      "stored address, in force from the next reset on",
      "1 to 247; not by broadcast",
      {0x01E4, Width::One, Needs::Nothing, kReadHoldingRegisters | kWriteRegisters, kConfiguration,
-      kFirstModbusAddress, kLastModbusAddress, read_address, write_address}},
+      read_word_of<&Settings::address>, write_address}},
     {"baud-code",
      "stored baud code with the line format, in force from the next reset on",
      "0x03 to 0x0A (8N1), 0x43 to 0x4A (8N2), 0x83 to 0x8A (8E1), 0xC3 to 0xCA (8O1); not by broadcast",
      {0x01E5, Width::One, Needs::Nothing, kReadHoldingRegisters | kWriteRegisters, kConfiguration,
-      kFirstBaudCode, kLargestBaudCode, read_baud_code, write_baud_code}},
+      read_word_of<&Settings::baud_code>, write_word_of<&SettingsChange::baud_code>}},
     {"watchdog-timeout",
      "host watchdog timeout in units of 0.1 s",
      "0 to 255; not 0 while the host watchdog is enabled",
-     {0x01E8, Width::One, Needs::Nothing, kReadHoldingRegisters | kWriteRegisters, kPlain, 0, 255,
-      read_watchdog_timeout, write_watchdog_timeout}},
+     {0x01E8, Width::One, Needs::Nothing, kReadHoldingRegisters | kWriteRegisters, kPlain,
+      read_word_of<&Settings::watchdog_timeout>, write_watchdog_timeout}},
     // --- extension registers, 0x0240 to 0x030F ---
+    WordRegister{"input-filters",
+                 "filter of the input in ms: a level counts when it has been stable for this time",
+                 "0 to 2000; not by broadcast",
+                 {0x0240, Width::PerInput, Needs::Inputs, kReadRegisters | kWriteRegisters,
+                  kExtension | kConfiguration, read_input_filter, write_input_filter}},
     WordRegister{
-        "input-filters",
-        "filter of the input in ms: a level counts when it has been stable for this time",
-        "0 to 2000; not by broadcast",
-        {0x0240, Width::PerInput, Needs::Inputs, kReadRegisters | kWriteRegisters,
-         kExtension | kConfiguration, 0, InputFilters::kLongest, read_input_filter, write_input_filter}},
-    WordRegister{"inverted-inputs",
-                 "inverted inputs, bit n is input n",
-                 "only bits of inputs that the model has; not by broadcast",
-                 {0x0250, Width::One, Needs::Inputs, kReadRegisters | kWriteRegisters,
-                  kExtension | kConfiguration, 0, 0xFFFF, read_inverted_inputs, write_inverted_inputs}},
-    WordRegister{"watchdog-feed",
-                 "requests that restart the host watchdog; 0: a host OK, and requests that enable the host "
-                 "watchdog or write its timeout; 1: also all other requests for this module",
-                 "0 or 1; not by broadcast",
-                 {0x0251, Width::One, Needs::Nothing, kReadRegisters | kWriteRegisters,
-                  kExtension | kConfiguration, 0, 1, read_fed_by_requests, write_fed_by_requests}},
+        "inverted-inputs",
+        "inverted inputs, bit n is input n",
+        "only bits of inputs that the model has; not by broadcast",
+        {0x0250, Width::One, Needs::Inputs, kReadRegisters | kWriteRegisters, kExtension | kConfiguration,
+         read_word_of<&Settings::inverted_inputs>, write_word_of<&SettingsChange::inverted_inputs>}},
+    WordRegister{
+        "watchdog-feed",
+        "requests that restart the host watchdog; 0: a host OK, and requests that enable the host "
+        "watchdog or write its timeout; 1: also all other requests for this module",
+        "0 or 1; not by broadcast",
+        {0x0251, Width::One, Needs::Nothing, kReadRegisters | kWriteRegisters, kExtension | kConfiguration,
+         read_word_of<&Settings::fed_by_requests>, write_word_of<&SettingsChange::fed_by_requests>}},
     WordRegister{
         "response-delay",
         "response delay in ms, in force from the next request on",
         "0 to 30; not by broadcast",
-        {0x0252, Width::One, Needs::Nothing, kReadRegisters | kWriteRegisters, kExtension | kConfiguration, 0,
-         kLongestResponseDelay, read_response_delay, write_response_delay}},
+        {0x0252, Width::One, Needs::Nothing, kReadRegisters | kWriteRegisters, kExtension | kConfiguration,
+         read_word_of<&Settings::response_delay>, write_word_of<&SettingsChange::response_delay>}},
     WordRegister{"long-counters",
                  "input counters with 32 bits, two registers each, high word first",
                  "",
-                 {0x0260, Width::PairPerInput, Needs::Inputs, kReadRegisters, kExtension | kLong, 0, 0,
+                 {0x0260, Width::PairPerInput, Needs::Inputs, kReadRegisters, kExtension | kLong,
                   read_long_counter, nullptr}},
     WordRegister{"timed-outputs",
                  "timed output: the time until the output is switched off, in units of 0.1 s",
                  "1 to 65535: switch on for this time; 0: switch off",
-                 {0x0280, Width::PerOutput, Needs::Outputs, kReadRegisters | kWriteRegisters,
-                  kExtension | kDrivesOutputs, 0, 0xFFFF, read_time_left, write_timed_output}},
-    WordRegister{
-        "version",
-        "firmware version nn.nn, two BCD digits in each byte",
-        "",
-        {0x0300, Width::One, Needs::Nothing, kReadRegisters, kExtension, 0, 0, read_version, nullptr}},
+                 {0x0280, Width::PerOutput, Needs::Outputs, kReadRegisters | kWriteRegisters, kExtension,
+                  read_time_left, write_timed_output}},
+    WordRegister{"version",
+                 "firmware version nn.nn, two BCD digits in each byte",
+                 "",
+                 {0x0300, Width::One, Needs::Nothing, kReadRegisters, kExtension, read_version, nullptr}},
     WordRegister{
         "reset-reason",
         "reason of the last reset: 1 power-on, 2 module watchdog, 3 software, 4 reset pin, 5 fault; 0 if "
         "the board cannot detect it",
         "",
-        {0x0301, Width::One, Needs::Nothing, kReadRegisters, kExtension, 0, 0, read_reset_reason, nullptr}},
-    WordRegister{"uptime",
-                 "seconds since reset, 32 bits, high word first",
-                 "",
-                 {0x0302, Width::Two, Needs::Nothing, kReadRegisters, kExtension | kLong, 0, 0,
-                  read_seconds_up, nullptr}},
+        {0x0301, Width::One, Needs::Nothing, kReadRegisters, kExtension, read_reset_reason, nullptr}},
+    WordRegister{
+        "uptime",
+        "seconds since reset, 32 bits, high word first",
+        "",
+        {0x0302, Width::Two, Needs::Nothing, kReadRegisters, kExtension | kLong, read_seconds_up, nullptr}},
     WordRegister{"timeout-count",
                  "timeouts of the host watchdog since reset or clearing, at most 65535",
                  "0 only: clears it; not by broadcast",
                  {0x0304, Width::One, Needs::Nothing, kReadRegisters | kWriteRegisters,
-                  kExtension | kConfiguration, 0, 0, read_timeout_count, clear_timeout_count}},
-    WordRegister{
-        "store-count",
-        "stores of settings since reset, at most 65535",
-        "",
-        {0x0305, Width::One, Needs::Nothing, kReadRegisters, kExtension, 0, 0, read_store_count, nullptr}},
+                  kExtension | kConfiguration, read_timeout_count, clear_timeout_count}},
+    WordRegister{"store-count",
+                 "stores of settings since reset, at most 65535",
+                 "",
+                 {0x0305, Width::One, Needs::Nothing, kReadRegisters, kExtension, read_store_count, nullptr}},
     WordRegister{
         "settings-source",
         "source of the settings at reset: 0: a good copy, and no bad one; 1: a good copy, and a bad one; 2: "
-        "factory settings, no good copy; 3: an older layout, not used so far; 4: factory settings, blank memory",
+        "factory settings, no good copy; 3: an older layout, not used so far; 4: factory settings, blank "
+        "memory",
         "",
-        {0x0306, Width::One, Needs::Nothing, kReadRegisters, kExtension, 0, 0, read_settings_source,
-         nullptr}},
+        {0x0306, Width::One, Needs::Nothing, kReadRegisters, kExtension, read_settings_source, nullptr}},
     WordRegister{
         "line-tallies",
         "counts of the line: bus messages, bus errors, exceptions, messages for this module or for all "
         "modules, those without a reply, overruns, damaged bytes, frames lost because no buffer was free; "
         "they wrap",
         "",
-        {0x0308, Width::Eight, Needs::Nothing, kReadRegisters, kExtension, 0, 0, read_tally, nullptr}},
+        {0x0308, Width::Eight, Needs::Nothing, kReadRegisters, kExtension, read_tally, nullptr}},
     // This row is documentation only. The receiver detects a host OK, so no function uses this row.
     WordRegister{"host-ok",
                  "host OK: a request to read this register, with quantity 0 or 1, restarts the host watchdog "
                  "and gets no reply; address 0 reaches all modules",
                  "",
-                 {kHostOkRegister, Width::One, Needs::Nothing, 0, kPlain, 0, 0, nullptr, nullptr}},
+                 {kHostOkRegister, Width::One, Needs::Nothing, 0, kPlain, nullptr, nullptr}},
 });
 
 /// Returns the row that `function` can access on this model, and that contains all `quantity` (1 to 2000)

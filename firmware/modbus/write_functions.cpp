@@ -1,6 +1,6 @@
 // Functions 05, 06, 0F, 10: Modbus Application Protocol V1.1b3, 6.5, 6.6, 6.11, 6.12. The order of the checks
-// is: length and quantity, address, value, timeout status. Before the address, function 05 also checks that
-// the value is FF00 or 0000. A request that fails a check changes nothing.
+// is: length and quantity, address, value; Exchange::judge_outcome follows. Before the address, function 05
+// also checks that the value is FF00 or 0000. A request that fails a check changes nothing.
 #include "firmware/modbus/functions.hpp"
 #include "firmware/modbus/registers.hpp"
 
@@ -23,22 +23,12 @@ Refusal write_bits(Exchange& exchange, const BitRow& row, BitWrite bits) {
   if (exchange.broadcast && row.has(kConfiguration)) {
     return Refusal::None;  // ignored, because one frame must not reconfigure all modules
   }
-  const Refusal refusal = row.write(exchange.state, bits, exchange.outcome);
-  if (refusal != Refusal::None) {
-    return refusal;
-  }
-  if (row.has(kDrivesOutputs) && exchange.state.outputs_blocked()) {
-    return Refusal::OutputsBlocked;
-  }
   put_echo(exchange);
-  return Refusal::None;
+  return row.write(exchange.state, bits, exchange.outcome);
 }
 
-/// Checks `value` for the register `address` of `row`, and records in the outcome what the write changes.
+/// Records in the outcome what a write of `value` to the register `address` of `row` changes.
 Refusal write_word(Exchange& exchange, const WordRow& row, unsigned address, std::uint16_t value) {
-  if (value < row.lowest || value > row.highest) {
-    return Refusal::WrongValue;
-  }
   return row.write(exchange.state, address - row.first, value, exchange.outcome);
 }
 
@@ -113,12 +103,8 @@ Refusal write_single_register(Exchange& exchange) {
   if (exchange.broadcast && row->has(kConfiguration)) {
     return Refusal::None;
   }
-  const Refusal refusal = write_word(exchange, *row, address, frame.word(4));
-  if (refusal == Refusal::None && row->has(kDrivesOutputs) && exchange.state.outputs_blocked()) {
-    return Refusal::OutputsBlocked;
-  }
   put_echo(exchange);
-  return refusal;
+  return write_word(exchange, *row, address, frame.word(4));
 }
 
 Refusal write_multiple_registers(Exchange& exchange) {
@@ -130,14 +116,12 @@ Refusal write_multiple_registers(Exchange& exchange) {
   const unsigned start = frame.word(2);
   const unsigned quantity = frame.word(4);
   bool configuration = false;
-  bool drives_outputs = false;
   for (unsigned i = 0; i < quantity; ++i) {
     const WordRow* row = find_word(exchange.model(), kWriteRegisters, start + i);
     if (row == nullptr) {
       return Refusal::WrongAddress;
     }
     configuration |= row->has(kConfiguration);
-    drives_outputs |= row->has(kDrivesOutputs);
   }
   if (exchange.broadcast && configuration) {
     return Refusal::None;
@@ -149,9 +133,6 @@ Refusal write_multiple_registers(Exchange& exchange) {
     if (wrong != Refusal::None) {
       return wrong;
     }
-  }
-  if (drives_outputs && exchange.state.outputs_blocked()) {
-    return Refusal::OutputsBlocked;
   }
   put_echo(exchange);
   return Refusal::None;

@@ -11,7 +11,7 @@ namespace ex9000 {
 
 /// The argument of a handler. A handler is the C++ function for a DCON command or a Modbus function. It reads
 /// the request, the module's state and the tallies, writes the reply, and records in the outcome what the
-/// module must do. It changes nothing else.
+/// module must do. It changes nothing else, and leaves to `judge_outcome` what that function judges.
 struct Exchange {
   constexpr Exchange(const State& state_of_module, const LineTallies& tallies_of_line)
       : state(state_of_module), tallies(tallies_of_line) {}
@@ -26,6 +26,15 @@ struct Exchange {
   Outcome outcome;
   Reply reply;
 
+  /// Judges what the handler has recorded in the outcome by the rules that hold for every request: the model
+  /// must be able to store the changed settings, and nothing drives outputs while the timeout status is set.
+  [[nodiscard]] Refusal judge_outcome() const {
+    if (outcome.changes_settings() &&
+        !outcome.change().applied_to(state.settings).possible_for(state.model())) {
+      return Refusal::WrongValue;
+    }
+    return outcome.drives_outputs() && state.outputs_blocked() ? Refusal::OutputsBlocked : Refusal::None;
+  }
   [[nodiscard]] constexpr const Model& model() const { return state.model(); }
   /// Prepares the exchange for the next request.
   void begin(Bytes request) {

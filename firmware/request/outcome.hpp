@@ -32,10 +32,14 @@ enum class Refusal : std::uint8_t {
   StoreFailed,     ///< ASCII `?AA`, Modbus 04: the memory did not store the settings
 };
 
-/// Outputs to drive: each channel whose bit is set in `mask` gets the level of its bit in `value`.
-struct Drive {
+/// Bits to write: each bit that is set in `mask` gets its value in `value`.
+struct BitWrite {
   std::uint16_t mask = 0;
   std::uint16_t value = 0;
+
+  [[nodiscard]] constexpr std::uint16_t applied_to(std::uint16_t bits) const {
+    return static_cast<std::uint16_t>((bits & ~mask) | (value & mask));
+  }
 };
 
 /// Timed outputs to switch: each channel whose bit is set in `mask` is switched on for `units` x 0.1 s, or
@@ -67,9 +71,9 @@ class Outcome {
   [[nodiscard]] bool asks_for(Effect effect) const { return (effects_ & bit(effect)) != 0; }
   [[nodiscard]] bool has_effects() const { return effects_ != 0; }
 
-  void drive(Drive outputs) { drive_ = outputs; }
-  /// Returns the outputs to drive; the mask is 0 if there are none.
-  [[nodiscard]] Drive outputs_to_drive() const { return drive_; }
+  void drive(BitWrite outputs) { drive_ = outputs; }
+  /// Returns the outputs to drive, bit n for channel n; the mask is 0 if there are none.
+  [[nodiscard]] BitWrite outputs_to_drive() const { return drive_; }
 
   void drive_for(unsigned channel, std::uint16_t units) {
     timed_drive_.mask = static_cast<std::uint16_t>(timed_drive_.mask | 1U << channel);
@@ -77,6 +81,7 @@ class Outcome {
   }
   /// Returns the timed outputs to switch; the mask is 0 if there are none.
   [[nodiscard]] const TimedDrive& timed_outputs_to_drive() const { return timed_drive_; }
+  [[nodiscard]] bool drives_outputs() const { return (drive_.mask | timed_drive_.mask) != 0; }
 
   /// Records that the request changes settings. Returns the change, so that the caller can add settings to
   /// it.
@@ -107,7 +112,7 @@ class Outcome {
 
   std::uint16_t effects_ = 0;
   bool changes_settings_ = false;
-  Drive drive_;
+  BitWrite drive_;
   TimedDrive timed_drive_;
   SettingsChange change_;
 };

@@ -54,7 +54,7 @@ std::string command_line(const Model& model, const dcon::Command& command) {
   row.reply = command.reply;
   row.access = access_text(command.access);
   row.range = command.range;
-  row.needs_init = command.init == dcon::Init::Required ? "yes" : "no";
+  row.needs_init = command.dispatch.init != dcon::Init::NotRequired ? "yes" : "no";
   row.id = command.id;
   row.meaning = command.meaning;
   return line(row);

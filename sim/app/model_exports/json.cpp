@@ -22,7 +22,7 @@ Json command(const dcon::Command& command) {
           {"meaning", command.meaning},
           {"arguments", text_or_null(command.range)},
           {"access", access_text(command.access)},
-          {"needs_init", command.init == dcon::Init::Required}};
+          {"needs_init", command.dispatch.init != dcon::Init::NotRequired}};
 }
 
 Json commands(const Model& model) {

@@ -168,9 +168,10 @@ std::string commands_table(const Models& models) {
     if (!any_has(models, has)) {
       continue;
     }
-    Cells cells{code(command.syntax),         reply_code(command.reply),
-                std::string(command.meaning), std::string(command.range),
-                access_text(command.access),  command.init == dcon::Init::Required ? "(I)" : kNone};
+    Cells cells{
+        code(command.syntax),         reply_code(command.reply),
+        std::string(command.meaning), std::string(command.range),
+        access_text(command.access),  command.dispatch.init != dcon::Init::NotRequired ? "(I)" : kNone};
     add_who(models, cells, who(models, has));
     text += table_line(cells);
   }
