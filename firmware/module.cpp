@@ -74,14 +74,30 @@ void Module::start_up(Time now) {
 }
 
 void Module::use_settings(Time now) {
-  state_.settings = keeper_.stored();
+  const Settings& stored = keeper_.stored();
   state_.statistics.settings_source = keeper_.source();
-  state_.outputs =
-      state_.settings.timeout_status ? state_.settings.safe_value : state_.settings.power_on_value;
-  state_.inputs.count_rising_edges((state_.settings.format & kFormatRisingEdge) != 0);
-  state_.inputs.invert(state_.settings.inverted_inputs);
-  use_filters();
+  state_.outputs = stored.power_on_value;
+  state_.inputs.count_rising_edges((stored.format & kFormatRisingEdge) != 0);
+  apply(stored, now);
   host_watchdog_.restart(now);
+}
+
+/// Puts settings in force, at the reset and when a command has stored them, except those that wait for the
+/// next reset or need an Effect. Edges until now count with the previous inversion and filters. If a changed
+/// level does not count yet, it counts when the new filter time has passed since the last edge of its
+/// channel.
+void Module::apply(const Settings& settings, Time now) {
+  edges_.time_edges(true);  // a new filter uses the time of each edge that the next line does not collect
+  collect_edges(now);
+  state_.settings = settings;
+  state_.inputs.invert(settings.inverted_inputs);
+  edges_.time_edges(settings.input_filters.any());  // first, because the filters use the times of edges
+  state_.inputs.use_filters(settings.input_filters);
+  collect_edges(now);
+  receiver_.restart_by_requests(settings.fed_by_requests);
+  if (settings.timeout_status) {
+    state_.outputs = settings.safe_value;  // this value may be new (wire.md D6)
+  }
 }
 
 void Module::listen() {
@@ -99,7 +115,6 @@ void Module::listen() {
   state_.inputs.use_range(in_force.protocol == Protocol::Ascii ? Inputs::CounterRange::FiveDigits
                                                                : Inputs::CounterRange::SixteenBits);
   init_timeout_.disarm();
-  receiver_.restart_by_requests(settings.fed_by_requests);
   receiver_.listen({in_force.protocol, in_force.checksum, timing_at_(baud(), format())});
   receiver_.answer_to(in_force.address);
 }
@@ -111,23 +126,6 @@ void Module::collect_edges(Time now) {
   if (start_ != Start::Loading) {
     state_.inputs.collect(edges_, state_.model().inputs, now);
   }
-}
-
-void Module::use_filters() {
-  edges_.time_edges(
-      state_.settings.input_filters.any());  // first, because the filters use the times of edges
-  state_.inputs.use_filters(state_.settings.input_filters);
-}
-
-/// Applies the inversion and the filters of the settings. Before that, counts the edges that count with the
-/// previous inversion and filters. If a changed level does not count yet, it counts when the new filter time
-/// has passed since the last edge of its channel.
-void Module::configure_inputs(Time now) {
-  edges_.time_edges(true);  // a new filter uses the time of each edge that the next line does not collect
-  collect_edges(now);
-  state_.inputs.invert(state_.settings.inverted_inputs);
-  use_filters();
-  collect_edges(now);
 }
 
 void Module::count_host_oks() {
@@ -247,7 +245,7 @@ Bytes Module::take_reply(Time now) {
 /// already.
 void Module::commit(Time now) {
   if (cycle_.outcome().changes_settings()) {
-    commit_settings(now);
+    apply(cycle_.outcome().change().applied_to(state_.settings), now);
   }
   if (!state_.outputs_blocked()) {
     drive_outputs(now);
@@ -275,15 +273,6 @@ void Module::drive_outputs(Time now) {
 /// Switches off the outputs whose timers have expired.
 void Module::end_timed_outputs(Time now) {
   state_.outputs = static_cast<std::uint16_t>(state_.outputs & ~state_.output_timers.expire(now));
-}
-
-void Module::commit_settings(Time now) {
-  state_.settings = cycle_.outcome().change().applied_to(state_.settings);
-  configure_inputs(now);
-  receiver_.restart_by_requests(state_.settings.fed_by_requests);
-  if (state_.settings.timeout_status) {
-    state_.outputs = state_.settings.safe_value;  // this value may be new (wire.md D6)
-  }
 }
 
 void Module::commit_effects(Time now) {

@@ -139,11 +139,11 @@ class Module {
 
   void start_up(Time now);
   void use_settings(Time now);
+  void apply(const Settings& settings, Time now);
   void listen();
   void dispatch(Time now);
   void continue_store(Time now);
   void commit(Time now);
-  void commit_settings(Time now);
   void drive_outputs(Time now);
   void end_timed_outputs(Time now);
   void commit_effects(Time now);
@@ -152,8 +152,6 @@ class Module {
   void update_statistics(Time now);
   void expire_host_watchdog(Time now);
   void collect_edges(Time now);
-  void configure_inputs(Time now);
-  void use_filters();
   [[nodiscard]] Duration turn_around() const;
   [[nodiscard]] Duration until_request(Time now) const;
   [[nodiscard]] bool step_is_due() const;

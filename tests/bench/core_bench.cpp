@@ -23,7 +23,7 @@ class BareModule {
       settings.protocol = Protocol::Ascii;
       RecordBytes record{};
       write_record(model, settings, 1, record);
-      std::copy(record.begin(), record.end(), memory_.begin() + kPlaces[0].address);
+      std::copy(record.begin(), record.end(), memory_.begin() + kPlaces[0]);
     }
     module_.start(0, now_);
     while (!module_.listening()) {

@@ -40,7 +40,7 @@ class Bench {
     change(settings);
     RecordBytes record{};
     write_record(*find_model(model), settings, 1, record);
-    std::copy(record.begin(), record.end(), device_.board().memory.contents.begin() + kPlaces[0].address);
+    std::copy(record.begin(), record.end(), device_.board().memory.contents.begin() + kPlaces[0]);
     device_.start(ResetReason::PowerOn);
     rest(milliseconds(15));
     chip_.sent.clear();
