@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "firmware/line/crossing.hpp"
+#include "firmware/crossing.hpp"
 #include "firmware/module.hpp"
 #include "hal/board.hpp"
 #include "hal/memory.hpp"

@@ -5,7 +5,7 @@
 #include <array>
 #include <cstdint>
 
-#include "firmware/line/crossing.hpp"
+#include "firmware/crossing.hpp"
 #include "firmware/line/event_tally.hpp"
 #include "firmware/model/model.hpp"
 #include "firmware/settings/settings.hpp"

@@ -3,8 +3,8 @@
 
 #include <cstdint>
 
+#include "firmware/crossing.hpp"
 #include "firmware/hex.hpp"
-#include "firmware/line/crossing.hpp"
 #include "firmware/line/frame_queue.hpp"
 #include "firmware/line/verdict.hpp"
 #include "firmware/time.hpp"

@@ -6,7 +6,7 @@
 #include <cstdint>
 
 #include "firmware/bytes.hpp"
-#include "firmware/line/crossing.hpp"
+#include "firmware/crossing.hpp"
 #include "firmware/model/built.hpp"
 #include "firmware/time.hpp"
 

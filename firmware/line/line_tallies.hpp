@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "firmware/line/crossing.hpp"
+#include "firmware/crossing.hpp"
 #include "firmware/line/verdict.hpp"
 
 namespace ex9000 {

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "firmware/line/crossing.hpp"
+#include "firmware/crossing.hpp"
 #include "firmware/line/dcon_assembler.hpp"
 #include "firmware/line/frame_queue.hpp"
 #include "firmware/line/host_oks.hpp"

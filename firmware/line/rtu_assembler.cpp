@@ -1,6 +1,6 @@
 #include "firmware/line/rtu_assembler.hpp"
 
-#include "firmware/modbus/host_ok.hpp"
+#include "firmware/line/rtu_frames.hpp"
 
 namespace ex9000 {
 
@@ -8,7 +8,6 @@ namespace {
 
 constexpr unsigned kShortestFrame = 4;
 constexpr unsigned kCrcBytes = 2;
-constexpr std::uint8_t kBroadcast = 0;
 
 }  // namespace
 
@@ -58,10 +57,10 @@ Verdict RtuAssembler::conclude(FrameQueue& queue) {
   }
   const std::uint8_t address = frame.storage[offset];
   const bool is_exception = (frame.storage[offset + 1] & modbus::kExceptionFlag) != 0;
-  if (is_exception || (address != own_address_.load() && address != kBroadcast)) {
+  if (is_exception || (address != own_address_.load() && address != modbus::kBroadcast)) {
     return Verdict::Foreign;
   }
-  broadcast_ = address == kBroadcast;
+  broadcast_ = address == modbus::kBroadcast;
   frame.offset = static_cast<std::uint16_t>(offset);
   frame.size = static_cast<std::uint16_t>(size - kCrcBytes);
   frame.received = last_;

@@ -3,15 +3,13 @@
 #include <array>
 
 #include "firmware/line/crc16.hpp"
+#include "firmware/line/rtu_frames.hpp"
 #include "firmware/modbus/functions.hpp"
-#include "firmware/modbus/host_ok.hpp"
 #include "firmware/model/built.hpp"
 
 namespace ex9000::modbus {
 
 namespace {
-
-constexpr std::uint8_t kBroadcast = 0;
 
 /// Exception codes: Modbus Application Protocol V1.1b3, 7.
 enum Exception : std::uint8_t {

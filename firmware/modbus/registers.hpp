@@ -7,7 +7,7 @@
 #include <optional>
 #include <string_view>
 
-#include "firmware/modbus/host_ok.hpp"
+#include "firmware/line/rtu_frames.hpp"
 #include "firmware/model/model.hpp"
 #include "firmware/request/exchange.hpp"
 #include "firmware/request/outcome.hpp"

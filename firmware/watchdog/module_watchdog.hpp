@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "firmware/line/crossing.hpp"
+#include "firmware/crossing.hpp"
 
 namespace ex9000 {
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "firmware/bytes.hpp"
-#include "firmware/line/crossing.hpp"
+#include "firmware/crossing.hpp"
 #include "firmware/line/verdict.hpp"
 #include "firmware/model/line_format.hpp"
 #include "firmware/time.hpp"

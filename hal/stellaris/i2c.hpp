@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "firmware/line/crossing.hpp"
+#include "firmware/crossing.hpp"
 #include "firmware/time.hpp"
 #include "hal/i2c_bus_recovery.hpp"
 #include "hal/i2c_master.hpp"

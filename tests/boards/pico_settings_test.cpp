@@ -260,8 +260,8 @@ INSTANTIATE_TEST_SUITE_P(, PicoAfterAnUpdate, testing::Values(Memory::Flash, Mem
                            return memory.param == Memory::Flash ? "Flash" : "Eeprom";
                          });
 
-// The emulator is slow, so this test uses only one model. stored_bytes_test.cpp uses all stored bytes, without
-// a board.
+// The emulator is slow, so this test uses only one model. stored_bytes_test.cpp uses all stored bytes,
+// without a board.
 TEST_P(PicoAfterAnUpdate, HasAllSettingsThatEarlierFirmwareHasStored) {
   unsigned updates = 0;
   for (const StoredBytes& stored : all_stored_bytes()) {

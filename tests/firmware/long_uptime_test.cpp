@@ -1,6 +1,6 @@
 // Tests that the behaviour of a module does not change when the 32-bit counts of the interrupts and the main
 // loop wrap, for example after months of operation. This test is built with
-// tests/support/long_uptime/firmware/line/crossing.hpp, which lets the counts start shortly before they wrap.
+// tests/support/long_uptime/firmware/crossing.hpp, which lets the counts start shortly before they wrap.
 #include <gtest/gtest.h>
 
 #include "firmware/watchdog/module_watchdog.hpp"

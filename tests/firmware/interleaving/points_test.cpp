@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "firmware/bytes.hpp"
-#include "firmware/line/crossing.hpp"
+#include "firmware/crossing.hpp"
 
 namespace ex9000::interleaving {
 namespace {

@@ -1,4 +1,4 @@
-// Replaces firmware/line/crossing.hpp and has the same interface. An interrupt can occur before and after
+// Replaces firmware/crossing.hpp and has the same interface. An interrupt can occur before and after
 // each access by the main loop. The classes throw std::logic_error if an interrupt calls a function for the
 // main loop, if the main loop calls a function for interrupts, or if an interrupt uses a value while the main
 // loop writes it.

@@ -1,4 +1,4 @@
-// Replaces firmware/line/crossing.hpp and has the same interface. Each std::uint32_t in a Crossing starts 100
+// Replaces firmware/crossing.hpp and has the same interface. Each std::uint32_t in a Crossing starts 100
 // counts before it wraps to 0. A counter can have such a value after months of operation. The core works with
 // these start values, because it uses only changes of a counter, differences between two counters, and the
 // lowest bits of the counters in FrameQueue. The core writes other shared values, for example the module's

@@ -8,6 +8,7 @@
 
 namespace ex9000::modbus {
 
+constexpr std::uint8_t kBroadcast = 0;
 constexpr std::uint16_t kHostOkRegister = 0x3038;
 
 /// Set in the function of an exception reply. A frame whose function has this bit is never a request.
