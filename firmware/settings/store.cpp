@@ -244,13 +244,18 @@ void SettingsStore::invalidate_from(std::size_t place) {
   step_ = Step::Invalidate;
 }
 
-/// Reads the invalidated copy as a reset would, because the memory may acknowledge a write without effect.
+/// Reads the invalidated copy as a reset would, because the memory may acknowledge a write without effect. A
+/// copy that is older than the current one may stay: it holds settings of an earlier save.
 void SettingsStore::check_invalid(bool ok) {
   if (ok && copy_goes_on()) {
     return;
   }
-  if (ok && !read_record(model_.get(), {read_back_.data(), done_})) {
-    copies_to_invalidate_ &= ~bit(place_);
+  if (ok) {
+    const auto stored = read_record(model_.get(), {read_back_.data(), done_});
+    const bool counts = stored && (current_place_ == kNoPlace || is_later(stored->sequence, sequence_));
+    if (!counts) {
+      copies_to_invalidate_ &= ~bit(place_);
+    }
   }
   invalidate_from(place_ + 1);
 }

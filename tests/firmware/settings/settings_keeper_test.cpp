@@ -213,6 +213,23 @@ TEST_F(SettingsKeeperTest, AnInvalidationWithoutEffectIsRepeatedEverySecond) {
   EXPECT_TRUE(Boot(memory_).stored() == numbered(5));
 }
 
+// The other place holds the settings of an earlier save, which a reset does not load.
+TEST_F(SettingsKeeperTest, AMemoryThatIgnoresAllWritesLeavesTheStoredSettingsCertain) {
+  store(numbered(5));
+  store(numbered(6));
+  memory_.ignored_after = 0;
+  store(numbered(7));
+  EXPECT_FALSE(keeper_.saved());
+  const std::size_t writes = memory_.writes.size();
+  for (unsigned second = 0; second < 10; ++second) {
+    keeper_.poll(numbered(6), now_ + milliseconds(1000 * second));
+    EXPECT_FALSE(keeper_.busy());
+  }
+  EXPECT_TRUE(keeper_.certain());
+  EXPECT_EQ(memory_.writes.size(), writes);
+  EXPECT_TRUE(Boot(memory_).stored() == numbered(6));
+}
+
 TEST(SettingsKeeperAtReset, TheSettingsAreUncertainUntilASaveIfTheMemoryDidNotAnswer) {
   FakeMemory memory;
   memory.failing_reads = kReadsOfASilentMemory;
