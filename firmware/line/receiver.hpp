@@ -50,8 +50,8 @@ class Receiver {
 
   /// Sets the module's address for all frames that end after this call. Call this after `listen`.
   void answer_to(std::uint8_t address);
-  /// Sets whether each frame with the module's own address and a correct check restarts the host watchdog
-  /// like a host OK, for all frames that end after this call.
+  /// Sets whether each request (wire.md D16) with the module's own address and a correct check restarts the
+  /// host watchdog like a host OK, for all frames that end after this call.
   void restart_by_requests(bool on) { restarts_by_requests_.store_in_main_loop(on); }
   /// Returns the timing that was passed to `listen`.
   [[nodiscard]] const LineTiming& timing() const { return rtu_.timing(); }

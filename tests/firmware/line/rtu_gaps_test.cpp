@@ -275,5 +275,17 @@ TEST_P(RtuGaps, StrictTimingAllowsAGapAfterATurnAround00) {
   EXPECT_EQ(wire_.verdicts, Verdicts{Verdict::Accepted});
 }
 
+// The module supervises its replies with this time (wire.md section 6, module watchdog).
+TEST(LineTiming, ACharacterIsRoundedUpByAtMostAMicrosecond) {
+  for (const std::uint32_t baud : kBaudRates) {
+    for (const LineFormat format : {LineFormat::k8N1, LineFormat::k8N2, LineFormat::k8E1, LineFormat::k8O1}) {
+      const std::uint64_t bits = format == LineFormat::k8N1 ? 10 : 11;
+      const std::uint64_t character = LineTiming::at(baud, format).character.microseconds();
+      EXPECT_GE(character * baud, bits * 1'000'000) << baud;
+      EXPECT_LE((character - 1) * baud, bits * 1'000'000) << baud;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace ex9000

@@ -112,8 +112,7 @@ class SteppedSimulator {
     const std::uint64_t sent = std::stoull(tell("sent"));
     std::string text;
     while (terminal_.received() < sent) {
-      const std::vector<std::uint8_t> bytes =
-          terminal_.read(std::chrono::seconds(60));  // only detects a hang
+      const std::vector<std::uint8_t> bytes = terminal_.read(kHang);
       if (bytes.empty()) {
         throw std::runtime_error("the simulator has sent " + std::to_string(sent) + " bytes; got fewer");
       }

@@ -22,8 +22,6 @@
 namespace ex9000::system {
 namespace {
 
-/// A timeout for events. Only a program that hangs reaches it.
-
 namespace fs = std::filesystem;
 using std::chrono::milliseconds;
 

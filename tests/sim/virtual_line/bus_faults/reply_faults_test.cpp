@@ -188,6 +188,20 @@ TEST(LateDriver, ANewTimeCountsFromTheEndOfTheReply) {
   EXPECT_LE(held, 40ms + 3us);
 }
 
+// wire.md section 6, module watchdog: a reply that does not end stops the feeds.
+TEST(LateDriver, IsEndedByTheModuleWatchdogAfterAboutASecond) {
+  FaultBench bench;
+  bench.add("late-driver 1h");
+  EXPECT_EQ(bench.ask("$01M"), kName);
+  bench.run(900ms);
+  EXPECT_EQ(bench.at(1).watchdog_resets(), 0U);
+  bench.run(1s);
+  EXPECT_EQ(bench.at(1).watchdog_resets(), 1U);
+  bench.faults().remove_all();
+  bench.run(100ms);
+  EXPECT_EQ(bench.ask("$01M"), kName);
+}
+
 TEST(LateDriver, HoldsTheLineForTheGivenTimeAndBlocksRequestsDuringThisTime) {
   FaultBench bench;
   bench.add("late-driver 20ms");
