@@ -52,19 +52,12 @@ bool refused_without_address(const Model& model, Bytes frame) {
 
 /// Returns whether the command needs the configuration permission (wire.md section 2).
 bool needs_permission(const Dispatch& row, const Exchange& exchange) {
-  const Settings& stored = exchange.state.settings;
-  switch (row.init) {  // not covered: the enumeration has no other value
-    case Init::NotRequired:
-      return false;
-    case Init::ToChangeLine: {
-      const Settings changed = exchange.outcome.change().applied_to(stored);
-      return changed.baud_code != stored.baud_code ||
-             ((changed.format ^ stored.format) & kFormatChecksum) != 0;
-    }
-    case Init::Required:
-      return true;
+  if (row.init != Init::ToChangeLine) {
+    return row.init == Init::Required;
   }
-  return true;
+  const Settings& stored = exchange.state.settings;
+  const Settings changed = exchange.outcome.change().applied_to(stored);
+  return changed.baud_code != stored.baud_code || ((changed.format ^ stored.format) & kFormatChecksum) != 0;
 }
 
 Refusal judge(const Dispatch& row, Exchange& exchange) {

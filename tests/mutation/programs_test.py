@@ -58,7 +58,7 @@ class Programs(unittest.TestCase):
         text = (programs.ROOT / "tests/sim/CMakeLists.txt").read_text(encoding="utf-8")
         names = set(re.findall(r"ex9000_test\((\w+)", text))
         used = {program.name for program in programs.listed_programs("tests/sim")}
-        self.assertEqual(names - used, {"command_cost_test", "pacer_test", "tcp_port_test"})
+        self.assertEqual(names - used, {"command_cost_test", "pacer_test", "ports_parts_test", "tcp_port_test"})
 
     def test_a_unit_with_a_shadow_folder_contains_the_shadow_and_not_the_shadowed_header(self):
         unit = programs.LIBRARY_UNITS["mcu_model"]

@@ -287,16 +287,27 @@ class Broken(unittest.TestCase):
             fifo = os.path.join(folder, "capture")
             os.mkfifo(fifo)
             reader = os.open(fifo, os.O_RDONLY | os.O_NONBLOCK)
+            os.set_blocking(reader, True)
+            replied = threading.Event()
+
+            def drain():  # a full pipe would stop the line, and the page would get no reply
+                while not replied.is_set():
+                    os.read(reader, 65536)
+                os.close(reader)
+
             # Every frame is written to the capture, so the write fails in a timer of the line, in a command of the
             # page, or in the command that undoes it.
-            simulator = Simulator("EX9055D", "--tcp", "0", "--capture", fifo, "--line", "instant", "--speed", "50",
+            simulator = Simulator("EX9055D", "--tcp", "0", "--capture", fifo, "--line", "instant", "--speed", "10",
                                   "--fault", "foreign-traffic 2430314D0D every 10ms", stderr=subprocess.PIPE)
             self.addCleanup(simulator.close)
             page = Page(simulator.port)
             self.addCleanup(page.close)
+            drains = threading.Thread(target=drain, daemon=True)
+            drains.start()
             page.say("1 input 3 on", undo="1 input 3 off")
             page.until(lambda message: "reply" in message)
-            os.close(reader)
+            replied.set()
+            drains.join()
             error = simulator.process.stderr.read()
             self.assertEqual(simulator.process.wait(HANG), 1, error)
             self.assertRegex(error, r"\Aex9000-sim: --capture \S+: cannot be written: Broken pipe[^\n]*\n\Z")

@@ -59,15 +59,12 @@ std::vector<std::string> command_of(const std::string& image, const std::string&
           "chardev:gdb"};
 }
 
-/// Returns the emulator's connection. Throws std::runtime_error with what the emulator has printed if it ends
-/// first.
-UnixSocket accepted(UnixListener& listener, system::ChildProcess& process) {
-  const sim::FileDescriptor ended(static_cast<int>(syscall(SYS_pidfd_open, process.pid(), 0)));
+/// Returns the emulator's connection. Throws std::runtime_error if the emulator ends first.
+UnixSocket accepted(UnixListener& listener, int pid) {
+  const sim::FileDescriptor ended(static_cast<int>(syscall(SYS_pidfd_open, pid, 0)));
   std::optional<UnixSocket> connection = listener.accept(ended.get());
   if (!connection) {
-    const int status = process.wait();
-    throw std::runtime_error("emulator: it has ended with status " + std::to_string(status) + ": " +
-                             process.output());
+    throw std::runtime_error("emulator: it has ended; expected it to connect");
   }
   return std::move(*connection);
 }
@@ -82,11 +79,17 @@ Emulator::Emulator(const std::string& image, const std::string& memory) {
   UnixListener gdb(directory_ / "gdb");
   UnixListener gate(directory_ / "gate");
   process_.emplace(command_of(image, memory), directory_.path(), system::ChildProcess::Errors::WithOutput);
-  uart_.emplace(accepted(uart, *process_));
-  qmp_.emplace(accepted(qmp, *process_));
-  bus_.emplace(accepted(qtest, *process_));
-  gdb_.emplace(accepted(gdb, *process_));
-  gate_.emplace(accepted(gate, *process_));
+  try {
+    uart_.emplace(accepted(uart, pid()));
+    qmp_.emplace(accepted(qmp, pid()));
+    bus_.emplace(accepted(qtest, pid()));
+    gdb_.emplace(accepted(gdb, pid()));
+    gate_.emplace(accepted(gate, pid()));
+  } catch (const std::runtime_error&) {
+    const int status = process_->wait();
+    throw std::runtime_error("emulator: it has ended with status " + std::to_string(status) + ": " +
+                             process_->output());
+  }
 }
 
 /// With reboot=shutdown, the emulator halts the machine when a reset is requested. Therefore this function

@@ -39,7 +39,7 @@ export class Drawer {
     this.state = state;
     this.values = layout.outputs.length ? this.valueTable(layout.outputs, title) : null;
     this.kept = make("h4", {});
-    this.copies = [1, 2, 3, 4].map(() => ({caption: make("h4", {}), bytes: make("code", {})}));
+    this.copies = [1, 2].map(() => ({caption: make("h4", {}), bytes: make("code", {})}));
     this.settings = settingRows(layout.inputs).map(([name, textOf]) => ({name, textOf, value: make("dd", {})}));
     this.element = make("details", {class: "drawer", ontoggle: () => this.draw()},
       make("summary", {}, "Settings and values", make("span", {class: "hidden"}, ` of ${title}`)),

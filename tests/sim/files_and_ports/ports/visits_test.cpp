@@ -35,6 +35,14 @@ TEST_F(VisitsTest, ReportsOnlyTheDevicesThatWereVisitedIfNoEventIsLost) {
   EXPECT_EQ(of_b_, 1);
 }
 
+TEST_F(VisitsTest, ReportsEachDeviceOfSeveralEvents) {
+  visit("a");
+  visit("b");
+  visits_.take();
+  EXPECT_EQ(of_a_, 1);
+  EXPECT_EQ(of_b_, 1);
+}
+
 TEST_F(VisitsTest, ReportsAVisitWhoseEventWasLostBecauseTheQueueWasFull) {
   long queued = 0;
   std::ifstream("/proc/sys/fs/inotify/max_queued_events") >> queued;
