@@ -140,19 +140,28 @@ TEST(SettingsStore, TheCopyOfAFailedSaveIsInvalidatedAndTheCopyThatWasReadLastIs
   EXPECT_FALSE(store.needs_invalidation());
 }
 
-// A memory that answers a write without doing it must not make refused settings valid.
-TEST(SettingsStore, AnInvalidationWithoutEffectIsNoticed) {
-  FakeMemory memory;
-  Boot run(memory);
-  ASSERT_TRUE(run.save(numbered(1)));
-  SettingsStore store(the_model());
-  ASSERT_TRUE(drive(store, memory));
-  memory.noisy_reads = kAttempts;    // the refused copy is complete, but each read-back differs
-  memory.ignored_after = kAttempts;  // then the write that invalidates the copy has no effect
+/// Saves settings, of which `pages_before` pages succeed. The read-back of the next page, the last one,
+/// differs each time, so the copy is refused although it is complete. The write that invalidates it has no
+/// effect.
+void refuse_a_complete_copy(SettingsStore& store, FakeMemory& memory, std::size_t pages_before = 0) {
   store.begin_saving(numbered(21));
+  for (std::size_t jobs = 0; jobs < 2 * pages_before; ++jobs) {
+    store.done(*memory.run(store.job()));
+  }
+  memory.noisy_reads = kAttempts;
+  memory.ignored_after = kAttempts;
   ASSERT_TRUE(drive(store, memory));
   EXPECT_FALSE(store.saved());
   ASSERT_TRUE(Boot(memory).stored() == numbered(21)) << "the copy is valid, so this test can fail";
+}
+
+// A memory that answers a write without doing it must not make refused settings valid.
+TEST(SettingsStore, AnInvalidationWithoutEffectIsNoticed) {
+  FakeMemory memory;
+  put(memory, 0, numbered(1), 7);
+  SettingsStore store(the_model());
+  ASSERT_TRUE(drive(store, memory));
+  refuse_a_complete_copy(store, memory);
   EXPECT_TRUE(store.needs_invalidation());
   store.begin_invalidating();
   ASSERT_TRUE(drive(store, memory));
@@ -170,15 +179,7 @@ TEST(SettingsStore, AnInvalidationOfSeveralPagesWithoutEffectIsNoticed) {
   put_longer(memory, 0, numbered(1), 7, 96);
   SettingsStore store(the_model());
   ASSERT_TRUE(drive(store, memory));
-  store.begin_saving(numbered(21));
-  for (int jobs = 0; jobs < 6; ++jobs) {  // writes and verifies three of four pages
-    store.done(*memory.run(store.job()));
-  }
-  memory.noisy_reads = kAttempts;
-  memory.ignored_after = kAttempts;
-  ASSERT_TRUE(drive(store, memory));
-  EXPECT_FALSE(store.saved());
-  ASSERT_TRUE(Boot(memory).stored() == numbered(21)) << "the copy is valid, so this test can fail";
+  refuse_a_complete_copy(store, memory, 3);
   EXPECT_TRUE(store.needs_invalidation());
 }
 
@@ -186,11 +187,7 @@ TEST(SettingsStore, AnInvalidationWithoutEffectOfTheFirstCopyIsNoticed) {
   FakeMemory memory;
   SettingsStore store(the_model());
   ASSERT_TRUE(drive(store, memory));
-  memory.noisy_reads = kAttempts;
-  memory.ignored_after = kAttempts;
-  store.begin_saving(numbered(21));
-  ASSERT_TRUE(drive(store, memory));
-  ASSERT_TRUE(Boot(memory).stored() == numbered(21)) << "the copy is valid, so this test can fail";
+  refuse_a_complete_copy(store, memory);
   EXPECT_TRUE(store.needs_invalidation());
 }
 
