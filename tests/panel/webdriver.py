@@ -20,19 +20,29 @@ KEYS = {"Tab": "\ue004", "Enter": "\ue007", "Space": " ", "Shift": "\ue008", "Al
         "Right": "\ue014"}
 
 
+def started(driver):
+    """Starts ChromeDriver. Returns its process and its port. ChromeDriver ends if the port that it has chosen for IPv4
+    is in use for IPv6; it then gets another chance."""
+    said = ""
+    for _ in range(10):
+        process = subprocess.Popen([driver, "--port=0"], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        for line in process.stdout:
+            said += line
+            port = re.search(r"started successfully on port (\d+)", line)
+            if port:
+                return process, port.group(1)
+        process.stdout.close()
+        process.wait()
+    raise RuntimeError(f"{driver}: does not start: {said}")
+
+
 class Browser:
     """Chromium without a display. Only one thread at a time may use a Browser object."""
 
     def __init__(self, driver="chromedriver", browser="/usr/bin/chromium"):
         self._profile = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
-        self._driver = subprocess.Popen(
-            [driver, "--port=0"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True
-        )
-        for line in self._driver.stdout:
-            started = re.search(r"started successfully on port (\d+)", line)
-            if started:
-                break
-        self._base = f"http://127.0.0.1:{started.group(1)}/session"
+        self._driver, port = started(driver)
+        self._base = f"http://127.0.0.1:{port}/session"
         arguments = [
             "--headless=new", "--disable-gpu", "--disable-dev-shm-usage", "--no-first-run",
             "--disable-extensions", "--disable-background-networking", "--disable-component-update",
