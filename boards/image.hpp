@@ -1,11 +1,9 @@
-// Checks and definitions for all images. The UART of the board must report a byte in the middle of the first
-// stop bit. Include this file in only one source file of a program, after the `board.hpp` of a board.
+// Checks and definitions for all images. Include this file in only one source file of a program, after the `board.hpp` of a board.
 // `board.hpp` must define kOutputs and kInputs, which are arrays of pin groups. Each pin group must have a
 // member `count`, its number of pins.
 #pragma once
 
 #include "boards/image_info.hpp"
-#include "firmware/line/timing.hpp"
 #include "firmware/model/built.hpp"
 
 namespace ex9000::board {
@@ -37,11 +35,5 @@ static_assert(kOnlyModel.inputs <= pins_in(kInputs), "this board has too few inp
 static_assert((kOnlyModel.outputs <= 8 && kOnlyModel.inputs <= 8) || kOnlyModel.outputs == 0 ||
                   kOnlyModel.inputs == 0,
               "outputs and inputs of the model need the same pins of this board");
-
-#ifdef EX9000_STRICT_GAPS
-inline constexpr TimingAt kTimingAt = LineTiming::strictly_reported_in_stop_bit;
-#else
-inline constexpr TimingAt kTimingAt = LineTiming::reported_in_stop_bit;
-#endif
 
 }  // namespace ex9000::board

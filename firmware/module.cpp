@@ -12,8 +12,6 @@ constexpr std::uint8_t kInitModeAddress = 0x00;
 constexpr Duration kReplyMargin = milliseconds(100);
 constexpr Duration kClockResolution(1);  // an event may be this much later than its recorded time
 
-constexpr Duration sooner(Duration a, Duration b) { return b < a ? b : a; }
-
 }  // namespace
 
 void Module::start(std::uint16_t input_levels, Time now, ResetReason reason) {
@@ -26,14 +24,6 @@ void Module::start(std::uint16_t input_levels, Time now, ResetReason reason) {
   state_.statistics.reset_reason = reason;
 }
 
-void Module::poll_panel(bool init_switch, Time now) {
-  init_switch_.sample(init_switch, now);
-  state_.init_asserted = init_switch_.level();
-  led_.show(led_pattern_due(), now);
-  collect_edges(now);
-  cycle_.end_reply_gap(now);
-}
-
 StatusLed::Pattern Module::led_pattern_due() const {
   if (state_.settings.timeout_status) {
     return StatusLed::Pattern::HostTimeout;
@@ -42,20 +32,27 @@ StatusLed::Pattern Module::led_pattern_due() const {
                                                            : StatusLed::Pattern::Steady;
 }
 
-void Module::step(Time now) {
-  start_up(now);
+void Module::step(bool init_switch, Time now) {
+  init_switch_.sample(init_switch, now);
+  state_.init_asserted = init_switch_.level();
   update_statistics(now);
+  if (start_ != Start::Done) {
+    start_up(now);
+  }
   if (start_ == Start::Loading) {
     return;
   }
+  collect_edges(now);
   count_host_oks();
   expire_host_watchdog(now);  // must run before the steps that drive outputs
   end_timed_outputs(now);
-  continue_store(now);
-  if (cycle_.phase() == RequestCycle::Phase::Idle) {
-    dispatch(now);
+  cycle_.poll(now);
+  if (cycle_.stores()) {
+    continue_store(now);
   }
+  dispatch(now);
   keeper_.poll(state_.settings, now);
+  led_.show(led_pattern_due(), now);
 }
 
 // --- reset ---
@@ -67,8 +64,11 @@ void Module::start_up(Time now) {
     collect_edges(now);  // a filter may already be waiting for the end of its time
   }
   // The module starts even if the INIT* switch never settles.
-  if (start_ == Start::AwaitingInit && (init_switch_.known() || init_timeout_.reached(now))) {
-    listen();
+  if (init_switch_.known() || init_timeout_.reached(now)) {
+    init_timeout_.disarm();
+  }
+  if (start_ == Start::AwaitingInit && !init_timeout_.armed()) {
+    select_mode();
     start_ = Start::Done;
   }
 }
@@ -83,24 +83,30 @@ void Module::use_settings(Time now) {
 }
 
 /// Puts settings in force, at the reset and when a command has stored them, except those that wait for the
-/// next reset or need an Effect. Edges until now count with the previous inversion and filters. If a changed
-/// level does not count yet, it counts when the new filter time has passed since the last edge of its
-/// channel.
+/// next reset or need an Effect.
 void Module::apply(const Settings& settings, Time now) {
-  edges_.time_edges(true);  // a new filter uses the time of each edge that the next line does not collect
-  collect_edges(now);
+  if (state_.model().has_inputs()) {
+    apply_to_inputs(settings, now);
+  }
   state_.settings = settings;
-  state_.inputs.invert(settings.inverted_inputs);
-  edges_.time_edges(settings.input_filters.any());  // first, because the filters use the times of edges
-  state_.inputs.use_filters(settings.input_filters);
-  collect_edges(now);
   receiver_.restart_by_requests(settings.fed_by_requests);
   if (settings.timeout_status) {
     state_.outputs = settings.safe_value;  // this value may be new (wire.md D6)
   }
 }
 
-void Module::listen() {
+/// Edges until now count with the previous inversion and filters. If a changed level does not count yet, it
+/// counts when the new filter time has passed since the last edge of its channel.
+void Module::apply_to_inputs(const Settings& settings, Time now) {
+  edges_.time_edges(true);  // a new filter uses the time of each edge that the next line does not collect
+  collect_edges(now);
+  state_.inputs.invert(settings.inverted_inputs);
+  edges_.time_edges(settings.input_filters.any());  // first, because the filters use the times of edges
+  state_.inputs.use_filters(settings.input_filters, now);
+  collect_edges(now);
+}
+
+void Module::select_mode() {
   const Settings& settings = state_.settings;
   InForce& in_force = state_.in_force;
   in_force.init_mode = init_switch_.level();
@@ -114,16 +120,19 @@ void Module::listen() {
   }
   state_.inputs.use_range(in_force.protocol == Protocol::Ascii ? Inputs::CounterRange::FiveDigits
                                                                : Inputs::CounterRange::SixteenBits);
-  init_timeout_.disarm();
-  receiver_.listen({in_force.protocol, in_force.checksum, timing_at_(baud(), format())});
-  receiver_.answer_to(in_force.address);
+}
+
+void Module::listen(const LineTiming& timing) {
+  receiver_.listen({state_.in_force.protocol, state_.in_force.checksum, timing});
+  receiver_.answer_to(state_.in_force.address);
+  cycle_.keep_apart(turn_around());
 }
 
 // --- events from interrupts ---
 
 void Module::collect_edges(Time now) {
   // During loading, the inputs do not have the counting edge, inversion and filters of the settings.
-  if (start_ != Start::Loading) {
+  if (state_.model().has_inputs() && start_ != Start::Loading) {
     state_.inputs.collect(edges_, state_.model().inputs, now);
   }
 }
@@ -167,15 +176,14 @@ void Module::expire_host_watchdog(Time now) {
 
 // --- requests ---
 
-/// Judges the waiting frame if there is one and `until_request` is 0. Then calls `continue_store` if the
-/// request changes settings, otherwise `commit`.
+/// Judges the waiting frame if it is due. Then calls `continue_store` if the request changes settings,
+/// otherwise `commit`.
 void Module::dispatch(Time now) {
-  if (!receiver_.queue().has_frame() || !(until_request(now) == Duration())) {
+  if (!receiver_.queue().has_frame() || !request_due().reached(now)) {
     return;
   }
-  collect_edges(now);
   const Frame& request = receiver_.queue().waiting();
-  const Outcome& outcome = cycle_.judge(request.bytes());
+  const Outcome& outcome = cycle_.judge(request.bytes(), now);
   if (!state_.in_force.init_mode && state_.settings.response_delay != 0) {
     cycle_.hold_reply_until(request.received + receiver_.timing().rest_of_stop_bit +
                             milliseconds(state_.settings.response_delay) + kClockResolution);
@@ -188,17 +196,15 @@ void Module::dispatch(Time now) {
   }
 }
 
-/// Returns the time until the waiting frame may be judged. Call this only if a frame is waiting. The time is
-/// 0 for a Modbus frame, which is complete only after its silence (exception: wire.md D9). A DCON frame is
-/// complete when its turn-around time begins.
-Duration Module::until_request(Time now) const {
-  if (state_.speaks_modbus()) {
+/// When the waiting frame may be judged; disarmed while another one is being processed. Call this only if a
+/// frame is waiting. A Modbus frame is complete only after its silence (exception: wire.md D9). A DCON frame
+/// is complete when its turn-around time begins.
+Deadline Module::request_due() const {
+  if (!cycle_.free()) {
     return {};
   }
-  // A deadline is necessary because the frame may be newer than `now`; `now.since()` would then wrap.
-  Deadline over;
-  over.set(receiver_.queue().waiting().received + turn_around());
-  return over.remaining(now);
+  const Time received = receiver_.queue().waiting().received;
+  return Deadline(state_.speaks_modbus() ? received : received + turn_around());
 }
 
 Duration Module::turn_around() const {
@@ -247,7 +253,7 @@ void Module::commit(Time now) {
   if (cycle_.outcome().changes_settings()) {
     apply(cycle_.outcome().change().applied_to(state_.settings), now);
   }
-  if (!state_.outputs_blocked()) {
+  if (cycle_.outcome().drives_outputs() && !state_.outputs_blocked()) {
     drive_outputs(now);
   }
   commit_effects(now);
@@ -288,7 +294,6 @@ void Module::commit_effects(Time now) {
     receiver_.answer_to(state_.settings.address);
   }
   if (outcome.asks_for(Effect::TakeCountingEdge)) {
-    collect_edges(now);  // the edges until now count with the previous setting
     state_.inputs.count_rising_edges((state_.settings.format & kFormatRisingEdge) != 0);
   }
   if (outcome.asks_for(Effect::TakeSample)) {
@@ -331,42 +336,19 @@ void Module::finish_request() {
 
 // --- sleep ---
 
-/// Returns whether `step` or `poll_panel` must process one of the following: the end of loading, storing or
-/// invalidating settings, a host OK, or a change of the LED pattern.
-bool Module::step_is_due() const {
-  const bool memory_is_done = !keeper_.busy() && (start_ == Start::Loading || keeper_.has_work() ||
-                                                  cycle_.phase() == RequestCycle::Phase::Storing);
-  return memory_is_done || host_ok_waits() || led_.pattern() != led_pattern_due();
-}
-
-Duration Module::idle_for(Time now, Duration at_most) const {
-  if (step_is_due()) {
-    return {};
+Deadline Module::next_deadline() const {
+  Deadline next = init_switch_.next_sample();
+  next.advance_to(init_timeout_);
+  next.advance_to(led_.next_change());
+  next.advance_to(host_watchdog_expiry());
+  next.advance_to(keeper_.retry());
+  if (receiver_.queue().has_frame()) {
+    next.advance_to(request_due());
   }
-  Duration idle = at_most;
-  const auto consider = [&idle, now](const Deadline& deadline) {
-    if (deadline.armed()) {
-      idle = sooner(idle, deadline.remaining(now));
-    }
-  };
-  consider(init_switch_.next_sample());
-  consider(led_.next_change());
-  if (start_ == Start::Loading) {
-    return idle;
-  }
-  consider(init_timeout_);
-  consider(host_watchdog_expiry());
-  if (!keeper_.busy()) {
-    consider(keeper_.retry());
-  }
-  if (cycle_.phase() == RequestCycle::Phase::Idle && receiver_.queue().has_frame()) {
-    idle = sooner(idle, until_request(now));
-  }
-  if (cycle_.phase() == RequestCycle::Phase::ReplyReady) {
-    idle = sooner(idle, cycle_.until_reply(now));
-  }
-  idle = state_.inputs.until_settled(edges_, now, idle);
-  return state_.output_timers.until_due(now, idle);
+  next.advance_to(cycle_.reply_due());
+  next.advance_to(state_.inputs.next_settling());
+  next.advance_to(state_.output_timers.next_end());
+  return next;
 }
 
 }  // namespace ex9000

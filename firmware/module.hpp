@@ -24,15 +24,13 @@ namespace ex9000 {
 /// and the time as arguments, and reads results such as the outputs, the LED, the reply and the memory job.
 /// An object exists from one reset to the next.
 ///
-/// Interrupts call `edges_need_times`, `frame_waits` and the functions named `on_...`. These interrupts must
-/// not interrupt each other, so they share one preemption priority. If `on_byte` and `on_silence` are both
-/// pending, `on_silence` must run first (hal/one_shot_timer.hpp). The main loop calls the other functions. No
-/// function blocks.
+/// Interrupts call the functions above `step`. These interrupts must not interrupt each other, so they share
+/// one preemption priority. If `on_byte` and `on_silence` are both pending, `on_silence` must run first
+/// (hal/one_shot_timer.hpp). The main loop calls the other functions. No function blocks.
 class Module {
  public:
-  /// `timing_at`: the function that returns the times of the line; must not be null.
-  explicit constexpr Module(const Model& model, TimingAt timing_at = LineTiming::at)
-      : timing_at_(timing_at), state_(model), keeper_(model), cycle_(state_, receiver_.tallies()) {}
+  explicit constexpr Module(const Model& model)
+      : state_(model), keeper_(model), cycle_(state_, receiver_.tallies()) {}
   Module(const Module&) = delete;
   Module& operator=(const Module&) = delete;
 
@@ -43,57 +41,57 @@ class Module {
 
   // --- interrupts ---
 
-  /// See Receiver::on_byte. Call this only while `listening()` and while the module's own driver is off.
-  Duration on_byte(std::uint8_t byte, ByteStatus status, Time now) {
-    return receiver_.on_byte(byte, status, now);
+  /// See Receiver::on_byte. Call this only after `listen` and while the module's own driver is off.
+  template <class Clock>
+  Duration on_byte(std::uint8_t byte, ByteStatus status, const Clock& clock) {
+    return receiver_.on_byte(byte, status, clock);
   }
-  /// See Receiver::on_silence and Receiver::on_own_driver_off.
-  Duration on_silence() { return receiver_.on_silence(); }
-  void on_own_driver_off(Time now) { receiver_.on_own_driver_off(now); }
+  /// See Receiver::on_silence.
+  Duration on_silence(Time now) { return receiver_.on_silence(now); }
+  /// Processes the end of a reply, when its last stop bit has been sent and the driver is off. The main loop
+  /// need not call `step` for this.
+  void on_reply_sent(Time now) {
+    receiver_.on_own_driver_off(now);
+    cycle_.on_reply_sent(now);
+  }
   /// See InputEdges::on_edge.
   void on_edge(unsigned channel, bool level, Time now) { edges_.on_edge(channel, level, now); }
   /// See InputEdges::needs_times.
   [[nodiscard]] bool edges_need_times() const { return edges_.needs_times(); }
   /// See ModuleWatchdog::tick_alive.
   void on_tick() { module_watchdog_.tick_alive(); }
-  /// Returns whether a complete request is waiting. The turn-around time of an ASCII request may still be
-  /// running. The main loop may call this too.
-  [[nodiscard]] bool request_waits() const { return receiver_.queue().has_frame(); }
-  /// Returns whether a host OK, or a request that counts like one, is waiting for `step`. `step` restarts the
-  /// host watchdog from the time that HostOks recorded. The main loop may call this too.
-  [[nodiscard]] bool host_ok_waits() const { return receiver_.host_oks().waiting(); }
-  /// Returns whether a request or a host OK is waiting. The main loop must then call `step` (see HostOks).
-  [[nodiscard]] bool frame_waits() const { return request_waits() || host_ok_waits(); }
+  /// Returns whether a request or a host OK is waiting, so that the main loop must call `step` (see HostOks).
+  /// The turn-around time of an ASCII request may still be running.
+  [[nodiscard]] bool frame_waits() const {
+    return receiver_.queue().has_frame() || receiver_.host_oks().waiting();
+  }
 
   // --- main loop ---
 
-  /// Samples the INIT* switch, updates the status LED, collects edges, and ends the gap after a reply if the
-  /// gap is over. Call this at every tick, when the time that `idle_for` returned has passed, and after an
-  /// edge if `edges_need_times()` is true.
-  /// `init_switch`: the present level of INIT*, true = asserted (tied to GND). The module debounces it.
-  void poll_panel(bool init_switch, Time now);
-  /// Does the module's work in one pass of the main loop: completes the start after a reset, updates the
-  /// statistics, and processes host OKs, the expiry of the host watchdog, timed outputs, stores and the
-  /// waiting request, if they are due.
-  void step(Time now);
-  /// Returns how long the main loop may sleep, at most `at_most`. The tick, a waiting frame (`frame_waits`),
-  /// an edge while `edges_need_times()` is true, the end of a reply, and a finished memory job must wake the
-  /// main loop earlier. If the result is 0, call `poll_panel` and `step` again immediately.
-  [[nodiscard]] Duration idle_for(Time now, Duration at_most) const;
+  /// Does all work that is due at `now`. Call this at the tick, at `next_deadline()`, when `frame_waits()`,
+  /// after an edge if `edges_need_times()` is true, and after a memory job. `init_switch`: the present level
+  /// of INIT*, true = asserted (tied to GND). The module debounces it.
+  void step(bool init_switch, Time now);
+  /// The earliest of the times at which work becomes due without another event.
+  [[nodiscard]] Deadline next_deadline() const;
 
   /// Returns the levels to drive: bit n is channel n, 1 = energised. All are 0 until the settings are loaded.
   [[nodiscard]] std::uint16_t outputs() const { return state_.outputs; }
   [[nodiscard]] bool led_lit() const { return led_.lit(); }
   /// Returns whether to feed the hardware watchdog: see ModuleWatchdog::main_loop_alive. A reply that does
-  /// not end jams the line, so past its deadline there is no feed until `reply_sent` (wire.md section 6).
-  bool feed_watchdog(Time now) { return module_watchdog_.main_loop_alive() && !reply_deadline_.reached(now); }
+  /// not end jams the line, so past its deadline there is no feed until its end (wire.md section 6).
+  bool feed_watchdog(Time now) {
+    return module_watchdog_.main_loop_alive() && !(cycle_.replying() && reply_deadline_.reached(now));
+  }
 
   /// Returns whether the start is complete: the settings are loaded, and the module has selected INIT mode or
-  /// normal operation. The line can then be opened at `baud()` with `format()`.
+  /// normal operation. Then call `listen` with the times of the line at `baud()` with `format()`, and open
+  /// the line.
   [[nodiscard]] bool listening() const { return start_ == Start::Done; }
   /// Return the baud rate in bits per second and the line format. They do not change while `listening()`.
   [[nodiscard]] std::uint32_t baud() const { return baud_rate(state_.in_force.baud_code); }
   [[nodiscard]] LineFormat format() const { return line_format(state_.in_force.baud_code); }
+  void listen(const LineTiming& timing);
 
   /// See SettingsKeeper::busy.
   [[nodiscard]] bool needs_memory() const { return keeper_.busy(); }
@@ -104,13 +102,8 @@ class Module {
   void memory_done(bool ok) { keeper_.done(ok); }
 
   /// Returns the reply if it may be sent now. Returns each reply only once. The result is empty if no reply
-  /// is ready, or if it is too early to send the reply. The bytes are valid until `reply_sent`.
+  /// is ready, or if it is too early to send the reply. The bytes are valid until `on_reply_sent`.
   Bytes take_reply(Time now);
-  /// Ends the reply. Call this when its last stop bit has been sent and the driver is off.
-  void reply_sent(Time now) {
-    cycle_.reply_sent(now, turn_around());
-    reply_deadline_.disarm();
-  }
 
   // --- for panels, logs and tests ---
 
@@ -121,7 +114,8 @@ class Module {
   /// Returns whether the module is listening, and no request is waiting or being processed. The processing
   /// ends when the reply has been sent.
   [[nodiscard]] bool at_rest() const {
-    return listening() && cycle_.phase() == RequestCycle::Phase::Idle && !receiver_.queue().has_frame();
+    return listening() && cycle_.phase() == RequestCycle::Phase::Idle && !cycle_.replying() &&
+           !receiver_.queue().has_frame();
   }
   /// See RequestCycle::outcome.
   [[nodiscard]] const Outcome& outcome() const { return cycle_.outcome(); }
@@ -140,7 +134,8 @@ class Module {
   void start_up(Time now);
   void use_settings(Time now);
   void apply(const Settings& settings, Time now);
-  void listen();
+  void apply_to_inputs(const Settings& settings, Time now);
+  void select_mode();
   void dispatch(Time now);
   void continue_store(Time now);
   void commit(Time now);
@@ -153,14 +148,12 @@ class Module {
   void expire_host_watchdog(Time now);
   void collect_edges(Time now);
   [[nodiscard]] Duration turn_around() const;
-  [[nodiscard]] Duration until_request(Time now) const;
-  [[nodiscard]] bool step_is_due() const;
+  [[nodiscard]] Deadline request_due() const;
   [[nodiscard]] StatusLed::Pattern led_pattern_due() const;
 
-  TimingAt timing_at_;
   Start start_ = Start::Loading;
-  Deadline init_timeout_;
-  Deadline reply_deadline_;  ///< armed while a reply is being sent
+  Deadline init_timeout_;    ///< armed until the module no longer waits for INIT*
+  Deadline reply_deadline_;  ///< latest end of the last reply
   Time second_began_;        ///< when the current second of the uptime began
 
   State state_;

@@ -45,15 +45,22 @@ class Time {
   friend constexpr Time operator+(Time time, Duration duration) {
     return Time(time.microseconds_ + duration.microseconds());
   }
+  friend constexpr Time operator-(Time time, Duration duration) {
+    return Time(time.microseconds_ - duration.microseconds());
+  }
 
  private:
   std::uint32_t microseconds_ = 0;
 };
 
-/// A point in time that may be in the future. Its functions are correct within 35 minutes before and after
-/// that point, so the code that has acted on a deadline must disarm it or set it again.
+/// A point in time that may be in the future; never, while it is disarmed. Its functions are correct within
+/// 35 minutes before and after that point, so the code that has acted on a deadline must disarm it or set it
+/// again.
 class Deadline {
  public:
+  constexpr Deadline() = default;
+  constexpr explicit Deadline(Time when) : when_(when), armed_(true) {}
+
   constexpr void set(Time when) {
     when_ = when;
     armed_ = true;
@@ -61,6 +68,18 @@ class Deadline {
   constexpr void disarm() { armed_ = false; }
   /// Adds `by` to the time of an armed deadline.
   constexpr void postpone(Duration by) { when_ = when_ + by; }
+  /// Becomes `other` if that is earlier.
+  [[gnu::always_inline]] constexpr void advance_to(const Deadline& other) {
+    if (other.armed_ && (!armed_ || other.reached(when_))) {
+      *this = other;
+    }
+  }
+  /// Becomes `other` if that is later.
+  constexpr void delay_to(const Deadline& other) {
+    if (other.armed_ && !other.reached(when_)) {
+      when_ = other.when_;
+    }
+  }
 
   [[nodiscard]] constexpr bool armed() const { return armed_; }
   [[nodiscard, gnu::always_inline]] constexpr bool reached(Time now) const {

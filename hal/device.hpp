@@ -14,7 +14,7 @@ namespace ex9000::hal {
 /// A module on a board. The object exists from one reset to the next. The composition file of a board, for
 /// example boards/rp2040/composition.hpp, creates the object, calls `start`, and makes the interrupts call
 /// the `on_...` functions. Then the main loop repeats two steps: it calls `turn` until `turn` returns false,
-/// and sleeps until `has_work` returns true.
+/// and sleeps until `has_work` returns true. Each turn does what is due, once.
 ///
 /// `Board`: see hal/board.hpp.
 template <class Board>
@@ -22,12 +22,11 @@ class Device {
   static_assert(is_board<Board>());
 
  public:
-  /// Creates a device with its own board. `timing_at`: see Module.
-  constexpr Device(const Model& model, TimingAt timing_at) : board_(), module_(model, timing_at) {}
+  /// Creates a device with its own board.
+  explicit constexpr Device(const Model& model) : board_(), module_(model) {}
   /// Creates a device with a copy of `board`, for example of a board that refers to peripherals of the
   /// caller.
-  constexpr Device(const Model& model, TimingAt timing_at, const Board& board)
-      : board_(board), module_(model, timing_at) {}
+  constexpr Device(const Model& model, const Board& board) : board_(board), module_(model) {}
 
   /// Starts the module. Call this once, after the tick has started and before the other interrupts are
   /// enabled. `reason`: why the board was reset.
@@ -43,32 +42,30 @@ class Device {
   /// Processes a received byte. Call this for each byte, even if it has an error, but not for a byte that was
   /// received while the module's own driver was on.
   void on_receive(std::uint8_t byte, ByteStatus status) {
-    const Duration silence = module_.on_byte(byte, status, board_.clock.now_in_interrupt());
+    const Duration silence = module_.on_byte(byte, status, board_.clock);
     if (!(silence == Duration())) {
       board_.silence_timer.restart(silence);
-    } else if (module_.frame_waits()) {
+    } else {
       // For example, `silence` is 0 after an ASCII host OK, and after an ASCII request if bytes take no time
       // on this line.
-      wake();
+      wake_for_frame();
     }
   }
   /// Processes the end of the silence after a byte, or of the turn-around time after an ASCII frame. Call
   /// this when the silence timer expires.
   void on_silence() {
-    const Duration more = module_.on_silence();
+    const Duration more = module_.on_silence(board_.clock.now_in_interrupt());
     // While a reply is being sent, no timer is necessary: `on_sent` completes or drops a frame that is still
     // open.
     if (!(more == Duration()) && !board_.line.sending()) {
       board_.silence_timer.restart(more);
     }
-    if (module_.frame_waits()) {
-      wake();
-    }
+    wake_for_frame();
   }
   /// Processes the end of a reply. Call this when the last stop bit has been sent and the driver is off.
   void on_sent() {
-    module_.on_own_driver_off(board_.clock.now_in_interrupt());
-    wake();
+    module_.on_reply_sent(board_.clock.now_in_interrupt());
+    wake_for_frame();  // a frame that came during the reply
   }
   /// Processes an edge of an input. `channel`: counted from 0; `level`: the level after the edge, true =
   /// logic 1.
@@ -76,41 +73,36 @@ class Device {
     const bool filtered = module_.edges_need_times();
     module_.on_edge(channel, level, filtered ? board_.clock.now_in_interrupt() : Time());
     if (filtered) {
-      on_wake_timer();  // `turn` must set the wake timer to the end of the filter time
+      wake();  // `turn` must set the wake timer to the end of the filter time
     }
   }
   void on_tick() {
     module_.on_tick();
-    on_wake_timer();
-  }
-  /// Wakes the main loop. The next call of `turn` then also calls `poll_panel`. Call this when the wake timer
-  /// expires.
-  void on_wake_timer() {
-    times_due_.store_in_interrupt(times_due_.load() + 1U);
     wake();
   }
-  /// Wakes the main loop. Call this when the memory can continue its job.
+  /// Call this when the wake timer expires.
+  void on_wake_timer() { wake(); }
+  /// Call this when the memory can continue its job.
   void on_memory() { wake(); }
 
   // --- main loop; no function blocks ---
 
   [[nodiscard]] bool has_work() const { return wakes_.load() != wakes_seen_; }
 
-  /// Runs one pass of the main loop: carries out the work that is due, for example requests, replies, memory
-  /// jobs and outputs. If the result is true, call this again immediately: work is due, and there may be no
-  /// interrupt that wakes the main loop in time.
+  /// Runs one pass of the main loop. If the result is true, call this again immediately: work is due, and
+  /// there may be no interrupt that wakes the main loop in time.
   bool turn() {
     wakes_seen_ = wakes_.load();  // must be first, so that later events cause another pass
     const Time now = board_.clock.now();
     const bool memory_polls = poll_memory(now);
-    if (panel_is_due()) {
-      poll_panel();
+    module_.step(board_.init_switch.asserted(), now);
+    // Each pass drives outputs and LED again, in case a disturbance has changed their registers.
+    board_.outputs.drive(module_.outputs());
+    board_.status_led.light(module_.led_lit());
+    if (module_.feed_watchdog(now)) {
+      board_.watchdog.feed();
     }
-    module_.step(now);
-    if (module_.outputs() != driven_) {
-      drive_outputs();
-    }
-    poll_line(now);
+    serve_line(now);
     const bool memory_is_done = begin_memory_job(now);
     return set_wake_timer(now) || memory_polls || memory_is_done;
   }
@@ -119,60 +111,28 @@ class Device {
   [[nodiscard]] const Module& module() const { return module_; }
 
  private:
-  /// Passes the level of INIT* to Module::poll_panel, which also collects edges. Updates the status LED, and
-  /// feeds the hardware watchdog if the module permits this. Also drives the outputs again, in case a
-  /// disturbance has changed their registers.
-  void poll_panel() {
-    const Time now = board_.clock.now();
-    module_.poll_panel(board_.init_switch.asserted(), now);
-    board_.status_led.light(module_.led_lit());
-    drive_outputs();
-    if (module_.feed_watchdog(now)) {
-      board_.watchdog.feed();
-    }
-  }
-
-  void poll_line(Time now) {
+  /// Opens the line when the module has started, and begins to send a reply when it is due.
+  void serve_line(Time now) {
     if (!line_open_) {
       if (!module_.listening()) {
         return;
       }
       line_open_ = true;
+      module_.listen(board_.line.timing(module_.baud(), module_.format()));
       board_.line.open(module_.baud(), module_.format());
-    }
-    if (reply_under_way_) {
-      if (board_.line.sending()) {
-        return;
-      }
-      reply_under_way_ = false;
-      module_.reply_sent(board_.clock.now());  // not `now`, because the reply may have ended after that time
     }
     const Bytes reply = module_.take_reply(now);
     if (reply.size != 0) {
-      send(reply);
+      board_.line.send(reply);
     }
-  }
-
-  void send(Bytes reply) {
-    reply_under_way_ = true;
-    board_.line.send(reply);
-  }
-
-  /// Returns whether `on_wake_timer` has run since the last call of this function, or whether an event was
-  /// already due at the end of the previous pass. Also returns true in the first pass.
-  bool panel_is_due() {
-    const std::uint32_t times_due = times_due_.load();
-    const bool due = due_now_ || times_due != times_seen_;
-    times_seen_ = times_due;
-    return due;
   }
 
   /// Makes `has_work` return true, which wakes the main loop.
   void wake() { wakes_.store_in_interrupt(wakes_.load() + 1U); }
-
-  void drive_outputs() {
-    driven_ = module_.outputs();
-    board_.outputs.drive(driven_);
+  void wake_for_frame() {
+    if (module_.frame_waits()) {
+      wake();
+    }
   }
 
   /// Continues a memory job, or the work of the memory between jobs. Passes the result of a finished job to
@@ -202,29 +162,31 @@ class Device {
     return !board_.memory.busy();
   }
 
-  /// Sets the wake timer to the time until the next event: at most kMemoryPollPeriod during a memory job,
-  /// otherwise at most kLongestWake. `now` is the start of this pass, so the timer expires late by the
-  /// duration of the pass. The delays of several passes do not accumulate. If the event is already due,
-  /// returns true and does not set the timer.
+  /// Sets the wake timer to the time until the next deadline, or until the memory must be polled; at most
+  /// kLongestWake. `now` is the start of this pass, so the timer expires late by the duration of the pass.
+  /// The delays of several passes do not accumulate. If the deadline is already reached, returns true and
+  /// does not set the timer.
   bool set_wake_timer(Time now) {
-    const Duration idle = module_.idle_for(now, memory_job_under_way_ ? kMemoryPollPeriod : kLongestWake);
-    due_now_ = idle == Duration();
-    if (!due_now_) {
-      board_.wake_timer.restart(idle);
+    Deadline next = module_.next_deadline();
+    if (memory_job_under_way_) {
+      next.advance_to(Deadline(now + kMemoryPollPeriod));
     }
-    return due_now_;
+    if (!next.armed()) {
+      return false;
+    }
+    const Duration sleep = next.remaining(now);
+    if (sleep == Duration()) {
+      return true;
+    }
+    board_.wake_timer.restart(sleep < kLongestWake ? sleep : kLongestWake);
+    return false;
   }
 
   Board board_;
-  bool due_now_ = true;
   bool line_open_ = false;
-  bool reply_under_way_ = false;
   bool memory_job_under_way_ = false;
-  std::uint16_t driven_ = 0;
   std::uint32_t wakes_seen_ = 0;
-  std::uint32_t times_seen_ = 0;  ///< the value of `times_due_` that has been processed
   WrittenByInterrupt<std::uint32_t> wakes_;
-  WrittenByInterrupt<std::uint32_t> times_due_;  ///< number of calls of `on_wake_timer`
   Module module_;
 };
 

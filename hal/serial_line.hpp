@@ -17,6 +17,8 @@ namespace ex9000::hal {
 /// received bytes are the echo. When a reply has been sent and the driver is off, an interrupt of the same
 /// preemption priority calls `Device::on_sent`.
 ///
+///     LineTiming timing(std::uint32_t baud, LineFormat format) const
+///         Returns the times of the line, which depend on when the UART reports a byte.
 ///     void open(std::uint32_t baud, LineFormat format)
 ///         Starts to receive at `baud` bits per second (1200 to 115200). Before this call, the driver is off
 ///         and nothing is received. A byte whose only error is wrong parity is reported as

@@ -88,7 +88,7 @@ struct Board {
   Watchdog watchdog;
 };
 
-hal::Device<Board> device(kOnlyModel, kTimingAt);
+hal::Device<Board> device(kOnlyModel);
 Board& board = device.board();
 using Handle = Handlers<device, SilenceTimer, LineEndTimer, WakeTimer>;
 

@@ -26,10 +26,11 @@ void Inputs::invert(std::uint16_t channels) {
 
 void Inputs::collect(InputEdges& edges, unsigned channels, Time now) {
   const std::uint32_t all = edges.edges();
-  if (all == edges_seen_ && settling() == 0) {
+  if (all == edges_seen_ && !next_settling_.reached(now)) {
     return;
   }
   edges_seen_ = all;
+  next_settling_.disarm();
   for (unsigned channel = 0; channel < channels; ++channel) {
     const std::uint32_t bit = 1U << channel;
     const std::uint32_t fresh = edges.collect(channel);
@@ -40,8 +41,13 @@ void Inputs::collect(InputEdges& edges, unsigned channels, Time now) {
     standing_ = static_cast<std::uint16_t>(standing_ ^ ((fresh & 1U) << channel));
     if (!filtered) {
       count(channel, fresh);
-    } else if ((settling() & bit) != 0 && settles_at(edges, channel).reached(now)) {
-      count(channel, 1);
+    } else if ((settling() & bit) != 0) {
+      const Deadline settles = settles_at(edges, channel);
+      if (settles.reached(now)) {
+        count(channel, 1);
+      } else {
+        next_settling_.advance_to(settles);
+      }
     }
   }
 }
@@ -69,20 +75,7 @@ void Inputs::count(unsigned channel, std::uint32_t edges) {
 /// settling.
 Deadline Inputs::settles_at(const InputEdges& edges, unsigned channel) const {
   constexpr Duration kRoundUp(1);  // the edge may have happened up to 1 us later than its recorded time
-  Deadline deadline;
-  deadline.set(edges.last_edge(channel) + milliseconds(filters_.of(channel)) + kRoundUp);
-  return deadline;
-}
-
-Duration Inputs::until_settled(const InputEdges& edges, Time now, Duration at_most) const {
-  Duration until = at_most;
-  for (unsigned channel = 0; settling() >> channel != 0; ++channel) {
-    if ((settling() >> channel & 1U) != 0) {
-      const Duration remaining = settles_at(edges, channel).remaining(now);
-      until = remaining < until ? remaining : until;
-    }
-  }
-  return until;
+  return Deadline(edges.last_edge(channel) + milliseconds(filters_.of(channel)) + kRoundUp);
 }
 
 void Inputs::clear_counters(std::uint16_t channels) {

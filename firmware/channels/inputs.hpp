@@ -72,18 +72,20 @@ class Inputs {
   /// Sets the inverted channels, bit n for channel n. The levels change immediately, and this change does not
   /// count as an edge.
   void invert(std::uint16_t channels);
-  /// Sets the filter times. The filter time of a channel begins at the last edge of this channel, even if
-  /// that edge was before this call.
-  void use_filters(const InputFilters& filters) { filters_ = filters; }
+  /// Sets the filter times from the next `collect` on. The filter time of a channel begins at the last edge
+  /// of this channel, even if that edge was before this call.
+  void use_filters(const InputFilters& filters, Time now) {
+    filters_ = filters;
+    next_settling_.set(now);
+  }
 
   /// Processes the first `channels` channels: counts and latches each edge of a channel without a filter, and
   /// each changed level that has been stable for its filter time at `now`. Call this at least once every
   /// 65535 edges of a channel.
   void collect(InputEdges& edges, unsigned channels, Time now);
-  /// Returns the time until a changed level that does not count yet has been stable for its filter time. If
-  /// several channels have such a level, returns the shortest of their times. Returns `at_most` if the time
-  /// is longer, or if no channel has such a level.
-  [[nodiscard]] Duration until_settled(const InputEdges& edges, Time now, Duration at_most) const;
+  /// When the first of the changed levels that do not count yet will have been stable for its filter time;
+  /// disarmed if there is none.
+  [[nodiscard]] const Deadline& next_settling() const { return next_settling_; }
 
   [[nodiscard]] std::uint16_t levels() const { return levels_; }
   /// Returns the channels with a rising edge since reset or the last `clear_latches`; bit n is channel n.
@@ -107,6 +109,7 @@ class Inputs {
   [[nodiscard]] std::uint16_t settling() const { return static_cast<std::uint16_t>(levels_ ^ standing_); }
 
   std::uint32_t edges_seen_ = 0;  ///< InputEdges::edges at the last `collect`
+  Deadline next_settling_;
   CounterRange range_ = CounterRange::FiveDigits;
   bool count_rising_edges_ = false;
   InputFilters filters_;

@@ -39,15 +39,14 @@ std::uint16_t OutputTimers::left(unsigned channel) const {
   return is_running(channel) ? timers_[channel].units : std::uint16_t{0};
 }
 
-Duration OutputTimers::until_due(Time now, Duration at_most) const {
-  Duration until = at_most;
+Deadline OutputTimers::next_end() const {
+  Deadline next;
   for (unsigned channel = 0; running_ >> channel != 0; ++channel) {
     if (is_running(channel)) {
-      const Duration remaining = timers_[channel].unit_end.remaining(now);
-      until = remaining < until ? remaining : until;
+      next.advance_to(timers_[channel].unit_end);
     }
   }
-  return until;
+  return next;
 }
 
 }  // namespace ex9000

@@ -27,8 +27,8 @@ class OutputTimers {
   /// Returns how many units of 0.1 s were left at the last `start` or `expire`, including the current unit; 0
   /// if the timer of `channel` does not run.
   [[nodiscard]] std::uint16_t left(unsigned channel) const;
-  /// Returns the time until `expire` must be called, at most `at_most`.
-  [[nodiscard]] Duration until_due(Time now, Duration at_most) const;
+  /// When `expire` must be called; disarmed if no timer runs.
+  [[nodiscard]] Deadline next_end() const;
 
  private:
   struct Timer {

@@ -25,11 +25,14 @@ Bytes arguments(const Dispatch& row, Bytes frame) {
 }
 
 bool matches(const Dispatch& row, const Model& model, Bytes frame) {
-  if (row.delimiter != static_cast<char>(frame[0]) || is_broadcast(frame) != (row.key == kBroadcastKey)) {
+  if (row.delimiter != static_cast<char>(frame[0])) {
     return false;
   }
-  if (row.key != kNoKey && row.key != kBroadcastKey &&
-      (frame.size <= kBodyAt || row.key != static_cast<char>(frame[kBodyAt]))) {
+  const bool key_matches =
+      is_broadcast(frame)
+          ? row.key == kBroadcastKey
+          : row.key == kNoKey || (frame.size > kBodyAt && row.key == static_cast<char>(frame[kBodyAt]));
+  if (!key_matches) {
     return false;
   }
   const std::size_t args = arguments(row, frame).size;

@@ -6,7 +6,6 @@ namespace ex9000 {
 
 namespace {
 
-constexpr std::uint8_t kCarriageReturn = '\r';
 constexpr std::uint8_t kDelimiterAndAddress = 3;
 constexpr std::uint8_t kChecksumDigits = 2;
 
@@ -23,19 +22,10 @@ bool are_digits(const std::uint8_t* text, std::uint32_t digits) {
 
 }  // namespace
 
-Verdict DconAssembler::byte(FrameQueue& queue, std::uint8_t byte, ByteStatus status, Time now) {
+void DconAssembler::byte(FrameQueue& queue, std::uint8_t byte, ByteStatus status) {
   if (status != ByteStatus::Good) {
-    // The byte's value is unreliable, or another byte was lost, so this byte neither ends nor begins a frame.
-    if (state_ == State::InFrame) {
-      state_ = State::Spoiled;
-      loss_ = status == ByteStatus::Overrun ? Verdict::Overrun : Verdict::LineError;
-    }
-    return Verdict::Open;
-  }
-  if (byte == kCarriageReturn) {
-    return end(queue, now);
-  }
-  if (state_ == State::InFrame) {
+    spoil(status);
+  } else if (state_ == State::InFrame) {
     if (size_ == kLongestDconFrame) {
       state_ = State::Spoiled;
       loss_ = Verdict::TooLong;
@@ -45,7 +35,15 @@ Verdict DconAssembler::byte(FrameQueue& queue, std::uint8_t byte, ByteStatus sta
   } else if (state_ == State::Hunting) {
     open_or_skip(queue, byte);
   }
-  return Verdict::Open;
+}
+
+/// Processes a byte with an error: its value is unreliable, or another byte was lost, so it neither ends nor
+/// begins a frame.
+void DconAssembler::spoil(ByteStatus status) {
+  if (state_ == State::InFrame) {
+    state_ = State::Spoiled;
+    loss_ = status == ByteStatus::Overrun ? Verdict::Overrun : Verdict::LineError;
+  }
 }
 
 /// Appends a character and updates the sum, which excludes the last two characters, because they may be the
@@ -70,7 +68,11 @@ void DconAssembler::open_or_skip(FrameQueue& queue, std::uint8_t byte) {
   }
 }
 
-Verdict DconAssembler::end(FrameQueue& queue, Time now) {
+Verdict DconAssembler::end(FrameQueue& queue, ByteStatus status, Time now) {
+  if (status != ByteStatus::Good) {
+    spoil(status);
+    return Verdict::Open;
+  }
   const State ended = state_;
   state_ = State::Hunting;
   if (ended == State::InFrame) {

@@ -23,10 +23,13 @@ class DconAssembler {
   /// this while bytes are received.
   void answer_to(std::uint8_t address) { own_digits_.store_in_main_loop(hex_digits(address)); }
 
-  /// Processes a received byte. Returns the verdict on the frame that this byte ends, or Open if it ends no
-  /// frame. An accepted frame contains the characters from the delimiter on, without CHK and CR. For the
-  /// receive interrupt.
-  Verdict byte(FrameQueue& queue, std::uint8_t byte, ByteStatus status, Time now);
+  static constexpr std::uint8_t kEnd = '\r';
+
+  /// Processes a received byte that is not kEnd. For the receive interrupt, like `end`.
+  void byte(FrameQueue& queue, std::uint8_t byte, ByteStatus status);
+  /// Processes kEnd. Returns the verdict on the frame that it ends, or Open if it ends no frame. An accepted
+  /// frame contains the characters from the delimiter on, without CHK and CR.
+  Verdict end(FrameQueue& queue, ByteStatus status, Time now);
 
   /// Returns whether the last frame with a correct check was a broadcast. Valid only if that frame was not
   /// Foreign. For interrupts.
@@ -44,7 +47,7 @@ class DconAssembler {
 
   void add(std::uint8_t* text, std::uint8_t byte);
   void open_or_skip(FrameQueue& queue, std::uint8_t byte);
-  Verdict end(FrameQueue& queue, Time now);
+  void spoil(ByteStatus status);
   Verdict judge(FrameQueue& queue, Time now);
 
   WrittenByMainLoop<std::uint32_t> own_digits_;

@@ -44,11 +44,6 @@ class HostOks {
     return times;
   }
 
-  /// Returns the number of host OKs, and of requests that count like one, since reset; wraps.
-  [[nodiscard]] std::uint32_t received() const { return received_.load(); }
-  /// Returns the time that was stored last; 0 if no time has been stored.
-  [[nodiscard]] Time last() const { return Time(last_.load()); }
-
  private:
   WrittenByInterrupt<std::uint32_t> received_;
   WrittenByMainLoop<std::uint32_t> taken_;

@@ -13,21 +13,18 @@ void Receiver::answer_to(std::uint8_t address) {
   rtu_.answer_to(address);
 }
 
-Duration Receiver::on_silence() {
+Duration Receiver::on_silence(Time now) {
   if (!modbus()) {
     return {};
   }
-  note(rtu_.silence(queue_), rtu_.silent_since());
+  note(rtu_.silence(queue_, now), now);
   return rtu_.next_wait();
 }
 
 void Receiver::on_own_driver_off(Time now) {
   if (modbus()) {
     // The module's own reply ends the frame, even if the silence after the frame is not over.
-    const Verdict verdict = rtu_.cut_off(queue_);
-    Deadline silence;
-    silence.set(rtu_.silent_since());
-    note(verdict, silence.reached(now) ? rtu_.silent_since() : now);
+    note(rtu_.cut_off(queue_, now), now);
   } else {
     dcon_.forget();
   }

@@ -31,16 +31,17 @@ class Receiver {
 
   // --- interrupts, which must not interrupt each other ---
 
-  /// Processes a received byte. `now` is the time at which the UART reports the byte; LineTiming takes into
-  /// account the part of the stop bits that is left. `on_silence` must be called when the returned time has
-  /// passed since `now`: restart the silence timer with this time. Do not change the timer if the result is
-  /// 0. In Modbus, the result is `rtu_silence` for each byte. In DCON, the result is the turn-around time if
-  /// the byte is the CR of an accepted frame, otherwise 0.
-  Duration on_byte(std::uint8_t byte, ByteStatus status, Time now);
+  /// Processes a received byte. `clock.now_in_interrupt()` returns the present time; only a CR in DCON needs
+  /// it. LineTiming takes into account the part of the stop bits that is left when the UART reports a byte.
+  /// `on_silence` must be called when the returned time has passed: restart the silence timer with this time.
+  /// Do not change the timer if the result is 0. In Modbus, the result is never 0. In DCON, it is the
+  /// turn-around time if the byte is the CR of an accepted frame, otherwise 0.
+  template <class Clock>
+  Duration on_byte(std::uint8_t byte, ByteStatus status, const Clock& clock);
 
   /// Call this when the time that `on_byte` or `on_silence` returned has passed. Returns the time after which
   /// `on_silence` must be called again; 0 if this is not necessary.
-  Duration on_silence();
+  Duration on_silence(Time now);
 
   /// Call this at `now`, when the module's own driver is off again; `on_byte` must not be called while the
   /// driver is on. Drops an incomplete frame, except an RTU frame that lacks only its silence (wire.md D9).
@@ -85,15 +86,21 @@ class Receiver {
 };
 
 // `on_byte` is inline, because it runs for each byte on the line, including bytes for other modules.
-inline Duration Receiver::on_byte(std::uint8_t byte, ByteStatus status, Time now) {
+template <class Clock>
+inline Duration Receiver::on_byte(std::uint8_t byte, ByteStatus status, const Clock& clock) {
   if (status != ByteStatus::Good && status != ByteStatus::Overrun) {
     tallies_.count_damaged_byte_in_interrupt();
   }
   if (modbus()) {
-    note(rtu_.byte(queue_, byte, status, now), now);
-    return timing().rtu_silence;
+    rtu_.byte(queue_, byte, status);
+    return rtu_.first_wait();
   }
-  const Verdict verdict = dcon_.byte(queue_, byte, status, now);
+  if (byte != DconAssembler::kEnd) {
+    dcon_.byte(queue_, byte, status);
+    return {};
+  }
+  const Time now = clock.now_in_interrupt();
+  const Verdict verdict = dcon_.end(queue_, status, now);
   note(verdict, now);
   return verdict == Verdict::Accepted ? timing().dcon_turn_around : Duration();
 }

@@ -11,13 +11,43 @@ constexpr unsigned kCrcBytes = 2;
 
 }  // namespace
 
-Verdict RtuAssembler::silence(FrameQueue& queue) {
+/// Opens a frame with its first byte, or continues the open frame after an expiry of the silence timer.
+void RtuAssembler::go_on(FrameQueue& queue, std::uint8_t byte) {
+  if (state_ == State::Idle) {
+    open(queue, byte);
+  } else {
+    if (strict()) {
+      spoil();
+    }
+    crc_after_zero_.add(byte);
+  }
+  state_ = State::Receiving;
+}
+
+void RtuAssembler::open(FrameQueue& queue, std::uint8_t first) {
+  frame_ = &queue.assembling();
+  received_ = 0;
+  after_zero_ = first == kTurnAround;
+  first_spoiled_ = false;
+  rest_spoiled_ = false;
+  overrun_ = false;
+  whole_ = Crc16();
+  crc_after_zero_ = Crc16();
+}
+
+Verdict RtuAssembler::silence(FrameQueue& queue, Time now) {
   Verdict verdict = Verdict::Open;
   switch (state_) {  // not covered: the enumeration has no other value
     case State::Idle:
       break;
     case State::Receiving:
-      verdict = conclude(queue);
+      if (strict()) {
+        state_ = State::LongGap;
+        break;
+      }
+      [[fallthrough]];
+    case State::LongGap:
+      verdict = conclude(queue, now - timing_.rtu_silence);
       state_ = verdict == Verdict::Open ? State::GracePeriod : State::Idle;
       break;
     case State::GracePeriod:
@@ -29,11 +59,14 @@ Verdict RtuAssembler::silence(FrameQueue& queue) {
 }
 
 Duration RtuAssembler::next_wait() const {
+  if (state_ == State::LongGap) {
+    return timing_.rtu_silence - timing_.rtu_slack;
+  }
   return state_ == State::GracePeriod ? timing_.rtu_grace : Duration();
 }
 
-Verdict RtuAssembler::cut_off(FrameQueue& queue) {
-  const Verdict verdict = state_ == State::Idle ? Verdict::Open : conclude(queue);
+Verdict RtuAssembler::cut_off(FrameQueue& queue, Time now) {
+  const Verdict verdict = state_ == State::Idle ? Verdict::Open : conclude(queue, now);
   state_ = State::Idle;
   return verdict;
 }
@@ -42,11 +75,12 @@ Verdict RtuAssembler::cut_off(FrameQueue& queue) {
 /// turn-around byte 00. Returns Open if the CRC or the length of the bytes that are not ignored is wrong, or
 /// if one of these bytes is spoiled. Queues a frame that is a broadcast or has the address of this module,
 /// except a host OK. Returns NoRoom if it cannot queue such a frame because another frame is already waiting.
-Verdict RtuAssembler::conclude(FrameQueue& queue) {
-  Frame& frame = queue.assembling();
+/// `received`: when the UART reported the last byte, or a little later.
+Verdict RtuAssembler::conclude(FrameQueue& queue, Time received) {
+  Frame& frame = *frame_;
   unsigned offset = 0;
   if (whole_.value() != 0 || first_spoiled_ || rest_spoiled_) {
-    if (frame.storage[0] != kTurnAround || crc_after_first_.value() != 0 || rest_spoiled_) {
+    if (!after_zero_ || crc_after_zero_.value() != 0 || rest_spoiled_) {
       return Verdict::Open;
     }
     offset = 1;
@@ -63,7 +97,7 @@ Verdict RtuAssembler::conclude(FrameQueue& queue) {
   broadcast_ = address == modbus::kBroadcast;
   frame.offset = static_cast<std::uint16_t>(offset);
   frame.size = static_cast<std::uint16_t>(size - kCrcBytes);
-  frame.received = last_;
+  frame.received = received;
   if (modbus::is_host_ok(frame.bytes())) {
     return Verdict::HostOk;
   }

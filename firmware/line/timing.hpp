@@ -8,6 +8,13 @@
 
 namespace ex9000 {
 
+/// The build option EX9000_STRICT_GAPS of an image: a gap of more than T1.5 makes a Modbus frame invalid.
+#ifdef EX9000_STRICT_GAPS
+inline constexpr bool kStrictGaps = true;
+#else
+inline constexpr bool kStrictGaps = false;
+#endif
+
 struct LineTiming {
   /// Duration of a character, rounded up.
   Duration character;
@@ -18,11 +25,11 @@ struct LineTiming {
   /// reply: the rest of the stop bits plus T3.5. It is rounded up, so that a reply is never early.
   Duration rtu_silence;
   /// Time after `rtu_silence` within which the UART reports a byte that began before the end of T3.5: the
-  /// time from the beginning of a byte to its report. It is rounded down, so that a byte that begins exactly
-  /// at the end of T3.5 begins a new frame.
+  /// time from the beginning of a byte to its report. It is rounded down by the lateness of the silence timer
+  /// too, so that a byte that begins exactly at the end of T3.5 begins a new frame.
   Duration rtu_grace;
   /// The largest time between the reports of two successive bytes of a frame; a larger time makes the frame
-  /// invalid.
+  /// invalid. A value of `rtu_silence` or more allows every gap.
   Duration rtu_slack;
   /// Time from the report of a byte to the end of its last stop bit, rounded up.
   Duration rest_of_stop_bit;
@@ -78,9 +85,9 @@ struct LineTiming {
 
   /// In microseconds: 1 for the rounding of the division, 1 for the resolution of the clock.
   static constexpr std::uint32_t kRoundUp = 2;
-  /// In microseconds: kRoundUp, because rtu_silence is already rounded up by kRoundUp, and 1 for the
-  /// resolution of the clock.
-  static constexpr std::uint32_t kRoundDown = kRoundUp + 1;
+  /// In microseconds: kRoundUp, because rtu_silence is already rounded up by kRoundUp; 1 for the resolution
+  /// of the clock; and twice the lateness of a timer (hal/one_shot_timer.hpp).
+  static constexpr std::uint32_t kRoundDown = kRoundUp + 1 + 2 * 5;
 
   static constexpr std::uint32_t microseconds(std::uint32_t half_bits, std::uint32_t baud) {
     constexpr std::uint32_t kHalfSecond = 500'000;

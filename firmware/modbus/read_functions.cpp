@@ -49,13 +49,16 @@ Refusal read_words(Exchange& exchange) {
     return Refusal::WrongQuantity;
   }
   exchange.reply.put(static_cast<std::uint8_t>(2 * quantity));
-  for (unsigned i = 0; i < quantity; ++i) {
-    const unsigned address = start + i;
+  const unsigned end = start + quantity;
+  for (unsigned address = start; address < end;) {
     const WordRow* row = find_word(exchange.model(), function_of(frame), address);
     if (row == nullptr) {
       return Refusal::WrongAddress;
     }
-    exchange.reply.put_word(row->read(exchange, address - row->first));
+    const unsigned end_of_row = row->first + width_of(row->width, exchange.model());
+    for (; address < end && address < end_of_row; ++address) {
+      exchange.reply.put_word(row->read(exchange, address - row->first));
+    }
   }
   return Refusal::None;
 }

@@ -14,8 +14,8 @@ template <class Rows>
 auto find_in(const Rows& rows, const Model& model, Functions function, unsigned address, unsigned quantity)
     -> decltype(&rows[0]) {
   for (const auto& row : rows) {
-    if ((row.functions & function) != 0) {
-      const unsigned index = address - row.first;
+    const unsigned index = address - row.first;
+    if (index < kLargestWidth && (row.functions & function) != 0) {
       const unsigned width = width_of(row.width, model);
       if (index < width && has(model, row.needs)) {
         return index + quantity <= width ? &row : nullptr;

@@ -32,6 +32,8 @@ constexpr Functions kWriteRegisters = kWriteSingleRegister;
 /// inputs of the model, or twice the number of its inputs.
 enum class Width : std::uint8_t { One = 1, Two = 2, Eight = 8, PerOutput, PerInput, PairPerInput };
 
+constexpr unsigned kLargestWidth = 32;
+
 constexpr unsigned width_of(Width width, const Model& model) {
   if (width <= Width::Eight) {
     return static_cast<unsigned>(width);

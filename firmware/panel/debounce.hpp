@@ -8,21 +8,23 @@ namespace ex9000 {
 /// Accepts a level when every sample for at least 10 ms has had this level (wire.md D13).
 class Debounce {
  public:
-  /// Processes the present level of the switch. The main loop calls this at every tick and at `next_sample`.
+  /// Processes the present level of the switch. The main loop calls this in every pass.
   void sample(bool level, Time now) {
     if (!sampled_ || level != candidate_) {
       sampled_ = true;
       candidate_ = level;
       settles_.set(now + kSettle);
-    } else if (settles_.reached(now)) {
+    }
+    if (!settles_.armed()) {
+      return;
+    }
+    next_sample_ = settles_;
+    next_sample_.advance_to(Deadline(now + kSampleInterval));
+    if (settles_.reached(now)) {
       level_ = level;
       known_ = true;
       settles_.disarm();
-    }
-    next_sample_.disarm();
-    if (settles_.armed()) {
-      const Duration left = settles_.remaining(now);
-      next_sample_.set(now + (left < kSampleInterval ? left : kSampleInterval));
+      next_sample_.disarm();
     }
   }
 
@@ -30,9 +32,9 @@ class Debounce {
   [[nodiscard]] bool known() const { return known_; }
   /// Returns the last accepted level; false if none has been accepted since reset.
   [[nodiscard]] bool level() const { return level_; }
-  /// Returns when to sample the switch again, at most 1 ms after the last sample. The result is disarmed
-  /// before the first sample, and while no level is waiting to be accepted.
-  [[nodiscard]] Deadline next_sample() const { return next_sample_; }
+  /// When to sample the switch again, at most 1 ms after the last sample; disarmed while no level is waiting
+  /// to be accepted.
+  [[nodiscard]] const Deadline& next_sample() const { return next_sample_; }
 
  private:
   static constexpr Duration kSettle = milliseconds(10);

@@ -16,7 +16,7 @@ class StatusLed {
     SettingsUnreadable,  ///< two short flashes every 2 s (wire.md D8)
   };
 
-  /// Selects and advances the pattern. The main loop calls this at every tick and at `next_change`.
+  /// Selects and advances the pattern. The main loop calls this in every pass.
   void show(Pattern pattern, Time now) {
     if (pattern != pattern_) {
       pattern_ = pattern;
@@ -31,8 +31,8 @@ class StatusLed {
   [[nodiscard]] Pattern pattern() const { return pattern_; }
   /// Returns whether the LED is on: it is on in even phases.
   [[nodiscard]] bool lit() const { return phase_ % 2 == 0; }
-  /// Returns when the LED changes next; disarmed while it is steady.
-  [[nodiscard]] Deadline next_change() const { return next_; }
+  /// When the LED changes next; disarmed while it is steady.
+  [[nodiscard]] const Deadline& next_change() const { return next_; }
 
  private:
   static constexpr unsigned kPhases = 4;

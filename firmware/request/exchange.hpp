@@ -19,7 +19,7 @@ struct Exchange {
   const State& state;
   const LineTallies& tallies;  ///< the counts already include this request
 
-  Bytes frame;       ///< the request without checksum, CRC and CR; empty when it has been judged
+  Bytes frame;       ///< the request without checksum, CRC and CR; valid until it has been judged
   Bytes args;        ///< the arguments of a DCON command (dcon/commands.hpp); set before a DCON handler runs
   bool broadcast{};  ///< whether the request has address 0; for Modbus only
 
@@ -36,10 +36,9 @@ struct Exchange {
     return outcome.drives_outputs() && state.outputs_blocked() ? Refusal::OutputsBlocked : Refusal::None;
   }
   [[nodiscard]] constexpr const Model& model() const { return state.model(); }
-  /// Prepares the exchange for the next request.
+  /// Prepares the exchange, whose outcome is clear, for the next request.
   void begin(Bytes request) {
     frame = request;
-    outcome.clear();
     outcome.refusal = Refusal::None;
     reply.clear();
   }

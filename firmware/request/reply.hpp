@@ -26,9 +26,12 @@ class Reply {
   }
   void put(char character) { put(static_cast<std::uint8_t>(character)); }
   void put(Bytes bytes) {
-    for (const std::uint8_t byte : bytes) {
-      put(byte);
+    std::uint8_t* next = bytes_.data() + size_;
+    const Bytes fitting = bytes.first(bytes_.size() - size_);
+    for (const std::uint8_t byte : fitting) {
+      *next++ = byte;
     }
+    size_ += fitting.size;
   }
   void put(std::string_view text) {
     for (const char character : text) {

@@ -5,16 +5,26 @@
 
 namespace ex9000 {
 
-const Outcome& RequestCycle::judge(Bytes frame) {
+void RequestCycle::poll(Time now) {
+  const std::uint32_t sent = replies_sent_.load();
+  if (replies_ended_ != sent) {
+    replies_ended_ = sent;
+    gap_end_.set(Time(sent_at_.load()) + gap_);
+  }
+  if (gap_end_.reached(now)) {
+    gap_end_.disarm();
+  }
+}
+
+const Outcome& RequestCycle::judge(Bytes frame, Time now) {
   exchange_.begin(frame);
-  reply_hold_.disarm();
+  earliest_reply_.set(now);
+  earliest_reply_.delay_to(gap_end_);
   if (exchange_.state.speaks_modbus()) {
     modbus::answer(exchange_);
   } else {
     dcon::answer(exchange_);
   }
-  exchange_.frame = {};
-  exchange_.args = {};
   Outcome& outcome = exchange_.outcome;
   if (outcome.refusal != Refusal::None) {
     outcome.clear();  // no action of a refused request is carried out
@@ -26,7 +36,7 @@ const Outcome& RequestCycle::judge(Bytes frame) {
 }
 
 void RequestCycle::keep_timeout_status() {
-  if (phase_ == Phase::AwaitingStore || phase_ == Phase::Storing) {
+  if (stores()) {
     exchange_.outcome.change().timeout_status.reset();
   }
 }
@@ -48,28 +58,12 @@ bool RequestCycle::finish() {
 }
 
 Bytes RequestCycle::take_reply(Time now) {
-  if (phase_ != Phase::ReplyReady || !(until_reply(now) == Duration())) {
+  if (phase_ != Phase::ReplyReady || !earliest_reply_.reached(now)) {
     return {};
   }
-  phase_ = Phase::Replying;
-  return exchange_.reply.bytes();
-}
-
-Duration RequestCycle::until_reply(Time now) const {
-  const Duration gap = reply_gap_end_.armed() ? reply_gap_end_.remaining(now) : Duration();
-  const Duration hold = reply_hold_.armed() ? reply_hold_.remaining(now) : Duration();
-  return gap < hold ? hold : gap;
-}
-
-void RequestCycle::reply_sent(Time now, Duration silence) {
   phase_ = Phase::Idle;
-  reply_gap_end_.set(now + silence);
-}
-
-void RequestCycle::end_reply_gap(Time now) {
-  if (reply_gap_end_.reached(now)) {
-    reply_gap_end_.disarm();
-  }
+  replies_.store_in_main_loop(replies_.load() + 1U);
+  return exchange_.reply.bytes();
 }
 
 }  // namespace ex9000

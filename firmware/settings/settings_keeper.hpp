@@ -60,10 +60,8 @@ class SettingsKeeper {
   /// Starts to store `in_force` or to invalidate a copy, if necessary. Call this in every pass of the main
   /// loop when loading has ended.
   void poll(const Settings& in_force, Time now);
-  /// Returns whether an action without a command has ended and `poll` has not processed its result yet.
-  [[nodiscard]] bool has_work() const { return own_save_ && !busy(); }
-  /// Returns the time of the next retry of a failed action; disarmed if no failed action waits.
-  [[nodiscard]] Deadline retry() const { return retry_; }
+  /// The time of the next retry of a failed action; disarmed if no failed action waits.
+  [[nodiscard]] Deadline retry() const { return busy() ? Deadline() : retry_; }
 
   // --- memory access; see SettingsStore ---
 

@@ -24,11 +24,7 @@ class HostWatchdog {
   /// Returns the time at which the watchdog expires if it is not restarted. The result is disarmed if the
   /// watchdog is not enabled.
   [[nodiscard]] constexpr Deadline expiry(const Settings& settings) const {
-    Deadline deadline;
-    if (settings.watchdog_enabled) {
-      deadline.set(started_ + timeout(settings));
-    }
-    return deadline;
+    return settings.watchdog_enabled ? Deadline(started_ + timeout(settings)) : Deadline();
   }
 
  private:

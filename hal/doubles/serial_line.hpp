@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "firmware/line/timing.hpp"
 #include "hal/doubles/virtual_clock.hpp"
 #include "hal/serial_line.hpp"
 #include "hal/serial_mode.hpp"
@@ -32,8 +33,12 @@ class SerialLine {
   static constexpr VirtualTime kDriverLead = std::chrono::microseconds(2);
   static constexpr VirtualTime kDriverTail = std::chrono::microseconds(2);
 
-  SerialLine(VirtualClock& clock, Wire& wire) : clock_(clock), wire_(wire) {}
+  SerialLine(VirtualClock& clock, Wire& wire, TimingAt timing_at = LineTiming::at)
+      : clock_(clock), wire_(wire), timing_at_(timing_at) {}
 
+  [[nodiscard]] LineTiming timing(std::uint32_t baud, LineFormat format) const {
+    return timing_at_(baud, format);
+  }
   void open(std::uint32_t baud, LineFormat format) { mode_ = {baud, format}; }
   void send(Bytes bytes);
   [[nodiscard]] bool sending() const { return driving_; }
@@ -52,6 +57,7 @@ class SerialLine {
  private:
   VirtualClock& clock_;
   Wire& wire_;
+  TimingAt timing_at_;
   SerialMode mode_;
   bool driving_ = false;
   Bytes bytes_;

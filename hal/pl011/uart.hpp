@@ -6,6 +6,7 @@
 
 #include "firmware/bytes.hpp"
 #include "firmware/crossing.hpp"
+#include "firmware/line/timing.hpp"
 #include "firmware/line/verdict.hpp"
 #include "firmware/model/line_format.hpp"
 #include "firmware/time.hpp"
@@ -35,6 +36,12 @@ class Uart {
 
   // --- the functions of hal/serial_line.hpp ---
 
+  /// The UART reports a byte in the middle of its first stop bit.
+  static LineTiming timing(std::uint32_t baud, LineFormat format) {
+    return kStrictGaps ? LineTiming::strictly_reported_in_stop_bit(baud, format)
+                       : LineTiming::reported_in_stop_bit(baud, format);
+  }
+
   void open(std::uint32_t baud, LineFormat format) {
     constexpr std::uint32_t kMicroseconds = 1'000'000;
     const std::uint32_t divisor = baud_divisor(clock, baud);
@@ -49,7 +56,7 @@ class Uart {
   }
 
   void send(Bytes bytes) {
-    rest_.set_in_main_loop(bytes.from(1));
+    rest_.set_in_main_loop({bytes.begin() + 1, bytes.end()});
     kInterruptMask.write(kTransmitted);  // bytes that are received from now on are the echo
     begun_.store_in_main_loop(begun_.load() + 1U);
     DriverEnable::drive(true);
@@ -172,20 +179,24 @@ class Uart {
   /// Sends the next byte, or starts the end timer if all bytes have been written. Call this when the previous
   /// byte has moved from the transmit holding register to the shift register.
   void send_next() {
-    Bytes& rest = rest_.in_interrupt();
-    if (rest.size != 0) {
-      kData.write(Bits<Data>(rest[0]));
-      rest = rest.from(1);
+    Rest& rest = rest_.in_interrupt();
+    if (rest.next != rest.end) {
+      kData.write(Bits<Data>(*rest.next++));
     } else if (sending()) {
       EndTimer::restart(character_);
     }
   }
 
+  struct Rest {
+    const std::uint8_t* next = nullptr;
+    const std::uint8_t* end = nullptr;
+  };
+
   Duration bit_;        ///< duration of a bit, rounded up
   Duration character_;  ///< duration of a character, rounded up
   /// The bytes that have not been written to the UART. A store to `begun_` hands this value to the
   /// interrupts. A store to `ended_` returns it to the main loop.
-  HandedToInterrupt<Bytes> rest_;
+  HandedToInterrupt<Rest> rest_;
   WrittenByMainLoop<std::uint32_t> begun_;
   WrittenByInterrupt<std::uint32_t> ended_;
 };

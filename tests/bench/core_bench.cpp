@@ -9,6 +9,7 @@
 #include "firmware/line/crc16.hpp"
 #include "firmware/module.hpp"
 #include "firmware/settings/places.hpp"
+#include "tests/support/clock_at.hpp"
 
 namespace ex9000::bench {
 namespace {
@@ -29,21 +30,20 @@ class BareModule {
     while (!module_.listening()) {
       pass(1000);
     }
+    module_.listen(LineTiming::at(module_.baud(), module_.format()));
   }
 
   /// Sends a request. Returns the size of the reply in bytes, or 0 if the module does not reply.
   std::size_t ask(const std::vector<std::uint8_t>& request) {
     for (const std::uint8_t byte : request) {
       now_ = now_ + Duration(1042);
-      module_.on_byte(byte, ByteStatus::Good, now_);
+      module_.on_byte(byte, ByteStatus::Good, ClockAt{now_});
     }
     now_ = now_ + Duration(4013);
-    module_.on_silence();
-    module_.poll_panel(false, now_);
-    module_.step(now_);
+    module_.on_silence(now_);
+    module_.step(false, now_);
     const Bytes reply = module_.take_reply(now_);
-    module_.on_own_driver_off(now_);
-    module_.reply_sent(now_);
+    module_.on_reply_sent(now_);
     now_ = now_ + Duration(10'000);
     return reply.size;
   }
@@ -56,8 +56,7 @@ class BareModule {
       module_.memory_done(true);
     }
     now_ = now_ + Duration(microseconds);
-    module_.poll_panel(false, now_);
-    module_.step(now_);
+    module_.step(false, now_);
   }
 
   Module module_;

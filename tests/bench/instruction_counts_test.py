@@ -10,7 +10,6 @@ sys.dont_write_bytecode = True  # do not leave byte code in the source tree
 from instruction_counts import capacity, counter, execution, requests  # noqa: E402
 
 SLEEP = 0x100  # address of WFI, after which the main loop continues at 0x102
-TICKS_OWN = 0x300
 NUMBERS = execution.LM3S6965
 HANDLERS = {execution.TICK: 0x1000, NUMBERS.line: 0x2000, NUMBERS.silence: 0x3000, NUMBERS.line_end: 0x4000}
 
@@ -49,7 +48,7 @@ def turn(interrupts, *addresses):
 
 
 def count(log):
-    its = counter.Counter(HANDLERS, {SLEEP}, {TICKS_OWN}, NUMBERS)
+    its = counter.Counter(HANDLERS, {SLEEP}, NUMBERS)
     request = requests.Request("it", [b"\x01"])
     its.begin()
     its.nothing_happens = True
@@ -78,9 +77,6 @@ class Passes(unittest.TestCase):
         log = ASLEEP + turn(TICK, *TURN) + turn(interrupt(execution.ALARM, 0x5000))
         log += turn(interrupt(NUMBERS.wake, 0x6000), 0x500)
         self.assertEqual(count(log)[0].idling.count, (2 + 2 + 32) + (1 + 2 + 1))
-
-    def test_a_pass_excludes_the_work_of_the_tick_in_a_turn_that_also_handles_a_byte(self):
-        self.assertEqual(count(ASLEEP + turn(self.BYTE + TICK, TICKS_OWN, *TURN))[1], 2 + 2 + 32)
 
     def test_a_pass_excludes_a_turn_that_the_alarm_of_the_tool_starts(self):
         log = ASLEEP + turn(interrupt(execution.ALARM, 0x5000)) + turn(self.BYTE)

@@ -8,6 +8,7 @@
 
 #include "firmware/line/crc16.hpp"
 #include "firmware/module.hpp"
+#include "tests/support/clock_at.hpp"
 
 namespace ex9000 {
 
@@ -22,6 +23,7 @@ class CoreBench {
       do_memory_jobs();
       pass(milliseconds(1));
     }
+    module_.listen(LineTiming::at(module_.baud(), module_.format()));
   }
 
   Module& module() { return module_; }
@@ -30,19 +32,18 @@ class CoreBench {
   /// that became due during `time`.
   void pass(Duration time) {
     now_ = now_ + time;
-    module_.poll_panel(false, now_);
-    module_.step(now_);
+    module_.step(false, now_);
   }
 
   void byte(std::uint8_t value, ByteStatus status = ByteStatus::Good) {
     constexpr Duration kCharacter{1042};  // at 9600 baud
     now_ = now_ + kCharacter;
-    module_.on_byte(value, status, now_);
+    module_.on_byte(value, status, ClockAt{now_});
   }
   /// Lets a silence of 50 ms pass, which ends every frame.
   void silence() {
     now_ = now_ + milliseconds(50);
-    while (!(module_.on_silence() == Duration())) {
+    while (!(module_.on_silence(now_) == Duration())) {
     }
   }
   /// Passes all bytes of a frame and the silence after it to the module. The main loop does not process the
@@ -56,13 +57,13 @@ class CoreBench {
   /// Runs the main loop until the module has processed the received frame and has stored the settings that
   /// the frame changes. Returns the reply with its CRC; empty if there is no reply.
   FrameBytes answer() {
-    module_.step(now_);
+    module_.step(false, now_);
     do_memory_jobs();
     const Bytes reply = module_.take_reply(now_);
     FrameBytes answer(reply.begin(), reply.end());
     if (!answer.empty()) {
-      module_.reply_sent(now_);
-      module_.poll_panel(false, now_);
+      module_.on_reply_sent(now_);
+      module_.step(false, now_);
     }
     return answer;
   }
@@ -89,7 +90,7 @@ class CoreBench {
         std::copy(job.bytes.data, job.bytes.data + job.bytes.size, place);
       }
       module_.memory_done(true);
-      module_.step(now_);
+      module_.step(false, now_);
     }
   }
 

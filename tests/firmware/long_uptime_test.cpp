@@ -63,7 +63,7 @@ TEST(LongUptime, EveryRequestIsAnsweredOnce) {
   for (unsigned request = 0; request < kAcrossTheWrap; ++request) {
     ASSERT_EQ(bench.ask(kReadInputs), CoreBench::with_crc(kNoInput)) << request;
     ASSERT_TRUE(bench.answer().empty()) << request;
-    ASSERT_FALSE(bench.module().request_waits());
+    ASSERT_FALSE(bench.module().frame_waits());
   }
 }
 

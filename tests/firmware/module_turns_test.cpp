@@ -1,5 +1,5 @@
-// Tests turns (passes of the main loop) in which the panel is not polled. Also tests when the module requests
-// that another turn follows immediately, when the module is at rest, and the command `~**`.
+// Tests what a turn (a pass of the main loop) does, when the next turn is due, when the module is at rest, and
+// the command `~**`.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,13 +8,13 @@
 
 #include "firmware/dcon/dcon.hpp"
 #include "firmware/module.hpp"
+#include "tests/support/clock_at.hpp"
 
 namespace ex9000 {
 namespace {
 
 constexpr Duration kCharacter{1042};  // at 9600 baud
 constexpr Duration kUnitOfTimeout = milliseconds(100);
-constexpr Duration kLong = milliseconds(10);
 
 class ModuleTurns : public testing::Test {
  protected:
@@ -23,15 +23,16 @@ class ModuleTurns : public testing::Test {
     module_.start(0, now_);
     while (module_.needs_memory()) {
       do_memory_job();
-      module_.step(now_);
+      step();
     }
     while (!module_.listening()) {
       pass(milliseconds(1));
-      module_.poll_panel(false, now_);
-      module_.step(now_);
+      step();
     }
+    module_.listen(LineTiming::at(module_.baud(), module_.format()));
   }
 
+  void step() { module_.step(false, now_); }
   void pass(Duration time) { now_ = now_ + time; }
 
   /// Does one memory job. Does not run the main loop (`step`) afterwards.
@@ -56,17 +57,17 @@ class ModuleTurns : public testing::Test {
   void put(const std::string& command) {
     for (const char character : command + "\r") {
       pass(kCharacter);
-      module_.on_byte(static_cast<std::uint8_t>(character), ByteStatus::Good, now_);
+      module_.on_byte(static_cast<std::uint8_t>(character), ByteStatus::Good, ClockAt{now_});
     }
     pass(kCharacter + kCharacter);
-    module_.on_silence();
+    module_.on_silence(now_);
   }
   std::string take_reply() {
     const Bytes reply = module_.take_reply(now_);
     return {reply.begin(), reply.end()};
   }
   /// Returns whether the next turn must follow immediately.
-  bool requests_another_turn() { return module_.idle_for(now_, kLong) == Duration(); }
+  bool requests_another_turn() { return module_.next_deadline().reached(now_); }
 
   Module module_{*find_model("EX9043D")};
   Time now_;
@@ -82,34 +83,34 @@ TEST_F(ModuleTurns, TheModuleIsAtRestOnlyAfterItsStartAndWithoutARequestInProgre
   EXPECT_TRUE(module_.at_rest());
   put("$01M");
   EXPECT_FALSE(module_.at_rest());  // the request waits
-  module_.step(now_);
+  step();
   EXPECT_FALSE(module_.at_rest());  // the reply is ready
   take_reply();
   EXPECT_FALSE(module_.at_rest());  // the reply is being sent
-  module_.reply_sent(now_);
+  module_.on_reply_sent(now_);
   EXPECT_TRUE(module_.at_rest());
   put("~01OPUMP");
-  module_.step(now_);
+  step();
   EXPECT_FALSE(module_.at_rest());                         // the command is being stored
   EXPECT_FALSE(Module(*find_model("EX9043D")).at_rest());  // a module that has not started
 }
 
 TEST_F(ModuleTurns, AReadyReplyRequestsAnotherTurnUntilItIsTaken) {
   put("$01M");
-  module_.step(now_);
+  step();
   EXPECT_TRUE(requests_another_turn());
   EXPECT_EQ(take_reply(), "!019043D\r");
   EXPECT_FALSE(requests_another_turn());
 }
 
 // wire.md D18.
-TEST_F(ModuleTurns, TheGapBeforeTheNextReplyIsKeptEvenIfThePanelIsNotPolled) {
+TEST_F(ModuleTurns, TheGapBeforeTheNextReplyIsKept) {
   put("$01M");
-  module_.step(now_);
+  step();
   put("$01F");
   EXPECT_EQ(take_reply(), "!019043D\r");
-  module_.reply_sent(now_);
-  module_.step(now_);
+  module_.on_reply_sent(now_);
+  step();
   EXPECT_EQ(take_reply(), "");
   EXPECT_FALSE(requests_another_turn());
   pass(kCharacter);
@@ -119,40 +120,37 @@ TEST_F(ModuleTurns, TheGapBeforeTheNextReplyIsKeptEvenIfThePanelIsNotPolled) {
   EXPECT_EQ(take_reply(), "!01D01.00\r");
 }
 
-TEST_F(ModuleTurns, AFinishedStoreRequestsAnotherTurn) {
+TEST_F(ModuleTurns, TheTurnAfterAStoreAnswersTheCommand) {
   put("~01Opump");
-  module_.step(now_);
+  step();
   while (module_.needs_memory()) {
     EXPECT_FALSE(requests_another_turn());
     do_memory_job();
   }
-  EXPECT_TRUE(requests_another_turn());
-  module_.step(now_);
+  step();
   EXPECT_EQ(take_reply(), "!01\r");
 }
 
-TEST_F(ModuleTurns, ATimeoutRequestsATurnForTheLedAndAnotherWhenItIsStored) {
+TEST_F(ModuleTurns, ATimeoutFlashesTheLedInItsTurnAndIsStoredAfterIt) {
   put("~013101");
-  module_.step(now_);
+  step();
   while (module_.needs_memory()) {
     do_memory_job();
   }
-  module_.step(now_);
+  step();
   EXPECT_EQ(take_reply(), "!01\r");
-  module_.reply_sent(now_);
-  module_.step(now_);
+  module_.on_reply_sent(now_);
+  step();
   pass(kUnitOfTimeout + milliseconds(1));
-  module_.step(now_);
+  step();
   ASSERT_TRUE(module_.state().settings.timeout_status);
-  EXPECT_TRUE(requests_another_turn());
-  module_.poll_panel(false, now_);
+  EXPECT_EQ(module_.led_pattern(), StatusLed::Pattern::HostTimeout);
   EXPECT_FALSE(requests_another_turn());
   ASSERT_TRUE(module_.needs_memory());
   while (module_.needs_memory()) {
     do_memory_job();
   }
-  EXPECT_TRUE(requests_another_turn());
-  module_.step(now_);
+  step();
   EXPECT_FALSE(requests_another_turn());
 }
 
@@ -160,23 +158,23 @@ TEST_F(ModuleTurns, ATimeoutRequestsATurnForTheLedAndAnotherWhenItIsStored) {
 // ms after the command if a record has several pages.
 TEST_F(ModuleTurns, ACommandAfterATimeoutThatCannotBeStoredWaitsForOnlyOneAttempt) {
   put("~013101");
-  module_.step(now_);
+  step();
   while (module_.needs_memory()) {
     do_memory_job();
   }
-  module_.step(now_);
+  step();
   ASSERT_EQ(take_reply(), "!01\r");
-  module_.reply_sent(now_);
+  module_.on_reply_sent(now_);
   pass(kUnitOfTimeout + milliseconds(1));
   answers_ = false;
   writes_ = 0;
-  module_.step(now_);  // begins to store the timeout
+  step();  // begins to store the timeout
   ASSERT_TRUE(module_.needs_memory());
   put("~013105");
-  module_.step(now_);
+  step();
   while (module_.needs_memory()) {
     do_memory_job();
-    module_.step(now_);
+    step();
   }
   EXPECT_EQ(take_reply(), "?01\r");
   // The module makes one attempt to store the timeout and three attempts to store the command. After each of
@@ -185,25 +183,12 @@ TEST_F(ModuleTurns, ACommandAfterATimeoutThatCannotBeStoredWaitsForOnlyOneAttemp
   EXPECT_EQ(writes_, 1U + 1U + 3U + 1U);
 }
 
-TEST(ModuleComesUp, WaitsUntilItsMemoryIsReadAndThenRequestsATurn) {
-  Module module(*find_model("EX9043D"));
-  module.start(0, Time());
-  module.poll_panel(false, Time());
-  while (module.needs_memory()) {
-    EXPECT_FALSE(module.idle_for(Time(), kLong) == Duration());
-    const MemoryJob job = module.memory_job();
-    std::fill_n(job.bytes.data, job.bytes.size, std::uint8_t{0xFF});
-    module.memory_done(true);
-  }
-  EXPECT_TRUE(module.idle_for(Time(), kLong) == Duration());
-}
-
-TEST_F(ModuleTurns, AHostOkReceivedAfterATurnRequestsAnotherTurn) {
-  EXPECT_FALSE(requests_another_turn());
+TEST_F(ModuleTurns, AHostOkWaitsForTheNextTurn) {
+  EXPECT_FALSE(module_.frame_waits());
   put("~**");
-  EXPECT_TRUE(requests_another_turn());
-  module_.step(now_);
-  EXPECT_FALSE(requests_another_turn());
+  EXPECT_TRUE(module_.frame_waits());
+  step();
+  EXPECT_FALSE(module_.frame_waits());
 }
 
 // wire.md section 6: a host OK restarts the host watchdog from the time of its reception, even if the main
@@ -211,24 +196,24 @@ TEST_F(ModuleTurns, AHostOkReceivedAfterATurnRequestsAnotherTurn) {
 // at which the watchdog would expire without a host OK. The second and the third arrive after this time.
 TEST_F(ModuleTurns, IfSeveralHostOksArriveBetweenTwoTurnsTheFirstAndTheLastTakeEffect) {
   put("~013101");
-  module_.step(now_);
+  step();
   while (module_.needs_memory()) {
     do_memory_job();
   }
-  module_.step(now_);
+  step();
   ASSERT_TRUE(module_.state().settings.watchdog_enabled);
   pass(kUnitOfTimeout - milliseconds(10));
   put("~**");
   put("~**");
   put("~**");
   ASSERT_TRUE(module_.host_watchdog_expiry().reached(now_));
-  module_.step(now_);
+  step();
   EXPECT_FALSE(module_.state().settings.timeout_status);
   pass(kUnitOfTimeout - kCharacter - kCharacter);  // to 0.1 s after the CR of the last host OK
-  module_.step(now_);
+  step();
   EXPECT_FALSE(module_.state().settings.timeout_status);
   pass(Duration(1));
-  module_.step(now_);
+  step();
   EXPECT_TRUE(module_.state().settings.timeout_status);
 }
 

@@ -60,7 +60,7 @@ TEST(ModuleWatchdog, IsNotFedWhileAReplyTakesLongerThanItsDeadline) {
   CoreBench bench("EX9042D-M");
   Module& module = bench.module();
   bench.hear(CoreBench::with_crc({0x01, 0x11}));
-  module.step(bench.now());
+  module.step(false, bench.now());
   const std::size_t size = module.take_reply(bench.now()).size;
   ASSERT_NE(size, 0U);
   constexpr Duration kCharacter(1042);  // at 9600 baud, 8N1
@@ -78,7 +78,7 @@ TEST(ModuleWatchdog, IsNotFedWhileAReplyTakesLongerThanItsDeadline) {
   for (int tick = 0; tick < 2000; ++tick) {
     ASSERT_FALSE(fed());
   }
-  module.reply_sent(bench.now());
+  module.on_reply_sent(bench.now());
   EXPECT_TRUE(fed());
 }
 

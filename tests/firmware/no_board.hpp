@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "firmware/bytes.hpp"
+#include "firmware/line/timing.hpp"
 #include "firmware/model/line_format.hpp"
 #include "firmware/time.hpp"
 
@@ -13,6 +14,7 @@ namespace ex9000 {
 struct Nothing {
   [[nodiscard]] static Time now();
   [[nodiscard]] static Time now_in_interrupt();
+  static LineTiming timing(std::uint32_t baud, LineFormat format);
   static void open(std::uint32_t baud, LineFormat format);
   static void send(Bytes bytes);
   [[nodiscard]] static bool sending();

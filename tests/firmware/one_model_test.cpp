@@ -14,7 +14,7 @@
 namespace ex9000 {
 namespace {
 
-EX9000_CONSTINIT hal::Device<NoBoard> untouched_device(kOnlyModel, LineTiming::at);
+EX9000_CONSTINIT hal::Device<NoBoard> untouched_device(kOnlyModel);
 
 TEST(OneModel, ADeviceIsInitialisedAtCompileTime) {
   EXPECT_EQ(&untouched_device.module().state().model(), &kOnlyModel);

@@ -13,7 +13,7 @@ namespace {
 constexpr const Model& kModel = kModels[0];
 
 EX9000_CONSTINIT Module untouched_module(kModel);
-EX9000_CONSTINIT hal::Device<NoBoard> untouched_device(kModel, LineTiming::at);
+EX9000_CONSTINIT hal::Device<NoBoard> untouched_device(kModel);
 
 TEST(UntouchedModule, HasTheModelOfItsConstructor) {
   EXPECT_EQ(&untouched_module.state().model(), &kModel);
@@ -23,7 +23,7 @@ TEST(UntouchedModule, HasTheModelOfItsConstructor) {
 TEST(UntouchedModule, DrivesNoOutputDoesNotListenHasNoRequestAndLightsItsLed) {
   EXPECT_EQ(untouched_module.outputs(), 0);
   EXPECT_FALSE(untouched_module.listening());
-  EXPECT_FALSE(untouched_module.request_waits());
+  EXPECT_FALSE(untouched_module.frame_waits());
   EXPECT_TRUE(untouched_module.led_lit());
 }
 

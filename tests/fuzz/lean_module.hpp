@@ -53,9 +53,9 @@ struct Surroundings {
 
 /// The board interface is described in hal/board.hpp.
 struct LeanBoard {
-  explicit LeanBoard(Surroundings& surroundings)
+  LeanBoard(Surroundings& surroundings, TimingAt timing_at)
       : clock{surroundings},
-        line{surroundings},
+        line{surroundings, timing_at},
         silence_timer{surroundings},
         wake_timer{surroundings},
         inputs{surroundings},
@@ -71,10 +71,14 @@ struct LeanBoard {
 
   struct Line {
     Surroundings& around;
+    TimingAt timing_at;
     std::uint32_t baud = 0;
     LineFormat format = LineFormat::k8N1;
     Microseconds ends = kNever;
 
+    [[nodiscard]] LineTiming timing(std::uint32_t its_baud, LineFormat its_format) const {
+      return timing_at(its_baud, its_format);
+    }
     void open(std::uint32_t its_baud, LineFormat its_format) {
       baud = its_baud;
       format = its_format;
@@ -214,7 +218,7 @@ class LeanModule {
     }
     held_ = false;
     const Microseconds began = around_.now;
-    device_.emplace(model_, timing_at_, LeanBoard(around_));
+    device_.emplace(model_, LeanBoard(around_, timing_at_));
     device_->start(ResetReason::PowerOn);
     main_loop();
     constexpr Microseconds kLongest = 100 * kMillisecond;  // wire.md D13
@@ -314,7 +318,6 @@ class LeanModule {
     while (again) {
       constexpr unsigned kMostTurns = 50;
       require(++turns < kMostTurns, "the main loop completes its work in fewer than 50 turns");
-      device_->on_wake_timer();
       again = device_->turn() || device_->has_work();
       around_.observer.turned();
     }

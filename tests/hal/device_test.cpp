@@ -20,6 +20,7 @@ struct StillBoard {
     static Time now_in_interrupt() { return {}; }
   };
   struct Line {
+    static LineTiming timing(std::uint32_t baud, LineFormat format) { return LineTiming::at(baud, format); }
     static void open(std::uint32_t /*baud*/, LineFormat /*format*/) {}
     static void send(Bytes /*bytes*/) {}
     static bool sending() { return false; }
@@ -71,7 +72,7 @@ struct StillBoard {
 };
 
 TEST(Device, AJobThatTheMemoryCompletesAtOnceWaitsForNoPoll) {
-  Device<StillBoard> device(*find_model("EX9042D-M"), LineTiming::at, StillBoard());
+  Device<StillBoard> device(*find_model("EX9042D-M"), StillBoard());
   device.start(ResetReason::PowerOn);
   for (int turns = 0; device.turn() || device.has_work(); ++turns) {
     ASSERT_LT(turns, 100);

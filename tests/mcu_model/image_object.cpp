@@ -44,7 +44,7 @@ constexpr std::array<PinPlace, size> places(const Groups& groups) {
   return result;
 }
 
-void clear() { new (&device) hal::Device<Board>(kOnlyModel, kTimingAt); }
+void clear() { new (&device) hal::Device<Board>(kOnlyModel); }
 
 void serve(unsigned exception) {
   constexpr unsigned kTick = 15;

@@ -92,7 +92,11 @@ void Coverage::note(const Module& module, const play::Bytes& sent, const play::B
     assembler.use_checksum(in_force.checksum);
     assembler.answer_to(in_force.address);
     for (const std::uint8_t byte : sent) {
-      const Verdict latest = assembler.byte(queue, byte, ByteStatus::Good, Time());
+      if (byte != DconAssembler::kEnd) {
+        assembler.byte(queue, byte, ByteStatus::Good);
+        continue;
+      }
+      const Verdict latest = assembler.end(queue, ByteStatus::Good, Time());
       verdict = latest == Verdict::Open ? verdict : latest;
     }
   } else {
@@ -100,11 +104,11 @@ void Coverage::note(const Module& module, const play::Bytes& sent, const play::B
     assembler.use(LineTiming::at(module.baud(), module.format()));
     assembler.answer_to(in_force.address);
     for (const std::uint8_t byte : sent) {
-      assembler.byte(queue, byte, ByteStatus::Good, Time());
+      assembler.byte(queue, byte, ByteStatus::Good);
     }
-    verdict = assembler.silence(queue);
+    verdict = assembler.silence(queue, Time());
     if (verdict == Verdict::Open) {
-      verdict = assembler.silence(queue);
+      verdict = assembler.silence(queue, Time());
     }
   }
   if (verdict == Verdict::Foreign && !heard.empty()) {

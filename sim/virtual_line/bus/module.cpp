@@ -15,14 +15,13 @@ constexpr Duration kTick = milliseconds(400);
 }  // namespace
 
 SimulatedModule::Mcu::Mcu(SimulatedModule& module)
-    : line(module.clock_, module.wire_),
+    : line(module.clock_, module.wire_, module.timing_at_),
       silence_timer(module.clock_),
       wake_timer(module.clock_),
       tick(module.clock_, kTick),
       watchdog(module.clock_),
-      device(module.model_, module.timing_at_,
-             {module.clock_, line, silence_timer, wake_timer, module.inputs_, module.outputs_, module.memory_,
-              module.init_switch_, module.led_, watchdog}) {}
+      device(module.model_, {module.clock_, line, silence_timer, wake_timer, module.inputs_, module.outputs_,
+                             module.memory_, module.init_switch_, module.led_, watchdog}) {}
 
 SimulatedModule::SimulatedModule(Bus& bus, const Model& model, TimingAt timing_at)
     : clock_(bus.clock()),
@@ -106,8 +105,8 @@ void SimulatedModule::pulse_input(unsigned channel, std::uint32_t count) {
   react();
 }
 
-/// Makes the device process INIT* and the edges. On a real board, the main loop does this at least
-/// after each tick.
+/// Makes the device process INIT* and the edges now. A real board does this after the next interrupt, at the
+/// latest after the next tick.
 void SimulatedModule::react() {
   if (powered()) {
     work();
@@ -259,9 +258,8 @@ void SimulatedModule::turn() {
   if (hung_) {
     return;
   }
-  do {
-    mcu_->device.on_wake_timer();  // makes `Device::turn` poll INIT* and collect edges now
-  } while (mcu_->device.turn() || mcu_->device.has_work());
+  while (mcu_->device.turn() || mcu_->device.has_work()) {
+  }
 }
 
 }  // namespace ex9000::sim

@@ -29,7 +29,7 @@ namespace ex9000::sim {
 /// One module on a bus. Its supply is off at first.
 class SimulatedModule final : public Station {
  public:
-  /// Attaches itself to `bus`. `model` is a row of kModels; `timing_at`: see Module.
+  /// Attaches itself to `bus`. `model` is a row of kModels; `timing_at`: returns the times of the line.
   SimulatedModule(Bus& bus, const Model& model, TimingAt timing_at = LineTiming::at);
   SimulatedModule(const SimulatedModule&) = delete;
   SimulatedModule& operator=(const SimulatedModule&) = delete;

@@ -24,8 +24,8 @@ class Highest:
 
 class Median:
     """Keeps all passes of a request and returns the pass with the median number of instructions. A single pass is not
-    exact: a tick can occur during the pass, and the instructions of the tick cannot be separated completely if the same
-    turn of the main loop also does other work."""
+    exact: a tick can occur during the pass, and a turn of the main loop can follow that feeds the watchdog, or that is
+    not necessary for the request."""
 
     def __init__(self):
         self._passes = []
@@ -67,14 +67,13 @@ class Counter:
 
     A pass of a request is a whole transaction: the interrupts and the turns of the main loop from `begin` to `end`. The
     pass excludes the interrupts of the tick and of the alarm of this tool, and the turns in which no other interrupt
-    occurs. In all other turns, the pass excludes the code at the addresses `of_the_tick`.
+    occurs.
     """
 
-    def __init__(self, handlers, sleeps, of_the_tick, numbers):
+    def __init__(self, handlers, sleeps, numbers):
         self._numbers = numbers  # an execution.Interrupts
         self._first = {number: execution.as_logged(address) for number, address in handlers.items()}
         self._awake = {execution.as_logged(address + 2) for address in sleeps}
-        self._of_the_tick = {execution.as_logged(address) for address in of_the_tick}
         self._seen = threading.Event()
         self._pass = None  # addresses of the current pass; None between passes
         self.answered = False  # the driver enable has been switched off since `begin`
@@ -141,7 +140,7 @@ class Counter:
             if self.nothing_happens:
                 self.ticks_turn.note(main.addresses)
         elif main.interrupts and self._pass is not None:
-            self._pass += [address for address in main.addresses if address not in self._of_the_tick]
+            self._pass += main.addresses
 
     def _note_interrupt(self, span):
         if span.exception == self._numbers.line:

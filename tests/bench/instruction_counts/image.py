@@ -66,13 +66,3 @@ class Image:
                     chain.append(line)
                 is_name = not is_name
         return {address: self._chains[address] for address in addresses}
-
-    def addresses_of(self, name):
-        """Returns the addresses of all code of the source function `name`, inlined or not, and of the code inlined into
-        it."""
-        everywhere = [address for begin, end, _ in self._functions for address in range(begin, end, 2)]
-        return {
-            address
-            for address, chain in self.inlined(everywhere).items()
-            if any(link.split("(")[0].split("::")[-1] == name for link in chain)
-        }

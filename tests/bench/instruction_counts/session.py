@@ -31,13 +31,8 @@ class Session:
         self.image = Image(image)
         self._model = model
         self._ascii = is_ascii
-        of_the_tick = self.image.addresses_of("poll_panel")
-        if not of_the_tick:
-            raise RuntimeError(
-                f"{image}: no code of `poll_panel`; expected the function that the main loop calls for the tick"
-            )
         self._sleeps = self.image.sleeps()
-        self.counter = Counter(self.image.handlers(), self._sleeps, of_the_tick, board.interrupts)
+        self.counter = Counter(self.image.handlers(), self._sleeps, board.interrupts)
         self._emulator = board.emulator(image, gate)
 
     def __enter__(self):

@@ -14,7 +14,7 @@ class InputFiltersTest : public testing::Test {
  protected:
   void use_filter(std::uint16_t milliseconds, unsigned channel = kChannel) {
     filters_.set(channel, milliseconds);
-    inputs_.use_filters(filters_);
+    inputs_.use_filters(filters_, now_);
   }
   void edge(bool level, unsigned channel = kChannel) { edges_.on_edge(channel, level, now_); }
   /// Lets time pass and collects the edges.
@@ -25,7 +25,10 @@ class InputFiltersTest : public testing::Test {
   [[nodiscard]] bool high(unsigned channel = kChannel) const {
     return (inputs_.levels() >> channel & 1U) != 0;
   }
-  [[nodiscard]] Duration until_settled() const { return inputs_.until_settled(edges_, now_, kLong); }
+  [[nodiscard]] Duration until_settled() const {
+    const Deadline& next = inputs_.next_settling();
+    return next.armed() ? next.remaining(now_) : kLong;
+  }
 
   Time now_{0xFFFF'FF00U};  // the clock wraps soon
   InputFilters filters_;

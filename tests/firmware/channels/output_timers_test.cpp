@@ -6,7 +6,6 @@
 namespace ex9000 {
 namespace {
 
-constexpr Duration kLong = milliseconds(10'000);
 /// A timer runs this many microseconds longer than the requested time, because a pass of the main loop first
 /// starts the timer and then switches the output on.
 constexpr std::uint32_t kLate = 300;
@@ -23,7 +22,7 @@ TEST_F(OutputTimersTest, NoTimerRunsAtFirst) {
   EXPECT_EQ(timers_.running(), 0U);
   EXPECT_EQ(timers_.left(0), 0U);
   EXPECT_EQ(timers_.expire(now_), 0U);
-  EXPECT_TRUE(timers_.until_due(now_, kLong) == kLong);
+  EXPECT_TRUE(!timers_.next_end().armed());
 }
 
 TEST_F(OutputTimersTest, EachTimerEndsAfterItsTimeAndNeverEarly) {
@@ -97,12 +96,11 @@ TEST_F(OutputTimersTest, UntilDueReturnsTheTimeToTheEarliestEndOfAUnit) {
   timers_.start(7, 9, now_);
   pass(milliseconds(30));
   timers_.start(2, 9, now_);
-  EXPECT_EQ(timers_.until_due(now_, kLong).microseconds(), 70'000U + kLate);
-  EXPECT_EQ(timers_.until_due(now_, milliseconds(1)).microseconds(), 1000U);
+  EXPECT_EQ(timers_.next_end().remaining(now_).microseconds(), 70'000U + kLate);
   pass(milliseconds(75));
-  EXPECT_TRUE(timers_.until_due(now_, kLong) == Duration());
+  EXPECT_TRUE(timers_.next_end().reached(now_));
   timers_.expire(now_);
-  EXPECT_EQ(timers_.until_due(now_, kLong).microseconds(), 25'000U + kLate);
+  EXPECT_EQ(timers_.next_end().remaining(now_).microseconds(), 25'000U + kLate);
 }
 
 }  // namespace

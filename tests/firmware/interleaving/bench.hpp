@@ -32,7 +32,7 @@ class Bench {
   /// Starts the module with the factory settings, 115200 baud and the changes that `change` makes. When the
   /// constructor returns, the module is idle.
   Bench(const char* model, const std::function<void(Settings&)>& change)
-      : device_(*find_model(model), LineTiming::at) {
+      : device_(*find_model(model)) {
     chip = &chip_;
     hal::bus::peripherals = &chip_;
     Settings settings = Settings::factory(*find_model(model));
@@ -63,12 +63,8 @@ class Bench {
       turns_again_ = device_.turn();
     }
   }
-  /// Runs the interrupt of the wake timer, and then one turn of the main loop. Because of this interrupt, the
-  /// turn also polls the panel.
-  void whole_turn() {
-    interrupt([&] { device_.on_wake_timer(); });
-    turns_again_ = device_.turn();
-  }
+  /// Runs one turn of the main loop.
+  void whole_turn() { turns_again_ = device_.turn(); }
 
   /// Lets time pass while the main loop does its work.
   void rest(Duration length) {

@@ -19,7 +19,11 @@ class DconAssemblerTest : public testing::Test {
   Verdict put(char character, ByteStatus status = ByteStatus::Good) {
     now_ = now_ + Duration(1042);  // one character at 9600 baud
     assembler_.answer_to(own_);
-    return assembler_.byte(queue_, static_cast<std::uint8_t>(character), status, now_);
+    if (character == DconAssembler::kEnd) {
+      return assembler_.end(queue_, status, now_);
+    }
+    assembler_.byte(queue_, static_cast<std::uint8_t>(character), status);
+    return Verdict::Open;
   }
 
   /// Passes all characters to the assembler and returns the last verdict. Only the last character may end a

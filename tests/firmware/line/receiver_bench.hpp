@@ -4,11 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <cstdint>
+#include <optional>
 #include <ostream>
 #include <string_view>
 #include <vector>
 
 #include "firmware/line/receiver.hpp"
+#include "tests/support/clock_at.hpp"
 
 namespace ex9000 {
 
@@ -52,7 +54,7 @@ class ReceiverTest : public testing::Test {
 
   Duration byte(std::uint8_t value, ByteStatus status = ByteStatus::Good) {
     now_ = now_ + kCharacter;
-    return receiver_.on_byte(value, status, now_);
+    return receiver_.on_byte(value, status, ClockAt{now_});
   }
   void bytes(const FrameBytes& values) {
     for (const std::uint8_t value : values) {
@@ -67,7 +69,7 @@ class ReceiverTest : public testing::Test {
   /// Lets a silence of 50 ms pass, which ends a Modbus frame. A silence does not end an ASCII frame.
   void silence() {
     now_ = now_ + milliseconds(50);
-    while (!(receiver_.on_silence() == Duration())) {
+    while (!(receiver_.on_silence(now_) == Duration())) {
     }
   }
   void frame(const FrameBytes& values) {
@@ -82,9 +84,17 @@ class ReceiverTest : public testing::Test {
     tallies.clear();
     return since_last;
   }
-  void expect_host_ok_between(Time earliest, Time latest) {
-    EXPECT_LE(receiver_.host_oks().last().since(earliest).microseconds(),
-              latest.since(earliest).microseconds());
+  /// Returns the times of the host OKs, and of the requests that count like one, since the last call; nothing
+  /// if there are none.
+  std::optional<HostOks::Times> host_oks() {
+    HostOks& host_oks = receiver_.host_oks();
+    return host_oks.waiting() ? std::optional(host_oks.take_in_main_loop()) : std::nullopt;
+  }
+  void expect_host_ok_at(Time time) {
+    const auto times = host_oks();
+    ASSERT_TRUE(times);
+    EXPECT_EQ(times->first.microseconds(), time.microseconds());
+    EXPECT_EQ(times->last.microseconds(), time.microseconds());
   }
   bool took_frame() {
     if (!receiver_.queue().has_frame()) {
@@ -94,19 +104,8 @@ class ReceiverTest : public testing::Test {
     return true;
   }
 
-  /// Returns the number of host OKs, and of requests that count like one, since the last call. The first call
-  /// returns the number since the start of the test.
-  std::uint32_t restarts() {
-    const std::uint32_t before = restarts_;
-    restarts_ = receiver_.host_oks().received();
-    return restarts_ - before;
-  }
-
   Receiver receiver_;
   Time now_{1000};
-
- private:
-  std::uint32_t restarts_ = 0;
 };
 
 }  // namespace ex9000

@@ -63,9 +63,9 @@ TEST_F(RtuAssemblerTest, NothingIsAcceptedBeforeTheSilence) {
 }
 
 TEST_F(RtuAssemblerTest, SilenceWithoutAFrameHasNoVerdict) {
-  EXPECT_EQ(assembler_.silence(queue_), Verdict::Open);
+  EXPECT_EQ(assembler_.silence(queue_, wire_.time()), Verdict::Open);
   EXPECT_TRUE(assembler_.next_wait() == Duration());
-  EXPECT_EQ(assembler_.silence(queue_), Verdict::Open);
+  EXPECT_EQ(assembler_.silence(queue_, wire_.time()), Verdict::Open);
 }
 
 TEST_F(RtuAssemblerTest, AFrameWithAWrongCrcIsDropped) {
@@ -376,7 +376,7 @@ TEST_F(RtuAssemblerTest, ANewAddressAppliesToAFrameThatIsOpen) {
 
 TEST_F(RtuAssemblerTest, AnOpenFrameCanBeDiscarded) {
   wire_.bytes({0x01, 0x05, 0x00});
-  EXPECT_EQ(assembler_.cut_off(queue_), Verdict::Open);
+  EXPECT_EQ(assembler_.cut_off(queue_, wire_.time()), Verdict::Open);
   wire_.rest();
   EXPECT_TRUE(wire_.verdicts.empty());
   expect_next_frame_accepted();
@@ -384,7 +384,7 @@ TEST_F(RtuAssemblerTest, AnOpenFrameCanBeDiscarded) {
 
 TEST_F(RtuAssemblerTest, ACompleteFrameCutOffBeforeItsSilenceIsAccepted) {
   wire_.bytes(kChannel0On);
-  EXPECT_EQ(assembler_.cut_off(queue_), Verdict::Accepted);
+  EXPECT_EQ(assembler_.cut_off(queue_, wire_.time()), Verdict::Accepted);
   ASSERT_TRUE(queue_.has_frame());
   EXPECT_EQ(queue_.waiting().size, kChannel0On.size() - 2);
   queue_.drop_in_main_loop();
@@ -396,17 +396,17 @@ TEST_F(RtuAssemblerTest, ACompleteFrameCutOffBeforeItsSilenceIsAccepted) {
 TEST_F(RtuAssemblerTest, TheNextFrameMayFollowADiscardedOneImmediately) {
   wire_.byte(0x01, ByteStatus::FramingError);
   wire_.byte(0x05, ByteStatus::Overrun);
-  EXPECT_EQ(assembler_.cut_off(queue_), Verdict::Open);
+  EXPECT_EQ(assembler_.cut_off(queue_, wire_.time()), Verdict::Open);
   expect_next_frame_accepted();
 }
 
 TEST_F(RtuAssemblerTest, AFrameInItsGracePeriodCanBeDiscarded) {
   wire_.bytes({0x01, 0x05, 0x00});
-  EXPECT_EQ(assembler_.silence(queue_), Verdict::Open);
+  EXPECT_EQ(assembler_.silence(queue_, wire_.time()), Verdict::Open);
   ASSERT_FALSE(assembler_.next_wait() == Duration());
-  EXPECT_EQ(assembler_.cut_off(queue_), Verdict::Open);
+  EXPECT_EQ(assembler_.cut_off(queue_, wire_.time()), Verdict::Open);
   EXPECT_TRUE(assembler_.next_wait() == Duration());
-  EXPECT_EQ(assembler_.silence(queue_), Verdict::Open);
+  EXPECT_EQ(assembler_.silence(queue_, wire_.time()), Verdict::Open);
   expect_next_frame_accepted();
 }
 

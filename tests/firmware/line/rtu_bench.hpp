@@ -44,9 +44,10 @@ inline Nanoseconds silence_of_half_characters(int halves, std::uint32_t baud, Na
 inline Nanoseconds t15(std::uint32_t baud) { return silence_of_half_characters(3, baud, 750'000); }
 inline Nanoseconds t35(std::uint32_t baud) { return silence_of_half_characters(7, baud, 1'750'000); }
 
-/// The assembler's clock counts whole microseconds, and the assembler compares rounded times. A gap that must
-/// be shorter or longer than a limit therefore differs from the limit by at least this time.
-inline constexpr Nanoseconds kClock = 5'000;
+/// The silence timer counts whole microseconds and may be 5 us late each time, so the assembler uses rounded
+/// times. A gap that must be shorter or longer than a limit therefore differs from the limit by at least this
+/// time.
+inline constexpr Nanoseconds kClock = 15'000;
 
 /// A wire at one baud rate, with its silence timer. A byte takes ten bits in 8N1 and eleven in the other
 /// formats; the assembler receives it when its first stop bit ends.
@@ -67,8 +68,8 @@ class Wire {
     now_ += character() - second_stop_bit_ * bit_;
     run_timer();
     assembler_.answer_to(own);
-    note(assembler_.byte(queue_, value, status, time()));
-    due_ = now_ / 1000 + assembler_.timing().rtu_silence.microseconds();
+    assembler_.byte(queue_, value, status);
+    due_ = now_ / 1000 + assembler_.first_wait().microseconds() + late_by;
     now_ += second_stop_bit_ * bit_;
   }
   void bytes(const FrameBytes& values) {
@@ -92,6 +93,8 @@ class Wire {
   void start_at(Time time) { now_ = Nanoseconds{time.microseconds()} * 1000; }
 
   std::uint8_t own = kOwn;
+  Nanoseconds late_by =
+      0;                ///< lateness of the silence timer in microseconds, at most 5 (hal/one_shot_timer.hpp)
   bool collect = true;  ///< whether each queued frame is moved to `frames`
   Verdicts verdicts;
   std::vector<FrameBytes> frames;
@@ -100,12 +103,12 @@ class Wire {
  private:
   void run_timer() {
     while (due_ && *due_ < now_ / 1000) {
-      note(assembler_.silence(queue_));
+      note(assembler_.silence(queue_, Time(static_cast<std::uint32_t>(*due_))));
       const Duration more = assembler_.next_wait();
       if (more == Duration()) {
         due_.reset();
       } else {
-        *due_ += more.microseconds();
+        *due_ += more.microseconds() + late_by;
       }
     }
   }

@@ -18,19 +18,24 @@ constexpr Duration kCharacter{1042};  // at 9600 baud
 class RequestCycleTest : public testing::Test {
  protected:
   RequestCycleTest() {
+    cycle_.keep_apart(kCharacter);
     state_.settings = Settings::factory(*find_model("EX9042D-M"));
     state_.in_force.address = 1;
   }
 
   const Outcome& judge(const std::string& request) {
     request_.assign(request.begin(), request.end());
-    return cycle_.judge({request_.data(), request_.size()});
+    return cycle_.judge({request_.data(), request_.size()}, now_);
   }
   /// Switches to Modbus RTU and judges `request`, which must be without its CRC.
   const Outcome& judge_modbus(std::vector<std::uint8_t> request) {
     state_.in_force.protocol = Protocol::ModbusRtu;
     request_ = std::move(request);
-    return cycle_.judge({request_.data(), request_.size()});
+    return cycle_.judge({request_.data(), request_.size()}, now_);
+  }
+  void end_reply() {
+    cycle_.on_reply_sent(now_);
+    cycle_.poll(now_);
   }
   std::string take_reply() {
     const Bytes reply = cycle_.take_reply(now_);
@@ -58,9 +63,13 @@ TEST_F(RequestCycleTest, ARequestThatChangesNoSettingsIsAnsweredAfterItIsFinishe
   EXPECT_TRUE(cycle_.finish());
   EXPECT_EQ(cycle_.phase(), Phase::ReplyReady);
   EXPECT_EQ(take_reply(), "!019042M\r");
-  EXPECT_EQ(cycle_.phase(), Phase::Replying);
-  cycle_.reply_sent(now_, kCharacter);
   EXPECT_EQ(cycle_.phase(), Phase::Idle);
+  EXPECT_TRUE(cycle_.replying());
+  EXPECT_FALSE(cycle_.free());
+  cycle_.on_reply_sent(now_);
+  EXPECT_FALSE(cycle_.replying());
+  cycle_.poll(now_);
+  EXPECT_TRUE(cycle_.free());
 }
 
 TEST_F(RequestCycleTest, ARequestWithoutAReplyIsOverWhenItIsFinished) {
@@ -98,7 +107,8 @@ TEST_F(RequestCycleTest, ARequestWhoseStoreFailsIsRefusedInBothProtocols) {
   EXPECT_EQ(cycle_.outcome().refusal, Refusal::StoreFailed);
   EXPECT_TRUE(cycle_.finish());
   EXPECT_EQ(take_reply(), "?01\r");
-  cycle_.reply_sent(now_, Duration());
+  end_reply();
+  now_ = now_ + kCharacter;
 
   judge_modbus({0x01, 0x06, 0x01, 0xE8, 0x00, 0x05});
   cycle_.store_begun();
@@ -144,14 +154,14 @@ TEST_F(RequestCycleTest, TheNextReplyStartsAfterTheGapThatFollowsThePreviousRepl
   judge("$01M");
   cycle_.finish();
   take_reply();
-  cycle_.reply_sent(now_, kCharacter);
+  end_reply();
   judge("$01F");
   cycle_.finish();
-  EXPECT_EQ(cycle_.until_reply(now_).microseconds(), kCharacter.microseconds());
+  EXPECT_EQ(cycle_.reply_due().remaining(now_).microseconds(), kCharacter.microseconds());
   now_ = now_ + Duration(kCharacter.microseconds() - 1);
   EXPECT_EQ(take_reply(), "");
   now_ = now_ + Duration(1);
-  EXPECT_EQ(cycle_.until_reply(now_).microseconds(), 0U);
+  EXPECT_TRUE(cycle_.reply_due().reached(now_));
   EXPECT_EQ(take_reply(), "!01D01.00\r");
 }
 
@@ -159,10 +169,10 @@ TEST_F(RequestCycleTest, AReplyLongAgoDoesNotDelayTheNextReply) {
   judge("$01M");
   cycle_.finish();
   take_reply();
-  cycle_.reply_sent(now_, kCharacter);
+  end_reply();
   for (int minute = 0; minute < 60; ++minute) {
     now_ = now_ + milliseconds(60'000);
-    cycle_.end_reply_gap(now_);
+    cycle_.poll(now_);
   }
   judge("$01F");
   cycle_.finish();
@@ -172,16 +182,22 @@ TEST_F(RequestCycleTest, AReplyLongAgoDoesNotDelayTheNextReply) {
 // firmware/extensions.md: the response delay.
 TEST_F(RequestCycleTest, AReplyWaitsForTheLaterOfTheGapAndTheResponseDelay) {
   for (const auto& [gap, delay] : {std::pair{5U, 30U}, {30U, 5U}}) {
+    cycle_.keep_apart(milliseconds(gap));
     judge("$01M");
-    cycle_.reply_sent(now_, milliseconds(gap));
+    cycle_.finish();
+    take_reply();
+    end_reply();
     judge("$01M");
     cycle_.hold_reply_until(now_ + milliseconds(delay));
     cycle_.finish();
     now_ = now_ + milliseconds(29);
     EXPECT_EQ(take_reply(), "");
-    EXPECT_EQ(cycle_.until_reply(now_).microseconds(), 1000U);
+    EXPECT_EQ(cycle_.reply_due().remaining(now_).microseconds(), 1000U);
     now_ = now_ + milliseconds(1);
     EXPECT_NE(take_reply(), "");
+    end_reply();
+    now_ = now_ + milliseconds(30);
+    cycle_.poll(now_);
   }
 }
 

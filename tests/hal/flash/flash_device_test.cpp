@@ -45,6 +45,7 @@ struct FlashBoard {
     std::uint64_t begins = 0;
     std::uint64_t ends = kForever;
     std::vector<std::uint8_t> reply{};
+    static LineTiming timing(std::uint32_t baud, LineFormat format) { return LineTiming::at(baud, format); }
     static void open(std::uint32_t baud, LineFormat /*format*/) { EXPECT_EQ(baud, kBaud); }
     void send(Bytes bytes) {
       reply.assign(bytes.begin(), bytes.end());
@@ -89,8 +90,7 @@ class ModuleOnFlash {
  public:
   using Frame = std::vector<std::uint8_t>;
 
-  explicit ModuleOnFlash(FlashChip& chip)
-      : chip_(chip), device_(the_model(), LineTiming::at, FlashBoard(chip)) {
+  explicit ModuleOnFlash(FlashChip& chip) : chip_(chip), device_(the_model(), FlashBoard(chip)) {
     device_.start(ResetReason::PowerOn);
     const std::uint64_t began = chip.now;
     while (!device_.module().listening()) {
