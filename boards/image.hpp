@@ -3,13 +3,15 @@
 // member `count`, its number of pins.
 #pragma once
 
+#include <iterator>
+
 #include "boards/image_info.hpp"
 #include "firmware/model/built.hpp"
 
 namespace ex9000::board {
 
 #ifdef EX9000_IMAGES
-static_assert(kModels.size() == EX9000_IMAGES,
+static_assert(std::size(kModels) == EX9000_IMAGES,
               "a row of the model table has no image; begin the line of the row with four spaces and {\"EX9 "
               "(boards/CMakeLists.txt finds rows by this pattern)");
 #endif

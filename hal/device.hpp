@@ -5,7 +5,6 @@
 
 #include "firmware/crossing.hpp"
 #include "firmware/module.hpp"
-#include "hal/board.hpp"
 #include "hal/memory.hpp"
 #include "hal/one_shot_timer.hpp"
 
@@ -16,11 +15,19 @@ namespace ex9000::hal {
 /// the `on_...` functions. Then the main loop repeats two steps: it calls `turn` until `turn` returns false,
 /// and sleeps until `has_work` returns true. Each turn does what is due, once.
 ///
-/// `Board`: see hal/board.hpp.
+/// `Board` is a struct of drivers, or of references to drivers, with these members. Each header in hal/ is
+/// the contract of a driver.
+///
+///     clock                       clock.hpp             outputs        outputs.hpp
+///     line                        serial_line.hpp       memory         memory.hpp
+///     silence_timer, wake_timer   one_shot_timer.hpp    init_switch    init_switch.hpp
+///     inputs                      inputs.hpp            status_led     status_led.hpp
+///     watchdog                    watchdog.hpp
+///
+/// A board also has a tick (tick.hpp), which is not a member. The compiler rejects a board that lacks a
+/// member or a function, or has a function that takes a narrower number (-Wconversion).
 template <class Board>
 class Device {
-  static_assert(is_board<Board>());
-
  public:
   /// Creates a device with its own board.
   explicit constexpr Device(const Model& model) : board_(), module_(model) {}

@@ -3,12 +3,9 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <type_traits>
-#include <utility>
 
 #include "firmware/bytes.hpp"
 #include "firmware/time.hpp"
-#include "hal/promise.hpp"
 
 namespace ex9000::hal {
 
@@ -26,7 +23,6 @@ namespace ex9000::hal {
 ///         Returns whether a transfer is running.
 ///     I2cResult result() const
 ///         Returns the result of the last transfer. Call this only while not `busy()`.
-///
 struct I2cTransfer {
   std::uint8_t device = 0;   ///< address of the device, 7 bits
   Bytes header;              ///< bytes to write first; if empty, the transfer reads
@@ -48,16 +44,5 @@ enum class I2cResult : std::uint8_t {
   NoAcknowledge,  ///< no device acknowledged the address, or a byte was not acknowledged
   Failed,         ///< any other error, for example an expired timeout or lost arbitration
 };
-
-/// True if `T` has the functions that the description of I2cTransfer lists.
-template <class T, class = void>
-inline constexpr bool kIsI2cMaster = false;
-template <class T>
-inline constexpr bool
-    kIsI2cMaster<T, std::void_t<Returns<void, decltype(std::declval<T&>().begin(
-                                                  std::declval<const I2cTransfer&>(), Exactly<Time>()))>,
-                                Returns<bool, decltype(std::declval<T&>().poll(Exactly<Time>()))>,
-                                Returns<bool, decltype(std::declval<const T&>().busy())>,
-                                Returns<I2cResult, decltype(std::declval<const T&>().result())>>> = true;
 
 }  // namespace ex9000::hal

@@ -1,11 +1,13 @@
+// The input channels. The edge interrupt calls `Device::on_edge` for each edge. Edges of a channel that occur
+// before the interrupt runs may share one call. The interrupt must clear the edge flag of a channel before it
+// reads the level of this channel.
+//
+//     std::uint16_t start()
+//         Starts to report edges, and returns the levels before the first reported edge: bit n is channel n,
+//         1 = logic 1 (+4 to +30 V). For the main loop, once after reset; does not block.
 #pragma once
 
-#include <cstdint>
-#include <type_traits>
-#include <utility>
-
 #include "firmware/time.hpp"
-#include "hal/promise.hpp"
 
 namespace ex9000::hal {
 
@@ -13,20 +15,5 @@ namespace ex9000::hal {
 /// the RP2040 or the TM4C123 has up to 80 kΩ. Within this time, it changes the level of an open pin whose
 /// wire has a capacitance of 10 nF. If `start` read the pin earlier, the later edge would count as a pulse.
 inline constexpr Duration kPullsSettle = milliseconds(1);
-
-/// The input channels. The edge interrupt calls `Device::on_edge` for each edge. Edges of a channel that
-/// occur before the interrupt runs may share one call. The interrupt must clear the edge flag of a channel
-/// before it reads the level of this channel.
-///
-///     std::uint16_t start()
-///         Starts to report edges, and returns the levels before the first reported edge: bit n is channel n,
-///         1 = logic 1 (+4 to +30 V). For the main loop, once after reset; does not block.
-///
-/// True if `T` has this function.
-template <class T, class = void>
-inline constexpr bool kIsInputs = false;
-template <class T>
-inline constexpr bool
-    kIsInputs<T, std::void_t<Returns<std::uint16_t, decltype(std::declval<T&>().start())>>> = true;
 
 }  // namespace ex9000::hal

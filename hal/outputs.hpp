@@ -1,29 +1,10 @@
+// The output channels: open-collector transistors, relays or PhotoMOS relays. All are de-energised from reset
+// until the first `drive`.
+//
+//     void drive(std::uint16_t channels)
+//         Drives all channels: bit n is channel n, 1 = energised (the transistor or PhotoMOS relay conducts,
+//         or the coil of the relay carries current). The board defines the polarity. If no interrupt occurs
+//         during the call, all changes occur within a few tens of clock cycles of the processor. The channels
+//         that do not change have no glitch. The main loop calls this at each change and at least at every
+//         tick. This does not block.
 #pragma once
-
-#include <cstdint>
-#include <type_traits>
-#include <utility>
-
-#include "hal/promise.hpp"
-
-namespace ex9000::hal {
-
-/// The output channels: open-collector transistors, relays or PhotoMOS relays. All are de-energised from
-/// reset until the first `drive`.
-///
-///     void drive(std::uint16_t channels)
-///         Drives all channels: bit n is channel n, 1 = energised (the transistor or PhotoMOS relay conducts,
-///         or the coil of the relay carries current). The board defines the polarity. If no interrupt
-///         occurs during the call, all changes occur within a few tens of clock cycles of the processor. The
-///         channels that do not change have no glitch. The main loop calls this at each change and at least
-///         at every tick. This does not block.
-///
-/// True if `T` has this function.
-template <class T, class = void>
-inline constexpr bool kIsOutputs = false;
-template <class T>
-inline constexpr bool
-    kIsOutputs<T, std::void_t<Returns<void, decltype(std::declval<T&>().drive(Exactly<std::uint16_t>()))>>> =
-        true;
-
-}  // namespace ex9000::hal

@@ -16,6 +16,7 @@
 #include "hal/cortex_m/system_tick.hpp"
 #include "hal/device.hpp"
 #include "hal/flash/page_store.hpp"
+#include "hal/inputs.hpp"
 #include "hal/pause.hpp"
 #include "hal/pl011/uart.hpp"
 #include "hal/rp2040/clocks.hpp"
@@ -46,11 +47,6 @@ using LineEndTimer = OneShotTimer<1>;
 using WakeTimer = OneShotTimer<2>;
 using Line = hal::pl011::Uart<kUart0, kHertz, DriverEnablePin<kDriverEnable>, LineEndTimer>;
 using Watchdog = HardwareWatchdog<kClock.crystal / kMegahertz>;
-static_assert(hal::kIsTick<Tick>,
-              "Tick: lacks a function, or a function has a wrong signature; see hal/tick.hpp");
-static_assert(
-    hal::kIsOneShotTimer<LineEndTimer>,
-    "LineEndTimer: lacks a function, or a function has a wrong signature; see hal/one_shot_timer.hpp");
 
 /// The memory that stores the settings: its driver, the blocks to release from reset for the driver, whether
 /// it has an interrupt, and the functions that start the driver and handle the interrupt.
@@ -74,7 +70,7 @@ struct MemoryOnBoard<Memory::Eeprom> {
 };
 using Settings = MemoryOnBoard<kMemory>;
 
-/// The drivers that the firmware requires. For each member, hal/board.hpp names the header that describes it.
+/// See hal::Device.
 struct Board {
   Clock clock;
   Line line;
@@ -108,14 +104,14 @@ void on_edges() {
 constexpr start_up::Served served(Interrupt number, start_up::Handler handler) {
   return {static_cast<unsigned>(number), handler};
 }
-constexpr auto kServed = table<start_up::Served>({
+constexpr start_up::Served kServed[] = {
     served(Interrupt::Timer0, Handle::on_silence_timer),
     served(Interrupt::Timer1, Handle::on_line_end_timer),
     served(Interrupt::Timer2, Handle::on_wake_timer),
     served(Interrupt::Pins, decltype(board.inputs)::any() ? on_edges : nullptr),
     served(Interrupt::Uart0, Handle::on_line),
     served(Interrupt::I2c0, Settings::kHasInterrupt ? on_memory : nullptr),
-});
+};
 
 constexpr unsigned kInterrupts = 26;
 __attribute__((section(".vectors"), used)) constexpr auto kVectors =

@@ -15,6 +15,7 @@
 #include "hal/cortex_m/interrupts.hpp"
 #include "hal/cortex_m/system_timer.hpp"
 #include "hal/device.hpp"
+#include "hal/inputs.hpp"
 #include "hal/pause.hpp"
 #include "hal/stellaris/i2c.hpp"
 #include "hal/stellaris/inputs.hpp"
@@ -43,13 +44,8 @@ using WakeTimer = OneShotTimer<2, kMegahertz>;
 using Line = Uart<kUart, kHertz, kDriverEnable, LineEndTimer>;
 using Eeprom = hal::At24c<I2c<kFamily, kHertz>>;
 using Watchdog = HardwareWatchdog<kMegahertz>;
-static_assert(hal::kIsTick<Clock>,
-              "Clock: lacks a function, or a function has a wrong signature; see hal/tick.hpp");
-static_assert(
-    hal::kIsOneShotTimer<LineEndTimer>,
-    "LineEndTimer: lacks a function, or a function has a wrong signature; see hal/one_shot_timer.hpp");
 
-/// The drivers that the firmware requires. For each member, hal/board.hpp names the header that describes it.
+/// See hal::Device.
 struct Board {
   Clock clock;
   Line line;
@@ -102,7 +98,7 @@ constexpr Interrupt kLineInterrupt = kUart == 0 ? Interrupt::Uart0 : Interrupt::
 constexpr start_up::Served served(Interrupt number, start_up::Handler handler) {
   return {static_cast<unsigned>(number), handler};
 }
-constexpr auto kServed = table<start_up::Served>({
+constexpr start_up::Served kServed[] = {
     served(kLineInterrupt, Handle::on_line),
     served(Interrupt::Timer0A, Handle::on_silence_timer),
     served(Interrupt::Timer1A, Handle::on_line_end_timer),
@@ -115,7 +111,7 @@ constexpr auto kServed = table<start_up::Served>({
     served(Interrupt::GpioF, handler_of_edges<Port::F>()),
     served(Interrupt::GpioG, handler_of_edges<Port::G>()),
     served(Interrupt::I2c0, on_i2c),
-});
+};
 
 constexpr unsigned kInterrupts = 32;
 __attribute__((section(".vectors"), used)) constexpr auto kVectors =

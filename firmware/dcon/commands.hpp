@@ -6,7 +6,6 @@
 
 #include "firmware/model/model.hpp"
 #include "firmware/request/exchange.hpp"
-#include "firmware/table.hpp"
 
 namespace ex9000::dcon {
 
@@ -89,7 +88,7 @@ struct Command {
   Dispatch dispatch;
 };
 
-inline constexpr auto kCommands = table<Command>({
+inline constexpr Command kCommands[] = {
     {"set-configuration",
      "%AANNTTCCFF",
      "!NN",
@@ -298,6 +297,6 @@ inline constexpr auto kCommands = table<Command>({
      "RRRR: its address 0240-030F; VVVV: the value",
      Access::Store,
      {'~', 'X', 8, 8, Needs::Nothing, write_extension}},
-});
+};
 
 }  // namespace ex9000::dcon

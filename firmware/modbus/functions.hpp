@@ -6,7 +6,6 @@
 
 #include "firmware/model/model.hpp"
 #include "firmware/request/exchange.hpp"
-#include "firmware/table.hpp"
 
 namespace ex9000::modbus {
 
@@ -49,7 +48,7 @@ struct Function {
   FunctionRow row;
 };
 
-inline constexpr auto kFunctions = table<Function>({
+inline constexpr Function kFunctions[] = {
     {"Read Coils", "manuals; V1.1b3 6.1", {0x01, Needs::Nothing, AtBroadcast::Ignored, read_bits}},
     {"Read Discrete Inputs",
      "EX9052D manual; V1.1b3 6.2",
@@ -61,21 +60,21 @@ inline constexpr auto kFunctions = table<Function>({
     {"Write Single Coil",
      "manuals; V1.1b3 6.5",
      {0x05, Needs::Nothing, AtBroadcast::CarriedOut, write_single_coil}},
-    Function{"Write Single Register",
-             "manuals; V1.1b3 6.6",
-             {0x06, Needs::Nothing, AtBroadcast::CarriedOut, write_single_register}},
+    {"Write Single Register",
+     "manuals; V1.1b3 6.6",
+     {0x06, Needs::Nothing, AtBroadcast::CarriedOut, write_single_register}},
     {"Diagnostics", "V1.1b3 6.8", {0x08, Needs::Nothing, AtBroadcast::Ignored, diagnose}},
-    Function{"Write Multiple Coils",
-             "manuals; V1.1b3 6.11",
-             {0x0F, Needs::Nothing, AtBroadcast::CarriedOut, write_multiple_coils}},
-    Function{"Write Multiple Registers",
-             "V1.1b3 6.12",
-             {0x10, Needs::Nothing, AtBroadcast::CarriedOut, write_multiple_registers}},
+    {"Write Multiple Coils",
+     "manuals; V1.1b3 6.11",
+     {0x0F, Needs::Nothing, AtBroadcast::CarriedOut, write_multiple_coils}},
+    {"Write Multiple Registers",
+     "V1.1b3 6.12",
+     {0x10, Needs::Nothing, AtBroadcast::CarriedOut, write_multiple_registers}},
     {"Report Server ID", "V1.1b3 6.13", {0x11, Needs::Nothing, AtBroadcast::Ignored, report_server_id}},
     {"Read Device Identification",
      "V1.1b3 6.21",
      {0x2B, Needs::Nothing, AtBroadcast::Ignored, read_device_identification}},
     {"Module code and address", "manuals", {0x46, Needs::Nothing, AtBroadcast::Ignored, vendor_function}},
-});
+};
 
 }  // namespace ex9000::modbus

@@ -12,7 +12,6 @@
 #include "firmware/request/exchange.hpp"
 #include "firmware/request/outcome.hpp"
 #include "firmware/request/state.hpp"
-#include "firmware/table.hpp"
 
 namespace ex9000::modbus {
 
@@ -155,40 +154,38 @@ struct WordRegister {
   WordRow row;
 };
 
-inline constexpr auto kBitRegisters = table<BitRegister>({
-    BitRegister{"outputs",
-                "outputs",
-                "0 off, 1 on",
-                {0x0000, Width::PerOutput, Needs::Outputs,
-                 kReadCoils | kWriteSingleCoil | kWriteMultipleCoils, kPlain, read_outputs, write_outputs}},
+inline constexpr BitRegister kBitRegisters[] = {
+    {"outputs",
+     "outputs",
+     "0 off, 1 on",
+     {0x0000, Width::PerOutput, Needs::Outputs, kReadCoils | kWriteSingleCoil | kWriteMultipleCoils, kPlain,
+      read_outputs, write_outputs}},
     {"inputs",
      "inputs",
      "",
      {0x0000, Width::PerInput, Needs::Inputs, kReadDiscreteInputs, kPlain, read_inputs, nullptr}},
-    BitRegister{"input-coils",
-                "inputs",
-                "",
-                {0x0020, Width::PerInput, Needs::Inputs, kReadCoils, kPlain, read_inputs, nullptr}},
-    BitRegister{"latch-high",
-                "latch high: a rising edge has occurred",
-                "",
-                {0x0040, Width::PerInput, Needs::Inputs, kReadCoils, kPlain, read_latch_high, nullptr}},
-    BitRegister{"latch-low",
-                "latch low: a falling edge has occurred",
-                "",
-                {0x0060, Width::PerInput, Needs::Inputs, kReadCoils, kPlain, read_latch_low, nullptr}},
-    BitRegister{
-        "safe-value",
-        "safe value; a write also drives the outputs",
-        "0 off, 1 on",
-        {0x0080, Width::PerOutput, Needs::Outputs, kReadCoils | kWriteSingleCoil | kWriteMultipleCoils,
-         kPlain, read_bits_of<&Settings::safe_value>, write_safe_value}},
-    BitRegister{
-        "power-on-value",
-        "power-on value; a write also drives the outputs",
-        "0 off, 1 on",
-        {0x00A0, Width::PerOutput, Needs::Outputs, kReadCoils | kWriteSingleCoil | kWriteMultipleCoils,
-         kPlain, read_bits_of<&Settings::power_on_value>, write_power_on_value}},
+    {"input-coils",
+     "inputs",
+     "",
+     {0x0020, Width::PerInput, Needs::Inputs, kReadCoils, kPlain, read_inputs, nullptr}},
+    {"latch-high",
+     "latch high: a rising edge has occurred",
+     "",
+     {0x0040, Width::PerInput, Needs::Inputs, kReadCoils, kPlain, read_latch_high, nullptr}},
+    {"latch-low",
+     "latch low: a falling edge has occurred",
+     "",
+     {0x0060, Width::PerInput, Needs::Inputs, kReadCoils, kPlain, read_latch_low, nullptr}},
+    {"safe-value",
+     "safe value; a write also drives the outputs",
+     "0 off, 1 on",
+     {0x0080, Width::PerOutput, Needs::Outputs, kReadCoils | kWriteSingleCoil | kWriteMultipleCoils, kPlain,
+      read_bits_of<&Settings::safe_value>, write_safe_value}},
+    {"power-on-value",
+     "power-on value; a write also drives the outputs",
+     "0 off, 1 on",
+     {0x00A0, Width::PerOutput, Needs::Outputs, kReadCoils | kWriteSingleCoil | kWriteMultipleCoils, kPlain,
+      read_bits_of<&Settings::power_on_value>, write_power_on_value}},
     {"protocol",
      "stored protocol, in force from the next reset on",
      "0 ASCII, 1 Modbus RTU; not by broadcast",
@@ -218,21 +215,20 @@ inline constexpr auto kBitRegisters = table<BitRegister>({
      "0 falling, 1 rising; not by broadcast",
      {0x08CA, Width::One, Needs::Inputs, kReadCoils | kWriteSingleCoil, kConfiguration, read_counting_edge,
       write_counting_edge}},
-});
+};
 
 constexpr Functions kReadRegisters = kReadHoldingRegisters | kReadInputRegisters;
 
-inline constexpr auto kWordRegisters = table<WordRegister>({
+inline constexpr WordRegister kWordRegisters[] = {
     {"counters",
      "input counters",
      "",
      {0x0000, Width::PerInput, Needs::Inputs, kReadHoldingRegisters | kReadInputRegisters, kPlain,
       read_counter, nullptr}},
-    WordRegister{
-        "module-code",
-        "module code in two registers; for example, the code 0x9042 is read as 0x0090 and 0x4200",
-        "",
-        {0x01E2, Width::Two, Needs::Nothing, kReadHoldingRegisters, kPlain, read_module_code, nullptr}},
+    {"module-code",
+     "module code in two registers; for example, the code 0x9042 is read as 0x0090 and 0x4200",
+     "",
+     {0x01E2, Width::Two, Needs::Nothing, kReadHoldingRegisters, kPlain, read_module_code, nullptr}},
     {"address",
      "stored address, in force from the next reset on",
      "1 to 247; not by broadcast",
@@ -249,85 +245,78 @@ inline constexpr auto kWordRegisters = table<WordRegister>({
      {0x01E8, Width::One, Needs::Nothing, kReadHoldingRegisters | kWriteRegisters, kPlain,
       read_word_of<&Settings::watchdog_timeout>, write_watchdog_timeout}},
     // --- extension registers, 0x0240 to 0x030F ---
-    WordRegister{"input-filters",
-                 "filter of the input in ms: a level counts when it has been stable for this time",
-                 "0 to 2000; not by broadcast",
-                 {0x0240, Width::PerInput, Needs::Inputs, kReadRegisters | kWriteRegisters,
-                  kExtension | kConfiguration, read_input_filter, write_input_filter}},
-    WordRegister{
-        "inverted-inputs",
-        "inverted inputs, bit n is input n",
-        "only bits of inputs that the model has; not by broadcast",
-        {0x0250, Width::One, Needs::Inputs, kReadRegisters | kWriteRegisters, kExtension | kConfiguration,
-         read_word_of<&Settings::inverted_inputs>, write_word_of<&SettingsChange::inverted_inputs>}},
-    WordRegister{
-        "watchdog-feed",
-        "requests that restart the host watchdog; 0: a host OK, and requests that enable the host "
-        "watchdog or write its timeout; 1: also all other requests for this module",
-        "0 or 1; not by broadcast",
-        {0x0251, Width::One, Needs::Nothing, kReadRegisters | kWriteRegisters, kExtension | kConfiguration,
-         read_word_of<&Settings::fed_by_requests>, write_word_of<&SettingsChange::fed_by_requests>}},
-    WordRegister{
-        "response-delay",
-        "response delay in ms, in force from the next request on",
-        "0 to 30; not by broadcast",
-        {0x0252, Width::One, Needs::Nothing, kReadRegisters | kWriteRegisters, kExtension | kConfiguration,
-         read_word_of<&Settings::response_delay>, write_word_of<&SettingsChange::response_delay>}},
-    WordRegister{"long-counters",
-                 "input counters with 32 bits, two registers each, high word first",
-                 "",
-                 {0x0260, Width::PairPerInput, Needs::Inputs, kReadRegisters, kExtension | kLong,
-                  read_long_counter, nullptr}},
-    WordRegister{"timed-outputs",
-                 "timed output: the time until the output is switched off, in units of 0.1 s",
-                 "1 to 65535: switch on for this time; 0: switch off",
-                 {0x0280, Width::PerOutput, Needs::Outputs, kReadRegisters | kWriteRegisters, kExtension,
-                  read_time_left, write_timed_output}},
-    WordRegister{"version",
-                 "firmware version nn.nn, two BCD digits in each byte",
-                 "",
-                 {0x0300, Width::One, Needs::Nothing, kReadRegisters, kExtension, read_version, nullptr}},
-    WordRegister{
-        "reset-reason",
-        "reason of the last reset: 1 power-on, 2 module watchdog, 3 software, 4 reset pin, 5 fault; 0 if "
-        "the board cannot detect it",
-        "",
-        {0x0301, Width::One, Needs::Nothing, kReadRegisters, kExtension, read_reset_reason, nullptr}},
-    WordRegister{
-        "uptime",
-        "seconds since reset, 32 bits, high word first",
-        "",
-        {0x0302, Width::Two, Needs::Nothing, kReadRegisters, kExtension | kLong, read_seconds_up, nullptr}},
-    WordRegister{"timeout-count",
-                 "timeouts of the host watchdog since reset or clearing, at most 65535",
-                 "0 only: clears it; not by broadcast",
-                 {0x0304, Width::One, Needs::Nothing, kReadRegisters | kWriteRegisters,
-                  kExtension | kConfiguration, read_timeout_count, clear_timeout_count}},
-    WordRegister{"store-count",
-                 "stores of settings since reset, at most 65535",
-                 "",
-                 {0x0305, Width::One, Needs::Nothing, kReadRegisters, kExtension, read_store_count, nullptr}},
-    WordRegister{
-        "settings-source",
-        "source of the settings at reset: 0: a good copy, and no bad one; 1: a good copy, and a bad one; 2: "
-        "factory settings, no good copy; 3: an older layout, not used so far; 4: factory settings, blank "
-        "memory",
-        "",
-        {0x0306, Width::One, Needs::Nothing, kReadRegisters, kExtension, read_settings_source, nullptr}},
-    WordRegister{
-        "line-tallies",
-        "counts of the line: bus messages, bus errors, exceptions, messages for this module or for all "
-        "modules, those without a reply, overruns, damaged bytes, frames lost because no buffer was free; "
-        "they wrap",
-        "",
-        {0x0308, Width::Eight, Needs::Nothing, kReadRegisters, kExtension, read_tally, nullptr}},
+    {"input-filters",
+     "filter of the input in ms: a level counts when it has been stable for this time",
+     "0 to 2000; not by broadcast",
+     {0x0240, Width::PerInput, Needs::Inputs, kReadRegisters | kWriteRegisters, kExtension | kConfiguration,
+      read_input_filter, write_input_filter}},
+    {"inverted-inputs",
+     "inverted inputs, bit n is input n",
+     "only bits of inputs that the model has; not by broadcast",
+     {0x0250, Width::One, Needs::Inputs, kReadRegisters | kWriteRegisters, kExtension | kConfiguration,
+      read_word_of<&Settings::inverted_inputs>, write_word_of<&SettingsChange::inverted_inputs>}},
+    {"watchdog-feed",
+     "requests that restart the host watchdog; 0: a host OK, and requests that enable the host "
+     "watchdog or write its timeout; 1: also all other requests for this module",
+     "0 or 1; not by broadcast",
+     {0x0251, Width::One, Needs::Nothing, kReadRegisters | kWriteRegisters, kExtension | kConfiguration,
+      read_word_of<&Settings::fed_by_requests>, write_word_of<&SettingsChange::fed_by_requests>}},
+    {"response-delay",
+     "response delay in ms, in force from the next request on",
+     "0 to 30; not by broadcast",
+     {0x0252, Width::One, Needs::Nothing, kReadRegisters | kWriteRegisters, kExtension | kConfiguration,
+      read_word_of<&Settings::response_delay>, write_word_of<&SettingsChange::response_delay>}},
+    {"long-counters",
+     "input counters with 32 bits, two registers each, high word first",
+     "",
+     {0x0260, Width::PairPerInput, Needs::Inputs, kReadRegisters, kExtension | kLong, read_long_counter,
+      nullptr}},
+    {"timed-outputs",
+     "timed output: the time until the output is switched off, in units of 0.1 s",
+     "1 to 65535: switch on for this time; 0: switch off",
+     {0x0280, Width::PerOutput, Needs::Outputs, kReadRegisters | kWriteRegisters, kExtension, read_time_left,
+      write_timed_output}},
+    {"version",
+     "firmware version nn.nn, two BCD digits in each byte",
+     "",
+     {0x0300, Width::One, Needs::Nothing, kReadRegisters, kExtension, read_version, nullptr}},
+    {"reset-reason",
+     "reason of the last reset: 1 power-on, 2 module watchdog, 3 software, 4 reset pin, 5 fault; 0 if "
+     "the board cannot detect it",
+     "",
+     {0x0301, Width::One, Needs::Nothing, kReadRegisters, kExtension, read_reset_reason, nullptr}},
+    {"uptime",
+     "seconds since reset, 32 bits, high word first",
+     "",
+     {0x0302, Width::Two, Needs::Nothing, kReadRegisters, kExtension | kLong, read_seconds_up, nullptr}},
+    {"timeout-count",
+     "timeouts of the host watchdog since reset or clearing, at most 65535",
+     "0 only: clears it; not by broadcast",
+     {0x0304, Width::One, Needs::Nothing, kReadRegisters | kWriteRegisters, kExtension | kConfiguration,
+      read_timeout_count, clear_timeout_count}},
+    {"store-count",
+     "stores of settings since reset, at most 65535",
+     "",
+     {0x0305, Width::One, Needs::Nothing, kReadRegisters, kExtension, read_store_count, nullptr}},
+    {"settings-source",
+     "source of the settings at reset: 0: a good copy, and no bad one; 1: a good copy, and a bad one; 2: "
+     "factory settings, no good copy; 3: an older layout, not used so far; 4: factory settings, blank "
+     "memory",
+     "",
+     {0x0306, Width::One, Needs::Nothing, kReadRegisters, kExtension, read_settings_source, nullptr}},
+    {"line-tallies",
+     "counts of the line: bus messages, bus errors, exceptions, messages for this module or for all "
+     "modules, those without a reply, overruns, damaged bytes, frames lost because no buffer was free; "
+     "they wrap",
+     "",
+     {0x0308, Width::Eight, Needs::Nothing, kReadRegisters, kExtension, read_tally, nullptr}},
     // This row is documentation only. The receiver detects a host OK, so no function uses this row.
-    WordRegister{"host-ok",
-                 "host OK: a request to read this register, with quantity 0 or 1, restarts the host watchdog "
-                 "and gets no reply; address 0 reaches all modules",
-                 "",
-                 {kHostOkRegister, Width::One, Needs::Nothing, 0, kPlain, nullptr, nullptr}},
-});
+    {"host-ok",
+     "host OK: a request to read this register, with quantity 0 or 1, restarts the host watchdog "
+     "and gets no reply; address 0 reaches all modules",
+     "",
+     {kHostOkRegister, Width::One, Needs::Nothing, 0, kPlain, nullptr, nullptr}},
+};
 
 /// Returns the row that `function` can access on this model, and that contains all `quantity` (1 to 2000)
 /// coils or discrete inputs from `address` on. Returns null if there is no such row.

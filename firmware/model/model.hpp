@@ -5,8 +5,6 @@
 #include <cstdint>
 #include <string_view>
 
-#include "firmware/table.hpp"
-
 namespace ex9000 {
 
 /// The firmware version that `$AAF` and object 02 of Modbus function 2B return, format `Dnn.nn` (manuals
@@ -57,7 +55,7 @@ constexpr unsigned kMaxInputs = 16;
 constexpr unsigned kMaxOutputs = 16;
 constexpr unsigned kMaxNameLength = 7;
 
-inline constexpr auto kModels = table<Model>({
+inline constexpr Model kModels[] = {
     // The modules of the four manuals.
     {"EX9042D", 0, 13, 0, StatusStyle::EnableAndTimeout, "9042D", 6, "13 open-collector outputs",
      OutputKind::OpenCollector},
@@ -97,7 +95,7 @@ inline constexpr auto kModels = table<Model>({
     {"EX9066D", 0, 7, 0, StatusStyle::TimeoutOnly, "9066", 6, "7 PhotoMOS outputs", OutputKind::PhotoMos},
     {"EX9067D", 0, 7, 0, StatusStyle::TimeoutOnly, "9067", 6, "7 relay outputs", OutputKind::Relay},
     {"EX9068D", 0, 8, 0, StatusStyle::TimeoutOnly, "9068", 6, "8 relay outputs", OutputKind::Relay},
-});
+};
 
 /// Returns the row with this designation; null if there is none.
 constexpr const Model* find_model(std::string_view designation) {

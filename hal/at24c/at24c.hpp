@@ -21,9 +21,6 @@ namespace ex9000::hal {
 /// keeps the memory address.
 template <class Master>
 class At24c {
-  static_assert(kIsI2cMaster<Master>,
-                "Master: lacks a function, or a function has a wrong signature; see hal/i2c_master.hpp");
-
  public:
   Master& master() { return master_; }
 

@@ -1,7 +1,5 @@
 #pragma once
 
-#include "hal/init_switch.hpp"
-
 namespace ex9000::hal::doubles {
 
 class InitSwitch {
@@ -12,6 +10,5 @@ class InitSwitch {
  private:
   bool asserted_ = false;
 };
-static_assert(kIsInitSwitch<InitSwitch>);
 
 }  // namespace ex9000::hal::doubles

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "hal/inputs.hpp"
+#include <cstdint>
 
 namespace ex9000::hal::doubles {
 
@@ -22,6 +22,5 @@ class Inputs {
  private:
   std::uint16_t levels_ = 0;
 };
-static_assert(kIsInputs<Inputs>);
 
 }  // namespace ex9000::hal::doubles

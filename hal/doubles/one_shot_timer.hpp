@@ -1,7 +1,6 @@
 #pragma once
 
 #include "hal/doubles/virtual_clock.hpp"
-#include "hal/one_shot_timer.hpp"
 
 namespace ex9000::hal::doubles {
 
@@ -26,6 +25,5 @@ class OneShotTimer {
   const VirtualClock& clock_;
   VirtualTime fires_ = kNever;
 };
-static_assert(kIsOneShotTimer<OneShotTimer>);
 
 }  // namespace ex9000::hal::doubles

@@ -1,9 +1,8 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <utility>
-
-#include "hal/outputs.hpp"
 
 namespace ex9000::hal::doubles {
 
@@ -26,6 +25,5 @@ class Outputs {
   std::uint16_t channels_ = 0;
   std::function<void(std::uint16_t)> on_change_;
 };
-static_assert(kIsOutputs<Outputs>);
 
 }  // namespace ex9000::hal::doubles

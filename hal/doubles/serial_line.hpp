@@ -3,9 +3,10 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "firmware/bytes.hpp"
 #include "firmware/line/timing.hpp"
+#include "firmware/model/line_format.hpp"
 #include "hal/doubles/virtual_clock.hpp"
-#include "hal/serial_line.hpp"
 #include "hal/serial_mode.hpp"
 
 namespace ex9000::hal::doubles {
@@ -69,6 +70,5 @@ class SerialLine {
   VirtualTime over_ = kNever;
   VirtualTime late_by_{0};
 };
-static_assert(kIsSerialLine<SerialLine>);
 
 }  // namespace ex9000::hal::doubles

@@ -3,8 +3,6 @@
 #include <functional>
 #include <utility>
 
-#include "hal/status_led.hpp"
-
 namespace ex9000::hal::doubles {
 
 class StatusLed {
@@ -26,6 +24,5 @@ class StatusLed {
   bool lit_ = false;
   std::function<void(bool)> on_change_;
 };
-static_assert(kIsStatusLed<StatusLed>);
 
 }  // namespace ex9000::hal::doubles

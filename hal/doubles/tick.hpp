@@ -29,6 +29,5 @@ class Tick {
   VirtualTime period_;
   VirtualTime next_ = kNever;
 };
-static_assert(kIsTick<Tick>);
 
 }  // namespace ex9000::hal::doubles

@@ -2,8 +2,9 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 
-#include "hal/clock.hpp"
+#include "firmware/time.hpp"
 
 namespace ex9000::hal::doubles {
 
@@ -32,6 +33,5 @@ class VirtualClock {
   VirtualTime now_{0};
   std::chrono::microseconds microseconds_{0};  ///< `now_` rounded down; stored for speed
 };
-static_assert(kIsClock<VirtualClock>);
 
 }  // namespace ex9000::hal::doubles

@@ -19,6 +19,5 @@ class Watchdog {
   const VirtualClock& clock_;
   VirtualTime expiry_time_ = kNever;
 };
-static_assert(kIsWatchdog<Watchdog>);
 
 }  // namespace ex9000::hal::doubles

@@ -138,6 +138,5 @@ class Flash {
     exchange(static_cast<std::uint8_t>(address));
   }
 };
-static_assert(kIsFlash<Flash>);
 
 }  // namespace ex9000::hal::rp2040

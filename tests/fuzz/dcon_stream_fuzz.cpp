@@ -4,7 +4,7 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size != 0) {
-    const ex9000::Model& model = ex9000::kModels[data[0] % ex9000::kModels.size()];
+    const ex9000::Model& model = ex9000::kModels[data[0] % std::size(ex9000::kModels)];
     ex9000::fuzz::live(model, ex9000::Protocol::Ascii, data, size);
   }
   return 0;

@@ -157,7 +157,7 @@ class Trial {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace ex9000::fuzz;
   if (size >= kHeader) {
-    const ex9000::Model& model = ex9000::kModels[data[0] % ex9000::kModels.size()];
+    const ex9000::Model& model = ex9000::kModels[data[0] % std::size(ex9000::kModels)];
     Trial(model, data[1], data + kHeader, size - kHeader).run();
   }
   return 0;

@@ -51,7 +51,7 @@ struct Surroundings {
   std::array<std::uint8_t, 0x100> memory{};
 };
 
-/// The board interface is described in hal/board.hpp.
+/// The board interface is described in hal/device.hpp.
 struct LeanBoard {
   LeanBoard(Surroundings& surroundings, TimingAt timing_at)
       : clock{surroundings},

@@ -43,7 +43,7 @@ def texts_for_people() -> set[bytes]:
     found: set[bytes] = set()
     for name in _TABLES:
         source = (_FIRMWARE / name).read_bytes()
-        rows = b"".join(re.findall(rb"table<\w+>\(\{.*?\n\}\);", source, re.DOTALL))
+        rows = b"".join(re.findall(rb" k\w+\[\] = \{\n.*?\n\};", source, re.DOTALL))
         texts = {text for text in re.findall(rb'"([^"\n]*)"', rows) if len(text) >= _SHORTEST_TEXT}
         if not texts:
             raise ValueError(f"{_FIRMWARE / name}: contains no table with texts; correct check_image/forbidden.py")

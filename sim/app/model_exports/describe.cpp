@@ -1,7 +1,6 @@
 #include "sim/app/model_exports/describe.hpp"
 
 #include "firmware/settings/settings.hpp"
-#include "firmware/table.hpp"
 #include "sim/app/model_exports/formats.hpp"
 #include "sim/text/fail.hpp"
 #include "sim/text/values.hpp"
@@ -21,14 +20,14 @@ struct Format {
   std::string (*of_module)(const Model& model, const NetworkAddress& network_address) = nullptr;
 };
 
-constexpr auto kFormats = table<Format>({
+constexpr Format kFormats[] = {
     {"markdown", markdown_of, nullptr, nullptr},
     {"json", json_of, nullptr, nullptr},
     {"csv", csv_of, nullptr, nullptr},
     {"home-assistant", nullptr, nullptr, home_assistant_hub},
     {"node-red", nullptr, nullptr, node_red_flow},
     {"wb-mqtt-serial", nullptr, wb_mqtt_serial_template, nullptr},
-});
+};
 
 const Format& format_called(const std::string& name) {
   for (const Format& format : kFormats) {

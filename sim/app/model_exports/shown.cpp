@@ -4,8 +4,6 @@
 #include <boost/algorithm/string/case_conv.hpp>
 #include <optional>
 
-#include "firmware/table.hpp"
-
 namespace ex9000::sim {
 
 namespace {
@@ -21,7 +19,7 @@ struct Reading {
   std::string_view button_name{};
 };
 
-constexpr auto kReadings = table<Reading>({
+constexpr Reading kReadings[] = {
     {"outputs", Role::Output, "Output"},
     {"inputs", Role::Input, "Input"},
     {"input-coils", std::nullopt, ""},  // the same values as the inputs
@@ -55,7 +53,7 @@ constexpr auto kReadings = table<Reading>({
     {"settings-source", std::nullopt, ""},
     {"line-tallies", std::nullopt, ""},
     {"host-ok", std::nullopt, ""},
-});
+};
 
 constexpr const Reading* reading_of(std::string_view id) {
   for (const Reading& each : kReadings) {
@@ -81,7 +79,7 @@ constexpr bool covers_every_row() {
       return false;
     }
   }
-  return kReadings.size() == modbus::kBitRegisters.size() + modbus::kWordRegisters.size();
+  return std::size(kReadings) == std::size(modbus::kBitRegisters) + std::size(modbus::kWordRegisters);
 }
 static_assert(covers_every_row());
 

@@ -109,7 +109,7 @@ std::string dcon_reply(const FrameBytes& bytes) {
 template <class Row>
 bool lies_in(const Row& row, modbus::Functions listed, unsigned address) {
   return (row.functions & listed) != 0 &&
-         std::any_of(kModels.begin(), kModels.end(), [&](const Model& model) {
+         std::any_of(std::begin(kModels), std::end(kModels), [&](const Model& model) {
            return meets(model, row.needs) && address - row.first < modbus::width_of(row.width, model);
          });
 }
@@ -159,14 +159,14 @@ std::string modbus_meaning(const FrameBytes& bytes, Speaker speaker) {
   const bool exception =
       speaker == Speaker::Module && (function & kExceptionBit) != 0 && bytes.size() == kExceptionSize;
   const unsigned code = exception ? function & ~kExceptionBit : function;
-  const auto* row = std::find_if(modbus::kFunctions.begin(), modbus::kFunctions.end(),
+  const auto* row = std::find_if(std::begin(modbus::kFunctions), std::end(modbus::kFunctions),
                                  [code](const modbus::Function& f) { return f.row.code == code; });
   const std::string name =
-      row == modbus::kFunctions.end() ? "function " + hex_byte_text(code) : std::string(row->name);
+      row == std::end(modbus::kFunctions) ? "function " + hex_byte_text(code) : std::string(row->name);
   if (speaker == Speaker::Module) {
     return who + name + (exception ? ", exception " + hex_byte_text(bytes[2]) : ", reply");
   }
-  if (bytes.size() < 8 || row == modbus::kFunctions.end() || function > 0x10 || function == 0x08) {
+  if (bytes.size() < 8 || row == std::end(modbus::kFunctions) || function > 0x10 || function == 0x08) {
     return who + name;
   }
   const Bytes request{bytes.data(), bytes.size() - 2};

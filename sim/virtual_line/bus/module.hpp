@@ -104,7 +104,7 @@ class SimulatedModule final : public Station {
   void receive(std::uint8_t byte, ByteStatus status) override;
 
  private:
-  /// See hal/board.hpp.
+  /// See hal::Device.
   struct Board {
     VirtualClock& clock;
     hal::doubles::SerialLine& line;

@@ -27,8 +27,8 @@ constexpr std::uint32_t kBaud = 115'200;
 constexpr std::uint8_t kBaudCode = 0x0A;
 constexpr std::uint64_t kReplyLimit = 200'000;  ///< us; wire.md section 7
 
-/// A board (hal/board.hpp) with a flash, timers and a line. Its clock returns the time of the flash chip. Its
-/// inputs, outputs, switch, LED and watchdog do nothing.
+/// A board (hal/device.hpp) with a flash, timers and a line. Its clock returns the time of the flash chip.
+/// Its inputs, outputs, switch, LED and watchdog do nothing.
 struct FlashBoard {
   struct Clock {
     const FlashChip* chip;

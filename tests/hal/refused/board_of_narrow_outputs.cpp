@@ -1,15 +1,11 @@
-// Must not compile: `drive` accepts only eight channels.
-#include "hal/board.hpp"
-#include "tests/hal/right_board.hpp"
+// Must not compile: `drive` would drop the channels from 8 on.
+#include "hal/device.hpp"
+#include "tests/firmware/no_board.hpp"
 
-namespace ex9000::hal {
-
-struct OutputsOfAByte {
+struct NarrowOutputs {
   static void drive(std::uint8_t channels);
 };
-struct BoardOfNarrowOutputs : RightBoard {
-  OutputsOfAByte outputs;
+struct BoardOfNarrowOutputs : ex9000::NoBoard {
+  NarrowOutputs outputs;
 };
-static_assert(is_board<BoardOfNarrowOutputs>());
-
-}  // namespace ex9000::hal
+template class ex9000::hal::Device<BoardOfNarrowOutputs>;

@@ -5,7 +5,6 @@
 
 #include "boards/cortex_m/start_up.hpp"
 #include "boards/pico/board.hpp"
-#include "firmware/table.hpp"
 #include "hal/cortex_m/interrupts.hpp"
 #include "hal/pl011/uart.hpp"
 #include "hal/rp2040/clocks.hpp"
@@ -56,7 +55,7 @@ void on_line() {
   });
 }
 
-constexpr auto kServed = table<start_up::Served>({{static_cast<unsigned>(Interrupt::Uart0), on_line}});
+constexpr start_up::Served kServed[] = {{static_cast<unsigned>(Interrupt::Uart0), on_line}};
 __attribute__((section(".vectors"), used)) constexpr auto kVectors =
     start_up::vectors<26>(start_up::fault_handler, kServed);
 

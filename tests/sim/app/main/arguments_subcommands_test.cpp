@@ -88,7 +88,7 @@ TEST(Arguments, TheListOfModelsHasOneLineForEachModelAndMentionsModbusRtu) {
     EXPECT_NE(("\n" + text).find("\n" + std::string(model.designation) + " "), std::string::npos)
         << model.designation;
   }
-  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), static_cast<std::ptrdiff_t>(kModels.size()));
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), static_cast<std::ptrdiff_t>(std::size(kModels)));
   EXPECT_NE(text.find("Modbus RTU"), std::string::npos);
 }
 

@@ -388,7 +388,7 @@ TEST(Program, PrintsItsVersionModelsAndHelp) {
   const Finished models = simulator({"--models"}, directory.path());
   EXPECT_EQ(models.status, 0);
   EXPECT_EQ(std::count(models.output.begin(), models.output.end(), '\n'),
-            static_cast<std::ptrdiff_t>(kModels.size()));
+            static_cast<std::ptrdiff_t>(std::size(kModels)));
   EXPECT_NE(models.output.find("EX9068AD-M"), std::string::npos);
   const Finished help = simulator({"--help"}, directory.path());
   EXPECT_EQ(help.status, 0);
