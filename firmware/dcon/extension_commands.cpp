@@ -2,13 +2,13 @@
 #include "firmware/dcon/commands.hpp"
 #include "firmware/dcon/writing.hpp"
 #include "firmware/hex.hpp"
-#include "firmware/modbus/registers.hpp"
+#include "firmware/registers/find.hpp"
 
 namespace ex9000::dcon {
 
 namespace {
 
-using modbus::WordRow;
+using registers::WordRow;
 
 constexpr std::uint8_t kDelayKey = 'D';  // the character after `~AAR`
 
@@ -24,7 +24,7 @@ int hex_word(Bytes args, std::size_t at) {
 /// Returns the row of the extension register at `address`. Returns null if `address` is negative, or if the
 /// model has no such register.
 const WordRow* row_of(const Model& model, int address) {
-  return address < 0 ? nullptr : modbus::find_extension(model, static_cast<unsigned>(address));
+  return address < 0 ? nullptr : registers::find_extension(model, static_cast<unsigned>(address));
 }
 
 }  // namespace
@@ -36,7 +36,7 @@ Refusal read_extension(Exchange& exchange) {
     return Refusal::OutOfRange;
   }
   const unsigned index = static_cast<unsigned>(address) - row->first;
-  const bool is_long = row->has(modbus::kLong);
+  const bool is_long = row->has(registers::kLong);
   if (is_long && index % 2 != 0) {
     // `~AAX` never reads the low word alone: two separate reads could return words of two different values.
     return Refusal::OutOfRange;

@@ -1,11 +1,13 @@
 // Function 08: Modbus Application Protocol V1.1b3, 6.8. For the meaning of the counters, see Modbus over
 // Serial Line V1.02, appendix A, and wire.md D1.
 #include "firmware/modbus/functions.hpp"
-#include "firmware/modbus/tallies.hpp"
+#include "firmware/registers/tallies.hpp"
 
 namespace ex9000::modbus {
 
 namespace {
+
+using namespace registers;
 
 constexpr std::size_t kDataAt = 4;
 constexpr std::size_t kOneWord = kDataAt + 2;

@@ -1,10 +1,12 @@
 // Functions 01 to 04: Modbus Application Protocol V1.1b3, 6.1 to 6.4.
 #include "firmware/modbus/functions.hpp"
-#include "firmware/modbus/registers.hpp"
+#include "firmware/registers/find.hpp"
 
 namespace ex9000::modbus {
 
 namespace {
+
+using namespace registers;
 
 constexpr std::size_t kRequestSize = 6;
 constexpr unsigned kMostBits = 2000;

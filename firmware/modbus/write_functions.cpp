@@ -2,11 +2,13 @@
 // is: length and quantity, address, value; Exchange::judge_outcome follows. Before the address, function 05
 // also checks that the value is FF00 or 0000. A request that fails a check changes nothing.
 #include "firmware/modbus/functions.hpp"
-#include "firmware/modbus/registers.hpp"
+#include "firmware/registers/find.hpp"
 
 namespace ex9000::modbus {
 
 namespace {
+
+using namespace registers;
 
 constexpr std::size_t kSingleSize = 6;
 constexpr std::size_t kMultipleHeader = 7;
@@ -115,6 +117,7 @@ Refusal write_multiple_registers(Exchange& exchange) {
   }
   const unsigned start = frame.word(2);
   const unsigned quantity = frame.word(4);
+  Refusal wrong_value = Refusal::None;
   bool configuration = false;
   for (unsigned i = 0; i < quantity; ++i) {
     const WordRow* row = find_word(exchange.model(), kWriteRegisters, start + i);
@@ -122,20 +125,16 @@ Refusal write_multiple_registers(Exchange& exchange) {
       return Refusal::WrongAddress;
     }
     configuration |= row->has(kConfiguration);
-  }
-  if (exchange.broadcast && configuration) {
-    return Refusal::None;
-  }
-  for (unsigned i = 0; i < quantity; ++i) {
-    const WordRow* row = find_word(exchange.model(), kWriteRegisters, start + i);
-    const Refusal wrong =
-        write_word(exchange, *row, start + i, frame.word(kMultipleHeader + std::size_t{2} * i));
-    if (wrong != Refusal::None) {
-      return wrong;
+    if (wrong_value == Refusal::None) {
+      wrong_value = write_word(exchange, *row, start + i, frame.word(kMultipleHeader + std::size_t{2} * i));
     }
   }
+  if (exchange.broadcast && configuration) {
+    exchange.outcome.clear();
+    return Refusal::None;
+  }
   put_echo(exchange);
-  return Refusal::None;
+  return wrong_value;
 }
 
 }  // namespace ex9000::modbus

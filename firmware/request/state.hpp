@@ -29,7 +29,7 @@ struct Sample {
   std::uint16_t inputs = 0;
 };
 
-/// What the main loop counts for the line tallies (modbus/tallies.hpp). LineTallies contains what the
+/// What the main loop counts for the line tallies (registers/tallies.hpp). LineTallies contains what the
 /// interrupts count.
 struct Diagnostics {
   std::uint16_t exceptions = 0;  ///< exception replies; in ASCII, replies that begin with `?`

@@ -6,8 +6,9 @@
 
 #include "firmware/dcon/commands.hpp"
 #include "firmware/modbus/functions.hpp"
-#include "firmware/modbus/registers.hpp"
 #include "firmware/model/model.hpp"
+#include "firmware/registers/bits.hpp"
+#include "firmware/registers/words.hpp"
 #include "firmware/settings/settings.hpp"
 
 namespace ex9000 {
@@ -25,8 +26,8 @@ TEST(Tables, EveryRowHasItsOwnId) {
   expect_unique(kModels, [](const Model& row) { return row.designation; });
   expect_unique(dcon::kCommands, [](const dcon::Command& row) { return row.id; });
   expect_unique(dcon::kCommands, [](const dcon::Command& row) { return row.syntax; });
-  expect_unique(modbus::kBitRegisters, [](const modbus::BitRegister& row) { return row.id; });
-  expect_unique(modbus::kWordRegisters, [](const modbus::WordRegister& row) { return row.id; });
+  expect_unique(registers::kBitRegisters, [](const registers::BitRegister& row) { return row.id; });
+  expect_unique(registers::kWordRegisters, [](const registers::WordRegister& row) { return row.id; });
   expect_unique(modbus::kFunctions, [](const modbus::Function& row) { return row.name; });
 }
 
@@ -60,26 +61,26 @@ TEST(Tables, TheSyntaxOfEveryCommandMatchesItsDispatch) {
 
 TEST(Tables, RowsOfOneFunctionDoNotOverlapAndHaveTheRequiredHandler) {
   for (unsigned code = 1; code < 16; ++code) {
-    const auto function = static_cast<modbus::Functions>(1U << code);
+    const auto function = static_cast<registers::Functions>(1U << code);
     for (const Model& model : kModels) {
       std::set<unsigned> addresses;
-      for (const modbus::BitRegister& entry : modbus::kBitRegisters) {
+      for (const registers::BitRegister& entry : registers::kBitRegisters) {
         if ((entry.row.functions & function) == 0 || !meets(model, entry.row.needs)) {
           continue;
         }
-        const bool writes = (function & (modbus::kWriteSingleCoil | modbus::kWriteMultipleCoils)) != 0;
+        const bool writes = (function & (registers::kWriteSingleCoil | registers::kWriteMultipleCoils)) != 0;
         EXPECT_TRUE(writes ? entry.row.write != nullptr : entry.row.read != nullptr) << entry.id;
-        for (unsigned i = 0; i < modbus::width_of(entry.row.width, model); ++i) {
+        for (unsigned i = 0; i < registers::width_of(entry.row.width, model); ++i) {
           EXPECT_TRUE(addresses.insert(entry.row.first + i).second) << entry.id;
         }
       }
-      for (const modbus::WordRegister& entry : modbus::kWordRegisters) {
+      for (const registers::WordRegister& entry : registers::kWordRegisters) {
         if ((entry.row.functions & function) == 0 || !meets(model, entry.row.needs)) {
           continue;
         }
-        EXPECT_TRUE(function == modbus::kWriteSingleRegister ? entry.row.write != nullptr
-                                                             : entry.row.read != nullptr);
-        for (unsigned i = 0; i < modbus::width_of(entry.row.width, model); ++i) {
+        EXPECT_TRUE(function == registers::kWriteSingleRegister ? entry.row.write != nullptr
+                                                                : entry.row.read != nullptr);
+        for (unsigned i = 0; i < registers::width_of(entry.row.width, model); ++i) {
           EXPECT_TRUE(addresses.insert(entry.row.first + i).second) << entry.id;
         }
       }

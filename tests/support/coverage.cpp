@@ -8,7 +8,8 @@
 #include "firmware/line/dcon_assembler.hpp"
 #include "firmware/line/rtu_assembler.hpp"
 #include "firmware/modbus/functions.hpp"
-#include "firmware/modbus/registers.hpp"
+#include "firmware/registers/bits.hpp"
+#include "firmware/registers/words.hpp"
 
 namespace ex9000::runner {
 
@@ -65,7 +66,7 @@ std::string register_id(const char* kind, const Register& row, unsigned function
 }
 
 /// Returns the codes of `functions`. Function 0x10 is allowed for the same rows as 0x06.
-std::vector<unsigned> functions_of(modbus::Functions functions) {
+std::vector<unsigned> functions_of(registers::Functions functions) {
   std::vector<unsigned> codes;
   for (unsigned code = 1; code < 16; ++code) {
     if ((functions >> code & 1U) != 0) {
@@ -153,16 +154,16 @@ void Coverage::note_answered(const Module& module, ex9000::Bytes frame) {
     return;
   }
   const unsigned listed = function == 0x10 ? 6 : function;
-  const auto bit = static_cast<modbus::Functions>(1U << listed);
-  for (const auto& row : modbus::kBitRegisters) {
+  const auto bit = static_cast<registers::Functions>(1U << listed);
+  for (const auto& row : registers::kBitRegisters) {
     const unsigned index = unsigned{frame.word(2)} - row.row.first;
-    if ((row.row.functions & bit) != 0 && index < modbus::width_of(row.row.width, model)) {
+    if ((row.row.functions & bit) != 0 && index < registers::width_of(row.row.width, model)) {
       reached_.insert(register_id("coil", row, function));
     }
   }
-  for (const auto& row : modbus::kWordRegisters) {
+  for (const auto& row : registers::kWordRegisters) {
     const unsigned index = unsigned{frame.word(2)} - row.row.first;
-    if ((row.row.functions & bit) != 0 && index < modbus::width_of(row.row.width, model)) {
+    if ((row.row.functions & bit) != 0 && index < registers::width_of(row.row.width, model)) {
       reached_.insert(register_id("register", row, function));
     }
   }
@@ -176,12 +177,12 @@ std::set<std::string> Coverage::missing() const {
   for (const auto& function : modbus::kFunctions) {
     wanted.insert("modbus/" + hex_code(function.row.code));
   }
-  for (const auto& row : modbus::kBitRegisters) {
+  for (const auto& row : registers::kBitRegisters) {
     for (const unsigned function : functions_of(row.row.functions)) {
       wanted.insert(register_id("coil", row, function));
     }
   }
-  for (const auto& row : modbus::kWordRegisters) {
+  for (const auto& row : registers::kWordRegisters) {
     for (const unsigned function : functions_of(row.row.functions)) {
       wanted.insert(register_id("register", row, function));
     }

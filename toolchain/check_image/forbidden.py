@@ -34,7 +34,7 @@ _SECTIONS = [
 ]
 _FIRMWARE = pathlib.Path(__file__).resolve().parents[2] / "firmware"
 # The tables of the core whose texts are only for people, so an image must not contain them.
-_TABLES = ("dcon/commands.hpp", "modbus/functions.hpp", "modbus/registers.hpp")
+_TABLES = ("dcon/commands.hpp", "modbus/functions.hpp", "registers/bits.hpp", "registers/words.hpp")
 _SHORTEST_TEXT = 12  # an image may contain a shorter text by chance, or for another reason
 
 

@@ -4,14 +4,14 @@ namespace ex9000::sim {
 
 namespace {
 
-std::vector<std::uint8_t> function_codes(modbus::Functions functions) {
+std::vector<std::uint8_t> function_codes(registers::Functions functions) {
   std::vector<std::uint8_t> codes;
   for (std::uint8_t function = 0; function < 16; ++function) {
     if ((functions >> function & 1U) != 0) {
       codes.push_back(function);
     }
   }
-  if ((functions & modbus::kWriteRegisters) != 0) {
+  if ((functions & registers::kWriteRegisters) != 0) {
     codes.push_back(0x10);
   }
   return codes;
@@ -22,15 +22,15 @@ void add_row(const Model& model, const Area& area, const Register& entry, std::v
   const auto& row = entry.row;
   // Only the row of host OK lists no functions, because the firmware detects a host OK without
   // kWordRegisters. Masters send a host OK with function 03 or 04.
-  const modbus::Functions functions = row.functions != 0 ? row.functions : modbus::kReadRegisters;
+  const registers::Functions functions = row.functions != 0 ? row.functions : registers::kReadRegisters;
   const bool reads = (functions & area.reads) != 0;
   const bool writes = (functions & area.writes) != 0;
   if (!meets(model, row.needs) || (!reads && !writes)) {
     return;
   }
-  const unsigned last = row.first + modbus::width_of(row.width, model) - 1;
+  const unsigned last = row.first + registers::width_of(row.width, model) - 1;
   map.push_back({entry.id, &area, row.first, last,
-                 row.width == modbus::Width::PerOutput || row.width == modbus::Width::PerInput,
+                 row.width == registers::Width::PerOutput || row.width == registers::Width::PerInput,
                  function_codes(functions & (area.reads | area.writes)), reads, writes,
                  writes ? entry.range : std::string_view(), entry.meaning});
 }
@@ -43,10 +43,10 @@ std::vector<MapRow> register_map(const Model& model) {
     return map;
   }
   for (const Area& area : kAreas) {
-    for (const modbus::BitRegister& entry : modbus::kBitRegisters) {
+    for (const registers::BitRegister& entry : registers::kBitRegisters) {
       add_row(model, area, entry, map);
     }
-    for (const modbus::WordRegister& entry : modbus::kWordRegisters) {
+    for (const registers::WordRegister& entry : registers::kWordRegisters) {
       add_row(model, area, entry, map);
     }
   }

@@ -7,8 +7,9 @@
 #include <string_view>
 #include <vector>
 
-#include "firmware/modbus/registers.hpp"
 #include "firmware/model/model.hpp"
+#include "firmware/registers/bits.hpp"
+#include "firmware/registers/words.hpp"
 
 namespace ex9000::sim {
 
@@ -19,16 +20,17 @@ struct Area {
   Table table = Table::Coils;
   const char* name = "";  ///< name of one item of the table
   char digit = '0';       ///< first digit of the table's PLC numbers
-  modbus::Functions reads = 0;
-  modbus::Functions writes = 0;
+  registers::Functions reads = 0;
+  registers::Functions writes = 0;
 };
 
 constexpr std::array<Area, 4> kAreas{{
-    {Table::Coils, "coil", '0', modbus::kReadCoils, modbus::kWriteSingleCoil | modbus::kWriteMultipleCoils},
-    {Table::DiscreteInputs, "discrete input", '1', modbus::kReadDiscreteInputs, 0},
-    {Table::InputRegisters, "input register", '3', modbus::kReadInputRegisters, 0},
-    {Table::HoldingRegisters, "holding register", '4', modbus::kReadHoldingRegisters,
-     modbus::kWriteRegisters},
+    {Table::Coils, "coil", '0', registers::kReadCoils,
+     registers::kWriteSingleCoil | registers::kWriteMultipleCoils},
+    {Table::DiscreteInputs, "discrete input", '1', registers::kReadDiscreteInputs, 0},
+    {Table::InputRegisters, "input register", '3', registers::kReadInputRegisters, 0},
+    {Table::HoldingRegisters, "holding register", '4', registers::kReadHoldingRegisters,
+     registers::kWriteRegisters},
 }};
 
 /// One row of kBitRegisters or kWordRegisters, limited to one area. All texts live as long as the program.

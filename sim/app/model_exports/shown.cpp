@@ -68,18 +68,18 @@ constexpr const Reading* reading_of(std::string_view id) {
 /// kWordRegisters, and no other entries. Second, a row of kBitRegisters has a button if, and only if, it has
 /// the rule kOnlyOn. For each new row of kBitRegisters or kWordRegisters, add an entry to kReadings.
 constexpr bool covers_every_row() {
-  for (const modbus::BitRegister& row : modbus::kBitRegisters) {
+  for (const registers::BitRegister& row : registers::kBitRegisters) {
     const Reading* const reading = reading_of(row.id);
-    if (reading == nullptr || reading->button_id.empty() == row.row.has(modbus::kOnlyOn)) {
+    if (reading == nullptr || reading->button_id.empty() == row.row.has(registers::kOnlyOn)) {
       return false;
     }
   }
-  for (const modbus::WordRegister& row : modbus::kWordRegisters) {
+  for (const registers::WordRegister& row : registers::kWordRegisters) {
     if (reading_of(row.id) == nullptr) {
       return false;
     }
   }
-  return std::size(kReadings) == std::size(modbus::kBitRegisters) + std::size(modbus::kWordRegisters);
+  return std::size(kReadings) == std::size(registers::kBitRegisters) + std::size(registers::kWordRegisters);
 }
 static_assert(covers_every_row());
 

@@ -7,7 +7,8 @@
 #include "firmware/dcon/commands.hpp"
 #include "firmware/line/crc16.hpp"
 #include "firmware/modbus/functions.hpp"
-#include "firmware/modbus/registers.hpp"
+#include "firmware/registers/bits.hpp"
+#include "firmware/registers/words.hpp"
 #include "sim/text/values.hpp"
 
 namespace ex9000::sim {
@@ -107,10 +108,10 @@ std::string dcon_reply(const FrameBytes& bytes) {
 /// Returns whether a function of `listed` can access `row`, and the address is in `row` on at least one
 /// model.
 template <class Row>
-bool lies_in(const Row& row, modbus::Functions listed, unsigned address) {
+bool lies_in(const Row& row, registers::Functions listed, unsigned address) {
   return (row.functions & listed) != 0 &&
          std::any_of(std::begin(kModels), std::end(kModels), [&](const Model& model) {
-           return meets(model, row.needs) && address - row.first < modbus::width_of(row.width, model);
+           return meets(model, row.needs) && address - row.first < registers::width_of(row.width, model);
          });
 }
 
@@ -123,13 +124,13 @@ std::string row_meaning(Bytes request) {
   const unsigned function = request[1];
   const unsigned address = request.word(2);
   const auto listed =
-      static_cast<modbus::Functions>(function == 0x10 ? modbus::kWriteRegisters : 1U << function);
-  for (const auto& entry : modbus::kBitRegisters) {
+      static_cast<registers::Functions>(function == 0x10 ? registers::kWriteRegisters : 1U << function);
+  for (const auto& entry : registers::kBitRegisters) {
     if (lies_in(entry.row, listed, address)) {
       return ", " + std::string(entry.meaning);
     }
   }
-  for (const auto& entry : modbus::kWordRegisters) {
+  for (const auto& entry : registers::kWordRegisters) {
     if (lies_in(entry.row, listed, address)) {
       return ", " + std::string(entry.meaning);
     }

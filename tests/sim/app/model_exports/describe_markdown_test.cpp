@@ -10,7 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "firmware/modbus/registers.hpp"
+#include "firmware/registers/bits.hpp"
+#include "firmware/registers/words.hpp"
 #include "sim/text/values.hpp"
 
 namespace ex9000::sim {
@@ -440,7 +441,7 @@ TEST(DescribeMarkdown, AModelWithoutModbusHasNoMap) {
 
 TEST(DescribeMarkdown, ShowsMeaningAndRangeOfARegister) {
   const std::string text = text_of("EX9060D-M");
-  for (const modbus::WordRegister& row : modbus::kWordRegisters) {
+  for (const registers::WordRegister& row : registers::kWordRegisters) {
     EXPECT_TRUE(has(text, " | " + std::string(row.meaning) + " |\n")) << row.id;
   }
   EXPECT_TRUE(

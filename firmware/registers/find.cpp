@@ -1,8 +1,10 @@
-#include "firmware/modbus/registers.hpp"
+#include "firmware/registers/find.hpp"
 
 #include "firmware/model/built.hpp"
+#include "firmware/registers/bits.hpp"
+#include "firmware/registers/words.hpp"
 
-namespace ex9000::modbus {
+namespace ex9000::registers {
 
 namespace {
 
@@ -40,4 +42,4 @@ const WordRow* find_extension(const Model& model, unsigned address) {
   return row != nullptr && row->has(kExtension) ? row : nullptr;
 }
 
-}  // namespace ex9000::modbus
+}  // namespace ex9000::registers

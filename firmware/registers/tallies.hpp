@@ -6,7 +6,7 @@
 
 #include "firmware/request/exchange.hpp"
 
-namespace ex9000::modbus {
+namespace ex9000::registers {
 
 /// The line tallies in the order of registers 0x0308 to 0x030F. Function 08 reads the first six.
 enum class Tally : std::uint8_t {
@@ -55,4 +55,4 @@ inline std::uint16_t count_of(const Exchange& exchange, Tally tally) {
   return static_cast<std::uint16_t>(count);
 }
 
-}  // namespace ex9000::modbus
+}  // namespace ex9000::registers

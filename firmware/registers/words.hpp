@@ -1,0 +1,221 @@
+// The registers, and the functions that read and write them - wire.md section 7 and extensions.md.
+#pragma once
+
+#include <limits>
+#include <optional>
+
+#include "firmware/line/rtu_frames.hpp"
+#include "firmware/registers/rows.hpp"
+#include "firmware/registers/tallies.hpp"
+
+namespace ex9000::registers {
+
+template <auto setting>
+std::uint16_t read_setting(const Exchange& exchange, unsigned /*index*/) {
+  return static_cast<std::uint16_t>(exchange.state.settings.*setting);
+}
+
+/// Leaves every value that the type of the setting can hold to Settings::possible_for.
+template <auto setting>
+Refusal write_setting(const State& /*state*/, unsigned /*index*/, std::uint16_t value, Outcome& outcome) {
+  using Value = typename std::decay_t<decltype(outcome.change().*setting)>::value_type;
+  if (value > std::numeric_limits<Value>::max()) {
+    return Refusal::WrongValue;
+  }
+  outcome.change().*setting = static_cast<Value>(value);
+  return Refusal::None;
+}
+
+template <auto statistic>
+std::uint16_t read_statistic(const Exchange& exchange, unsigned /*index*/) {
+  return static_cast<std::uint16_t>(exchange.state.statistics.*statistic);
+}
+
+/// Returns a word of a 32-bit value; index 0 is the high word.
+constexpr std::uint16_t word_of(std::uint32_t value, unsigned index) {
+  constexpr unsigned kBitsOfAWord = 16;
+  return static_cast<std::uint16_t>(index == 0 ? value >> kBitsOfAWord : value);
+}
+
+inline std::uint16_t read_counter(const Exchange& exchange, unsigned index) {
+  return static_cast<std::uint16_t>(exchange.state.inputs.counter(index));
+}
+
+inline std::uint16_t read_module_code(const Exchange& exchange, unsigned index) {
+  // Example: the code 0x9042 is read as 0x0090, 0x4200.
+  const unsigned code = exchange.model().modbus_code;
+  return static_cast<std::uint16_t>(index == 0 ? code >> 8U : code << 8U);
+}
+
+inline Refusal write_address(const State& state, unsigned index, std::uint16_t value, Outcome& outcome) {
+  // The range holds even if the stored protocol is ASCII, which permits more addresses.
+  return is_modbus_address(value) ? write_setting<&SettingsChange::address>(state, index, value, outcome)
+                                  : Refusal::WrongValue;
+}
+
+inline Refusal write_watchdog_timeout(const State& state, unsigned index, std::uint16_t value,
+                                      Outcome& outcome) {
+  if (state.settings.watchdog_enabled) {
+    outcome.request(Effect::RestartHostWatchdog);
+  }
+  return write_setting<&SettingsChange::watchdog_timeout>(state, index, value, outcome);
+}
+
+inline std::uint16_t read_input_filter(const Exchange& exchange, unsigned index) {
+  return exchange.state.settings.input_filters.of(index);
+}
+
+inline Refusal write_input_filter(const State& state, unsigned index, std::uint16_t value, Outcome& outcome) {
+  // One request may write the filters of several channels.
+  std::optional<InputFilters>& filters = outcome.change().input_filters;
+  if (!filters) {
+    filters = state.settings.input_filters;
+  }
+  filters->set(index, value);
+  return Refusal::None;
+}
+
+inline std::uint16_t read_long_counter(const Exchange& exchange, unsigned index) {
+  return word_of(exchange.state.inputs.long_counter(index / 2), index % 2);
+}
+
+inline std::uint16_t read_time_left(const Exchange& exchange, unsigned index) {
+  return exchange.state.output_timers.left(index);
+}
+
+inline Refusal write_timed_output(const State& /*state*/, unsigned index, std::uint16_t value,
+                                  Outcome& outcome) {
+  outcome.drive_for(index, value);
+  return Refusal::None;
+}
+
+/// Returns the version `Dnn.nn` as four BCD digits.
+inline std::uint16_t read_version(const Exchange& /*exchange*/, unsigned /*index*/) {
+  unsigned digits = 0;
+  for (const char character : kFirmwareVersion) {
+    if (character >= '0' && character <= '9') {
+      digits = digits << 4U | static_cast<unsigned>(character - '0');
+    }
+  }
+  return static_cast<std::uint16_t>(digits);
+}
+
+inline std::uint16_t read_seconds_up(const Exchange& exchange, unsigned index) {
+  return word_of(exchange.state.statistics.seconds_up, index);
+}
+
+inline Refusal clear_timeout_count(const State& /*state*/, unsigned /*index*/, std::uint16_t value,
+                                   Outcome& outcome) {
+  if (value != 0) {
+    return Refusal::WrongValue;
+  }
+  outcome.request(Effect::ClearTimeoutCount);
+  return Refusal::None;
+}
+
+inline std::uint16_t read_tally(const Exchange& exchange, unsigned index) {
+  return count_of(exchange, static_cast<Tally>(index));
+}
+
+inline constexpr WordRegister kWordRegisters[] = {
+    {"counters",
+     "input counters",
+     "",
+     {0x0000, Width::PerInput, Needs::Inputs, kReadRegisters, kPlain, read_counter, nullptr}},
+    {"module-code",
+     "module code in two registers; for example, the code 0x9042 is read as 0x0090 and 0x4200",
+     "",
+     {0x01E2, Width::Two, Needs::Nothing, kReadHoldingRegisters, kPlain, read_module_code, nullptr}},
+    {"address",
+     "stored address, in force from the next reset on",
+     "1 to 247; not by broadcast",
+     {0x01E4, Width::One, Needs::Nothing, kReadHoldingRegisters | kWriteRegisters, kConfiguration,
+      read_setting<&Settings::address>, write_address}},
+    {"baud-code",
+     "stored baud code with the line format, in force from the next reset on",
+     "0x03 to 0x0A (8N1), 0x43 to 0x4A (8N2), 0x83 to 0x8A (8E1), 0xC3 to 0xCA (8O1); not by broadcast",
+     {0x01E5, Width::One, Needs::Nothing, kReadHoldingRegisters | kWriteRegisters, kConfiguration,
+      read_setting<&Settings::baud_code>, write_setting<&SettingsChange::baud_code>}},
+    {"watchdog-timeout",
+     "host watchdog timeout in units of 0.1 s",
+     "0 to 255; not 0 while the host watchdog is enabled",
+     {0x01E8, Width::One, Needs::Nothing, kReadHoldingRegisters | kWriteRegisters, kPlain,
+      read_setting<&Settings::watchdog_timeout>, write_watchdog_timeout}},
+    // --- extension registers, 0x0240 to 0x030F ---
+    {"input-filters",
+     "filter of the input in ms: a level counts when it has been stable for this time",
+     "0 to 2000; not by broadcast",
+     {0x0240, Width::PerInput, Needs::Inputs, kReadRegisters | kWriteRegisters, kExtension | kConfiguration,
+      read_input_filter, write_input_filter}},
+    {"inverted-inputs",
+     "inverted inputs, bit n is input n",
+     "only bits of inputs that the model has; not by broadcast",
+     {0x0250, Width::One, Needs::Inputs, kReadRegisters | kWriteRegisters, kExtension | kConfiguration,
+      read_setting<&Settings::inverted_inputs>, write_setting<&SettingsChange::inverted_inputs>}},
+    {"watchdog-feed",
+     "requests that restart the host watchdog; 0: a host OK, and requests that enable the host "
+     "watchdog or write its timeout; 1: also all other requests for this module",
+     "0 or 1; not by broadcast",
+     {0x0251, Width::One, Needs::Nothing, kReadRegisters | kWriteRegisters, kExtension | kConfiguration,
+      read_setting<&Settings::fed_by_requests>, write_setting<&SettingsChange::fed_by_requests>}},
+    {"response-delay",
+     "response delay in ms, in force from the next request on",
+     "0 to 30; not by broadcast",
+     {0x0252, Width::One, Needs::Nothing, kReadRegisters | kWriteRegisters, kExtension | kConfiguration,
+      read_setting<&Settings::response_delay>, write_setting<&SettingsChange::response_delay>}},
+    {"long-counters",
+     "input counters with 32 bits, two registers each, high word first",
+     "",
+     {0x0260, Width::PairPerInput, Needs::Inputs, kReadRegisters, kExtension | kLong, read_long_counter,
+      nullptr}},
+    {"timed-outputs",
+     "timed output: the time until the output is switched off, in units of 0.1 s",
+     "1 to 65535: switch on for this time; 0: switch off",
+     {0x0280, Width::PerOutput, Needs::Outputs, kReadRegisters | kWriteRegisters, kExtension, read_time_left,
+      write_timed_output}},
+    {"version",
+     "firmware version nn.nn, two BCD digits in each byte",
+     "",
+     {0x0300, Width::One, Needs::Nothing, kReadRegisters, kExtension, read_version, nullptr}},
+    {"reset-reason",
+     "reason of the last reset: 1 power-on, 2 module watchdog, 3 software, 4 reset pin, 5 fault; 0 if "
+     "the board cannot detect it",
+     "",
+     {0x0301, Width::One, Needs::Nothing, kReadRegisters, kExtension,
+      read_statistic<&Statistics::reset_reason>, nullptr}},
+    {"uptime",
+     "seconds since reset, 32 bits, high word first",
+     "",
+     {0x0302, Width::Two, Needs::Nothing, kReadRegisters, kExtension | kLong, read_seconds_up, nullptr}},
+    {"timeout-count",
+     "timeouts of the host watchdog since reset or clearing, at most 65535",
+     "0 only: clears it; not by broadcast",
+     {0x0304, Width::One, Needs::Nothing, kReadRegisters | kWriteRegisters, kExtension | kConfiguration,
+      read_statistic<&Statistics::timeouts>, clear_timeout_count}},
+    {"store-count",
+     "stores of settings since reset, at most 65535",
+     "",
+     {0x0305, Width::One, Needs::Nothing, kReadRegisters, kExtension, read_statistic<&Statistics::stores>,
+      nullptr}},
+    {"settings-source",
+     "source of the settings at reset: 0: a good copy, and no bad one; 1: a good copy, and a bad one; 2: "
+     "factory settings, no good copy; 3: an older layout, not used so far; 4: factory settings, blank "
+     "memory",
+     "",
+     {0x0306, Width::One, Needs::Nothing, kReadRegisters, kExtension,
+      read_statistic<&Statistics::settings_source>, nullptr}},
+    {"line-tallies",
+     "counts of the line: bus messages, bus errors, exceptions, messages for this module or for all "
+     "modules, those without a reply, overruns, damaged bytes, frames lost because no buffer was free; "
+     "they wrap",
+     "",
+     {0x0308, Width::Eight, Needs::Nothing, kReadRegisters, kExtension, read_tally, nullptr}},
+    // This row is documentation only. The receiver detects a host OK, so no function uses this row.
+    {"host-ok",
+     "host OK: a request to read this register, with quantity 0 or 1, restarts the host watchdog "
+     "and gets no reply; address 0 reaches all modules",
+     "",
+     {modbus::kHostOkRegister, Width::One, Needs::Nothing, 0, kPlain, nullptr, nullptr}},
+};
+
+}  // namespace ex9000::registers
