@@ -70,13 +70,13 @@ class RequestCycle {
   /// Ends the reply. Call this when its last stop bit has been sent and the driver is off. For interrupts.
   void on_reply_sent(Time now) {
     sent_at_.store_in_interrupt(now.microseconds());
-    replies_sent_.store_in_interrupt(replies_sent_.load() + 1U);
+    replies_sent_.store_in_interrupt(replies_.load());
   }
 
  private:
   Phase phase_ = Phase::Idle;
   WrittenByMainLoop<std::uint32_t> replies_;  ///< number of replies that `take_reply` has returned; wraps
-  WrittenByInterrupt<std::uint32_t> replies_sent_;  ///< how many of these have ended
+  WrittenByInterrupt<std::uint32_t> replies_sent_;  ///< the value of `replies_` when a reply ended
   std::uint32_t replies_ended_ = 0;            ///< the value of `replies_sent_` that `poll` has processed
   WrittenByInterrupt<std::uint32_t> sent_at_;  ///< end of the last reply
   Duration gap_;

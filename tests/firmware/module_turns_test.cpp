@@ -1,5 +1,5 @@
-// Tests what a turn (a pass of the main loop) does, when the next turn is due, when the module is at rest, and
-// the command `~**`.
+// Tests what a turn (a pass of the main loop) does, when the next turn is due, when the module is at rest,
+// and the command `~**`.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -59,6 +59,11 @@ TEST(Time, AddsADurationAlsoAcrossTheWrap) {
   EXPECT_EQ((kShortlyBeforeTheWrap + Duration(130)).microseconds(), 30U);
 }
 
+TEST(Time, SubtractsADurationAlsoAcrossTheWrap) {
+  EXPECT_EQ((Time(1000) - Duration(400)).microseconds(), 600U);
+  EXPECT_EQ((Time(49) - Duration(50)).microseconds(), kLast);
+}
+
 TEST(Deadline, IsNeverReachedBeforeItIsSet) {
   const Deadline deadline;
   EXPECT_FALSE(deadline.armed());
@@ -117,6 +122,30 @@ TEST(Deadline, GivesTheRemainingTimeAcrossTheWrap) {
   Deadline deadline;
   deadline.set(Time(50));
   EXPECT_EQ(deadline.remaining(kShortlyBeforeTheWrap).microseconds(), 150U);
+}
+
+TEST(Deadline, AdvancesToAnEarlierDeadlineAlsoAcrossTheWrap) {
+  Deadline deadline;
+  deadline.advance_to(Deadline());
+  EXPECT_FALSE(deadline.armed());
+  for (const auto& [other, expected] : {std::pair{50U, 50U}, {51U, 50U}, {kLast, kLast}, {0U, kLast}}) {
+    deadline.advance_to(Deadline(Time(other)));
+    deadline.advance_to(Deadline());
+    EXPECT_EQ(deadline.remaining(kShortlyBeforeTheWrap).microseconds(),
+              Time(expected).since(kShortlyBeforeTheWrap).microseconds())
+        << other;
+  }
+}
+
+TEST(Deadline, IsDelayedToALaterDeadlineAlsoAcrossTheWrap) {
+  Deadline deadline{Time(kLast)};
+  for (const auto& [other, expected] : {std::pair{kLast - 1U, kLast}, {50U, 50U}, {49U, 50U}}) {
+    deadline.delay_to(Deadline(Time(other)));
+    deadline.delay_to(Deadline());
+    EXPECT_EQ(deadline.remaining(kShortlyBeforeTheWrap).microseconds(),
+              Time(expected).since(kShortlyBeforeTheWrap).microseconds())
+        << other;
+  }
 }
 
 TEST(Deadline, IsNotReachedAfterItIsDisarmed) {

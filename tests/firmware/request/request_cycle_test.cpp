@@ -149,6 +149,12 @@ TEST_F(RequestCycleTest, ACommandClearsTheStatusOfATimeoutThatOccurredBeforeTheC
   EXPECT_FALSE(cycle_.outcome().change().applied_to(state_.settings).timeout_status);
 }
 
+TEST_F(RequestCycleTest, AnEndWithoutAReplyDoesNotBlockTheNextRequest) {
+  end_reply();  // for example, a timer that a reset has not stopped
+  EXPECT_FALSE(cycle_.replying());
+  EXPECT_TRUE(cycle_.free());
+}
+
 // wire.md D18.
 TEST_F(RequestCycleTest, TheNextReplyStartsAfterTheGapThatFollowsThePreviousReply) {
   judge("$01M");
