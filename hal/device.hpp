@@ -11,7 +11,7 @@
 namespace ex9000::hal {
 
 /// A module on a board. The object exists from one reset to the next. The composition file of a board, for
-/// example boards/rp2040/composition.hpp, creates the object, calls `start`, and makes the interrupts call
+/// example boards/rp2040/composition.cpp, creates the object, calls `start`, and makes the interrupts call
 /// the `on_...` functions. Then the main loop repeats two steps: it calls `turn` until `turn` returns false,
 /// and sleeps until `has_work` returns true. Each turn does what is due, once.
 ///

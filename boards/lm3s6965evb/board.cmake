@@ -1,3 +1,5 @@
+set(composition stellaris/composition.cpp)
+
 # The start-up code of the board's processor.
 set(start_up cortex_m/start_up.cpp)
 

@@ -1,3 +1,5 @@
+set(composition rp2040/composition.cpp)
+
 # The start-up code of the board's processor.
 set(start_up rp2040/start_up.cpp rp2040/second_stage.cpp)
 

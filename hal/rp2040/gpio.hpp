@@ -8,13 +8,6 @@
 
 namespace ex9000::hal::rp2040 {
 
-/// A pin. `number` is the number in its name, GPIO0 to GPIO29.
-struct Pin {
-  std::uint8_t number;
-
-  [[nodiscard]] constexpr std::uint32_t mask() const { return 1U << number; }
-};
-
 /// Adjacent pins: `count` pins from `first_pin` on.
 struct PinGroup {
   std::uint8_t first_pin;
@@ -164,6 +157,23 @@ class Gpio {
     bits = (bits | bits >> 6U) & 0x000F'000FU;
     return (bits | bits >> 12U) & 0xFFU;
   }
+};
+
+/// For its functions, see hal/pins/single_pins.hpp.
+struct Pin {
+  std::uint8_t number;  ///< in the name of the pin, GPIO0 to GPIO29
+
+  [[nodiscard]] constexpr std::uint32_t mask() const { return 1U << number; }
+  [[gnu::always_inline]] void make_input(bool pull_up) const { Gpio::make_input(mask(), pull_up); }
+  [[gnu::always_inline]] void make_output(bool level) const { Gpio::make_output(mask(), level ? mask() : 0); }
+  [[gnu::always_inline]] void drive(bool level) const {
+    if (level) {
+      Gpio::set(mask());
+    } else {
+      Gpio::clear(mask());
+    }
+  }
+  [[nodiscard]] bool read() const { return Gpio::read(mask()) != 0; }
 };
 
 }  // namespace ex9000::hal::rp2040

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 
+#include "hal/pins/settle.hpp"
 #include "hal/rp2040/gpio.hpp"
 
 namespace ex9000::hal::rp2040 {
@@ -16,11 +17,13 @@ class InputPins {
   /// Makes the pins inputs. Call this once, at least kPullsSettle before `start`.
   static void make_inputs() { Gpio::make_input(kPins, !active_high); }
 
-  /// Enables edge interrupts and returns the levels; bit n is channel n. Each edge after the read of these
-  /// levels is flagged.
+  /// See hal/inputs.hpp.
   static std::uint16_t start() {
+    if constexpr (!any()) {
+      return 0;
+    }
     Gpio::watch_edges(kPins);
-    const std::uint32_t levels = settle(kPins).levels;
+    const std::uint32_t levels = logic(levels_in(settle(Gpio(), kPins, kPins)));
     unsigned of_channels = 0;
     for (unsigned channel = 0; channel < channels; ++channel) {
       of_channels |= (levels >> kPinOf[channel] & 1U) << channel;
@@ -34,11 +37,12 @@ class InputPins {
   /// the pins.
   template <class Deliver>
   static void take_edges(Deliver deliver) {
-    const Settled settled = settle(Gpio::edges());
+    const Settled settled = settle(Gpio(), kPins, Gpio::edges());
+    const std::uint32_t levels = logic(levels_in(settled));
     for (unsigned channel = 0; channel < channels; ++channel) {
       const std::uint32_t pin = 1U << kPinOf[channel];
-      if ((settled.flagged & pin) != 0) {
-        deliver(channel, (settled.levels & pin) != 0);
+      if ((flagged_in(settled) & pin) != 0) {
+        deliver(channel, (levels & pin) != 0);
       }
     }
   }
@@ -66,24 +70,7 @@ class InputPins {
   }
   static constexpr std::uint32_t kPins = mask();
 
-  struct Settled {
-    std::uint32_t flagged;  ///< bit n is GPIOn
-    std::uint32_t levels;   ///< bit n is GPIOn; 1 = logic 1
-  };
-
-  /// Clears the edge flags of the pins in `flagged`, and then reads the levels. If a new edge is flagged,
-  /// repeats both steps. Without the repetition, an edge between the two steps would count twice: now because
-  /// of its level, and later because of its flag. Returns all flagged pins and the last levels.
-  static Settled settle(std::uint32_t flagged) {
-    Settled settled{0, 0};
-    do {
-      settled.flagged |= flagged;
-      Gpio::clear_edges(flagged);
-      settled.levels = Gpio::read(kPins) ^ (active_high ? 0 : kPins);
-      flagged = Gpio::edges() & kPins;
-    } while (flagged != 0);
-    return settled;
-  }
+  static std::uint32_t logic(std::uint32_t levels) { return active_high ? levels : ~levels; }
 };
 
 }  // namespace ex9000::hal::rp2040

@@ -15,13 +15,6 @@ enum class Family : std::uint8_t {
 
 enum class Port : std::uint8_t { A, B, C, D, E, F, G };
 
-struct Pin {
-  Port port;
-  std::uint8_t number;  ///< 0 to 7
-
-  [[nodiscard]] constexpr std::uint32_t mask() const { return 1U << number; }
-};
-
 /// Adjacent pins of one port, for example the pins of consecutive channels.
 struct PinGroup {
   Port port;
@@ -152,6 +145,20 @@ class Gpio {
   }
 
   std::uint32_t base_;
+};
+
+/// For its functions, see hal/pins/single_pins.hpp.
+struct Pin {
+  Port port;
+  std::uint8_t number;  ///< 0 to 7
+
+  [[nodiscard]] constexpr std::uint32_t mask() const { return 1U << number; }
+  [[gnu::always_inline]] void make_input(bool pull_up) const { Gpio(port).make_input(mask(), pull_up); }
+  [[gnu::always_inline]] void make_output(bool level) const {
+    Gpio(port).make_output(mask(), level ? mask() : 0);
+  }
+  [[gnu::always_inline]] void drive(bool level) const { Gpio(port).write(mask(), level ? mask() : 0); }
+  [[nodiscard]] bool read() const { return Gpio(port).read(mask()) != 0; }
 };
 
 }  // namespace ex9000::hal::stellaris

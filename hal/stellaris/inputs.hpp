@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 
+#include "hal/pins/settle.hpp"
 #include "hal/stellaris/gpio.hpp"
 
 namespace ex9000::hal::stellaris {
@@ -24,9 +25,7 @@ class InputPins {
     }
   }
 
-  /// Enables edge interrupts and returns the levels; bit n is channel n, 1 = logic 1. Each later edge is
-  /// flagged. An edge during the read would count as two edges, so this function reads again until no edge
-  /// occurs during the read.
+  /// See hal/inputs.hpp.
   static std::uint16_t start() {
     unsigned first = 0;
     unsigned levels = 0;
@@ -35,7 +34,7 @@ class InputPins {
         const Gpio gpio(group.port);
         const std::uint32_t pins = group.mask();
         gpio.watch_edges(pins);
-        levels |= ((settle(gpio, pins, pins) >> kLevels & pins) >> group.first_pin) << first;
+        levels |= (logic(levels_in(settle(gpio, pins, pins))) & pins) >> group.first_pin << first;
         first += group.count;
       }
     }
@@ -56,8 +55,7 @@ class InputPins {
 
   /// Calls `deliver(channel, level)` for each channel on `port` that has had an edge. The group of the last
   /// channel may also contain pins without a channel. For an edge of such a pin, `channel` is `channels` or
-  /// greater. The level is read after the flag has been cleared, so that an edge in between is flagged again.
-  /// Call this from the interrupt of the port.
+  /// greater. Call this from the interrupt of the port.
   template <Port port, class Deliver>
   static void take_edges(Deliver deliver) {
     static constexpr std::array<std::uint8_t, 8> kChannels = channels_of(port);
@@ -65,35 +63,18 @@ class InputPins {
   }
 
  private:
-  /// Clears the flags of `flagged` and then reads the levels. Repeats both steps while any of `pins` has a
-  /// new edge, because an edge between the clearing of the flags and the read of the levels would count
-  /// twice: now because of its level, and later because of its flag. Pins that are neither in `pins` nor in
-  /// `flagged` keep their flags. Returns the cleared flags in bits 0 to 7 and the levels of all pins of the
-  /// port in bits 8 to 15; 1 = logic 1.
-  [[gnu::noinline]] static std::uint32_t settle(Gpio gpio, std::uint32_t pins, std::uint32_t flagged) {
-    std::uint32_t cleared = 0;
-    std::uint32_t levels = 0;
-    do {
-      cleared |= flagged;
-      gpio.clear_edges(flagged);
-      levels = logic(gpio.read(kAllPins)) & kAllPins;
-      flagged = gpio.edges() & pins;
-    } while (flagged != 0);
-    return cleared | levels << kLevels;
-  }
-
   template <class Deliver>
   [[gnu::noinline]] static void take_edges(Gpio gpio, const std::uint8_t* channel, Deliver deliver) {
-    const std::uint32_t settled = settle(gpio, kAllPins, gpio.edges());
-    std::uint32_t levels = settled >> kLevels;
-    for (std::uint32_t flagged = settled & kAllPins; flagged != 0; flagged >>= 1U, levels >>= 1U, ++channel) {
+    const Settled settled = settle(gpio, kAllPins, gpio.edges());
+    std::uint32_t levels = logic(levels_in(settled));
+    for (std::uint32_t flagged = flagged_in(settled); flagged != 0;
+         flagged >>= 1U, levels >>= 1U, ++channel) {
       if ((flagged & 1U) != 0) {
         deliver(*channel, (levels & 1U) != 0);
       }
     }
   }
 
-  static constexpr unsigned kLevels = 8;
   static constexpr std::uint32_t kAllPins = 0xFF;
 
   static std::uint32_t logic(std::uint32_t levels) { return active_high ? levels : ~levels; }

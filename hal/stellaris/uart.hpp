@@ -4,22 +4,14 @@
 
 #include <cstdint>
 
+#include "hal/pins/single_pins.hpp"
 #include "hal/pl011/uart.hpp"
-#include "hal/stellaris/gpio.hpp"
 
 namespace ex9000::hal::stellaris {
 
-/// An RS-485 driver that is on while its pin is high.
-template <const Pin& pin>
-class DriverEnablePin {
- public:
-  static void start() { Gpio(pin.port).make_output(pin.mask(), 0); }
-  static void drive(bool on) { Gpio(pin.port).write(pin.mask(), on ? pin.mask() : 0); }
-};
-
 /// `number`: 0 or 1; `clock`: system clock in Hz; `driver_enable`: pin that is high while the module sends;
 /// for `EndTimer`, see pl011::Uart.
-template <unsigned number, std::uint32_t clock, const Pin& driver_enable, class EndTimer>
+template <unsigned number, std::uint32_t clock, const auto& driver_enable, class EndTimer>
 using Uart = pl011::Uart<0x4000'C000U + number * 0x1000U, clock, DriverEnablePin<driver_enable>, EndTimer>;
 
 }  // namespace ex9000::hal::stellaris

@@ -32,7 +32,7 @@ struct Image {
   PinPlace receive;
   PinPlace transmit;
 
-  /// Constructs the image's `device` (boards/stellaris/composition.hpp) again, as after a reset.
+  /// Constructs the image's `device` (boards/stellaris/composition.cpp) again, as after a reset.
   void (*clear)();
   /// Calls the image's `main`, which does not return.
   int (*run)();

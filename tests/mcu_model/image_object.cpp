@@ -1,11 +1,11 @@
 // Source of the shared object for a Stellaris board and a model: the unchanged composition and the
-// description of the image. EX9000_BOARD_HEADER and EX9000_MODEL select the board and the model. The image's
+// description of the image. The include path and EX9000_MODEL select the board and the model. The image's
 // `main` is renamed because the test program has its own.
 #define main main_of_the_image
-#include EX9000_BOARD_HEADER
-#include "boards/stellaris/composition.hpp"
+#include "boards/stellaris/composition.cpp"
 #undef main
 
+#include <array>
 #include <new>
 
 #include "tests/mcu_model/image.hpp"

@@ -48,13 +48,12 @@ class Unit:
     name: str
     sources: tuple
     options: tuple = ("-O0",)
-    more: tuple = ()  # files that a source includes by a macro
 
     @functools.cached_property
     def files(self):
         """Returns all files of the tree that the unit is compiled from."""
         found = set()
-        waiting = [*self.sources, *self.more]
+        waiting = [*self.sources]
         while waiting:
             file = standing_before(waiting.pop(), self.options)
             if file not in found and (ROOT / file).exists():
@@ -84,10 +83,9 @@ class Image:
     @property
     def unit(self):
         options = ("-O1", "-fPIC", "-fvisibility=hidden", "-fvisibility-inlines-hidden", SHADOW)
-        header = f"boards/{self.board}/board.hpp"
-        defined = (f'-DEX9000_MODEL="{self.model}"', f'-DEX9000_BOARD_HEADER="{header}"')
+        of_the_image = (f"-Iboards/{self.board}", f'-DEX9000_MODEL="{self.model}"')
         sources = ("tests/mcu_model/image_object.cpp", *files("firmware/*.cpp"))
-        return Unit(self.name, sources, options + defined, more=(header,))
+        return Unit(self.name, sources, options + of_the_image)
 
     def commands(self, folder, obj, _overlay):
         """Returns the commands that build the image in `folder`. `obj`: the object file of `unit`."""
@@ -109,14 +107,14 @@ class PicoImage:
 
     @property
     def unit(self):
-        options = ("-O1", SHADOW, f'-DEX9000_MODEL="{self.model}"', *self.defined)
-        return Unit(self.name, ("tests/mutation/pico_image.cpp",), options)
+        options = ("-O1", SHADOW, "-Iboards/pico", f'-DEX9000_MODEL="{self.model}"', *self.defined)
+        return Unit(self.name, ("boards/rp2040/composition.cpp",), options)
 
     def commands(self, folder, _obj, overlay):
         place = folder / self.preset
         place.mkdir(exist_ok=True)
         elf = place / f"{self.model}.elf"
-        sources = ["boards/pico/main.cpp", "boards/rp2040/start_up.cpp", "boards/rp2040/second_stage.cpp",
+        sources = ["boards/rp2040/composition.cpp", "boards/rp2040/start_up.cpp", "boards/rp2040/second_stage.cpp",
                    "boards/memory_functions.cpp", *files("firmware/*.cpp")]
         whole = place / f"{self.model}.cpp"
         whole.write_text("".join(f'#include "{each}"\n' for each in sources))
@@ -127,7 +125,7 @@ class PicoImage:
         linked = ["-nostdlib", "-Wl,--gc-sections", "-Wl,-T,boards/pico/image.ld", "-Lboards"]
         search = [f"-I{overlay}"] if overlay else []
         return [
-            ["arm-none-eabi-g++", *options, *search, "-I.", *linked, whole, "-o", elf, "-lgcc"],
+            ["arm-none-eabi-g++", *options, *search, "-I.", "-Iboards/pico", *linked, whole, "-o", elf, "-lgcc"],
             ["toolchain/seal-second-stage", elf],
             ["arm-none-eabi-objcopy", "-O", "binary", elf, place / f"{self.model}.bin"],
         ]
@@ -409,9 +407,11 @@ def areas():
     # boot.hpp runs before the image. After a change there, the image does not start, or no test can detect the change.
     of_the_pico = [file for file in files("hal/rp2040/*.hpp") if file != "hal/rp2040/boot.hpp"]
     # Drivers that run only in the emulator are in the area pico, because each of their mutants takes half a minute.
+    # A header without code, for example hal/outputs.hpp, only describes a driver.
     drivers = [
         file
         for file in files("hal/*.cpp", "hal/*.hpp")
+        if "namespace" in (ROOT / file).read_text(encoding="utf-8")
         if not file.startswith("hal/rp2040/") or any(file in unit.files for each in hal for unit in each.tests)
     ]
     of_drivers = [hal, interleaved, sim, [players()], image_programs()]

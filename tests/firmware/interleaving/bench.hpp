@@ -8,6 +8,7 @@
 
 #include "firmware/settings/places.hpp"
 #include "hal/device.hpp"
+#include "hal/stellaris/gpio.hpp"
 #include "hal/stellaris/uart.hpp"
 #include "hal/tick.hpp"
 #include "tests/support/interleaving/chip.hpp"

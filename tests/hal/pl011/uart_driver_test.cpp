@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "firmware/model/baud.hpp"
+#include "hal/stellaris/gpio.hpp"
 #include "hal/stellaris/one_shot_timer.hpp"
 #include "hal/stellaris/uart.hpp"
 #include "tests/mcu_model/driver_bench.hpp"

@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
+#include "hal/pins/single_pins.hpp"
 #include "hal/stellaris/inputs.hpp"
 #include "hal/stellaris/outputs.hpp"
-#include "hal/stellaris/switches.hpp"
 #include "tests/mcu_model/driver_bench.hpp"
 
 namespace ex9000::registers {
@@ -204,7 +204,7 @@ constexpr hal::stellaris::Pin kLed{Port::F, 0};
 
 TEST(Switches, InitIsAssertedByALowPinAndReleasedByAnOpenPin) {
   DriverBench bench;
-  using Init = hal::stellaris::InitPin<kInit>;
+  using Init = hal::InitPin<kInit>;
   bench.pins.at('A', 6).drive(End::Board, Drive::High);
   Init::start();
   EXPECT_FALSE(Init::asserted());
@@ -216,7 +216,7 @@ TEST(Switches, InitIsAssertedByALowPinAndReleasedByAnOpenPin) {
 
 TEST(Switches, TheLedIsOffAfterStartAndCanBeSwitchedOnAndOff) {
   DriverBench bench;
-  using Led = hal::stellaris::LedPin<kLed>;
+  using Led = hal::LedPin<kLed>;
   Led::start();
   const Net& net = bench.pins.at('F', 0);
   EXPECT_EQ(net.driven_by(End::Microcontroller), Drive::Low);

@@ -6,12 +6,12 @@
 #include "boards/cortex_m/start_up.hpp"
 #include "boards/pico/board.hpp"
 #include "hal/cortex_m/interrupts.hpp"
+#include "hal/pins/single_pins.hpp"
 #include "hal/pl011/uart.hpp"
 #include "hal/rp2040/clocks.hpp"
 #include "hal/rp2040/flash.hpp"
 #include "hal/rp2040/interrupts.hpp"
 #include "hal/rp2040/resets.hpp"
-#include "hal/rp2040/switches.hpp"
 #include "hal/rp2040/timer.hpp"
 #include "hal/rp2040/watchdog.hpp"
 
@@ -27,7 +27,7 @@ constexpr std::uint32_t kOtherSector = kSector + hal::kFlashSector;
 constexpr std::size_t kRecord = 32;
 
 using LineEndTimer = OneShotTimer<1>;
-using Line = hal::pl011::Uart<0x4003'4000, kHertz, DriverEnablePin<kDriverEnable>, LineEndTimer>;
+using Line = hal::pl011::Uart<0x4003'4000, kHertz, hal::DriverEnablePin<kDriverEnable>, LineEndTimer>;
 using Watchdog = HardwareWatchdog<kClock.crystal / 1'000'000>;
 
 /// tests/boards/pico_flash_test.cpp reads these words. They are in a bank of RAM that contains no variables

@@ -1,33 +1,27 @@
-// Defines the drivers, the module, the vector table and `main` of an image for a board of the Stellaris
-// family (LM3S and TM4C). This file connects the drivers to the pins that `board.hpp` defines, the module to
-// the drivers, and the interrupts to their handlers. It defines `main`, so only one source file of a program
-// may include it.
-#pragma once
-
-#include <array>
+// The composition of an image for a board of the Stellaris family (LM3S and TM4C): connects the drivers to
+// the pins of the board, the module to the drivers, and the interrupts to their handlers. The folder of the
+// board is in the include path.
 #include <cstdint>
 
+#include "board.hpp"
 #include "boards/cortex_m/start_up.hpp"
-#include "boards/handlers.hpp"
 #include "boards/image.hpp"
+#include "boards/runtime.hpp"
 #include "firmware/model/built.hpp"
 #include "hal/at24c/at24c.hpp"
 #include "hal/cortex_m/interrupts.hpp"
 #include "hal/cortex_m/system_timer.hpp"
 #include "hal/device.hpp"
-#include "hal/inputs.hpp"
-#include "hal/pause.hpp"
+#include "hal/pins/single_pins.hpp"
 #include "hal/stellaris/i2c.hpp"
 #include "hal/stellaris/inputs.hpp"
 #include "hal/stellaris/interrupts.hpp"
 #include "hal/stellaris/one_shot_timer.hpp"
 #include "hal/stellaris/outputs.hpp"
-#include "hal/stellaris/switches.hpp"
 #include "hal/stellaris/system_control.hpp"
 #include "hal/stellaris/uart.hpp"
 #include "hal/stellaris/watchdog.hpp"
 
-// NOLINTBEGIN(cert-dcl59-cpp,google-build-namespaces,misc-definitions-in-headers): included once
 namespace ex9000::board {
 namespace {
 
@@ -54,14 +48,14 @@ struct Board {
   InputPins<kInputs, kOnlyModel.inputs, kInputsActiveHigh> inputs;
   OutputPins<kOutputs, kOnlyModel.outputs, kOutputsActiveHigh> outputs;
   Eeprom memory;
-  InitPin<kInitSwitch> init_switch;
-  LedPin<kStatusLed> status_led;
+  hal::InitPin<kInitSwitch> init_switch;
+  hal::LedPin<kStatusLed> status_led;
   Watchdog watchdog;
 };
 
 hal::Device<Board> device(kOnlyModel);
 Board& board = device.board();
-using Handle = Handlers<device, SilenceTimer, LineEndTimer, WakeTimer>;
+using Run = Runtime<device, Clock, SilenceTimer, LineEndTimer, WakeTimer>;
 
 // --- interrupts; all have the same preemption priority, so an interrupt never interrupts another one ---
 
@@ -99,10 +93,10 @@ constexpr start_up::Served served(Interrupt number, start_up::Handler handler) {
   return {static_cast<unsigned>(number), handler};
 }
 constexpr start_up::Served kServed[] = {
-    served(kLineInterrupt, Handle::on_line),
-    served(Interrupt::Timer0A, Handle::on_silence_timer),
-    served(Interrupt::Timer1A, Handle::on_line_end_timer),
-    served(Interrupt::Timer2A, Handle::on_wake_timer),
+    served(kLineInterrupt, Run::on_line),
+    served(Interrupt::Timer0A, Run::on_silence_timer),
+    served(Interrupt::Timer1A, Run::on_line_end_timer),
+    served(Interrupt::Timer2A, Run::on_wake_timer),
     served(Interrupt::GpioA, handler_of_edges<Port::A>()),
     served(Interrupt::GpioB, handler_of_edges<Port::B>()),
     served(Interrupt::GpioC, handler_of_edges<Port::C>()),
@@ -141,27 +135,16 @@ constexpr ClockGates kClockGates{
     ports_of_the_module(),
 };
 
-/// Starts the drivers and the module, and then enables the interrupts of `kServed`. The watchdog is the first
-/// driver to start, so that it can reset the MCU if a later step hangs. The outputs are the second, because
-/// their pins float until they start.
+/// For the order, see Runtime.
 void start() {
   SystemControl::open(kClockGates);
   Watchdog::start();
   const ResetReason reason = SystemControl::take_reset_reason();
-  board.outputs.start();
-  board.line.start();
-  board.init_switch.start();
-  board.status_led.start();
-  board.inputs.make_inputs();
+  Run::start_pins();
   SystemControl::use(kClock);
   Gpio(kUartPins.port).make_peripheral<kFamily, kUartPins.mask(), kUartFunction>();
   board.memory.master().start();
-  SilenceTimer::start();
-  LineEndTimer::start();
-  WakeTimer::start();
-  board.clock.start();
-  hal::pause(board.clock, hal::kPullsSettle);
-  device.start(reason);
+  Run::start_module(reason);
   Interrupts::enable(start_up::numbers_of(kServed), static_cast<std::uint32_t>(kLineInterrupt));
 }
 
@@ -171,6 +154,5 @@ void start() {
 int main() {
   using namespace ex9000::board;
   start();
-  Handle::run_main_loop();
+  Run::run_main_loop();
 }
-// NOLINTEND(cert-dcl59-cpp,google-build-namespaces,misc-definitions-in-headers)

@@ -1,23 +1,20 @@
-// Defines the drivers, the module, the vector table and `main` of an image for a board with an RP2040. This
-// file connects the drivers to the pins that `board.hpp` defines, the module to the drivers, and the
-// interrupts to their handlers. It defines `main`, so only one source file of a program may include it.
-#pragma once
-
-#include <array>
+// The composition of an image for a board with an RP2040: connects the drivers to the pins of the board, the
+// module to the drivers, and the interrupts to their handlers. The folder of the board is in the include
+// path.
 #include <cstdint>
 
+#include "board.hpp"
 #include "boards/cortex_m/start_up.hpp"
-#include "boards/handlers.hpp"
 #include "boards/image.hpp"
 #include "boards/rp2040/memory.hpp"
+#include "boards/runtime.hpp"
 #include "firmware/model/built.hpp"
 #include "hal/at24c/at24c.hpp"
 #include "hal/cortex_m/interrupts.hpp"
 #include "hal/cortex_m/system_tick.hpp"
 #include "hal/device.hpp"
 #include "hal/flash/page_store.hpp"
-#include "hal/inputs.hpp"
-#include "hal/pause.hpp"
+#include "hal/pins/single_pins.hpp"
 #include "hal/pl011/uart.hpp"
 #include "hal/rp2040/clocks.hpp"
 #include "hal/rp2040/flash.hpp"
@@ -26,11 +23,9 @@
 #include "hal/rp2040/interrupts.hpp"
 #include "hal/rp2040/outputs.hpp"
 #include "hal/rp2040/resets.hpp"
-#include "hal/rp2040/switches.hpp"
 #include "hal/rp2040/timer.hpp"
 #include "hal/rp2040/watchdog.hpp"
 
-// NOLINTBEGIN(cert-dcl59-cpp,google-build-namespaces,misc-definitions-in-headers): included once
 namespace ex9000::board {
 namespace {
 
@@ -45,7 +40,7 @@ using Tick = SystemTick<kHertz / kMegahertz>;
 using SilenceTimer = OneShotTimer<0>;
 using LineEndTimer = OneShotTimer<1>;
 using WakeTimer = OneShotTimer<2>;
-using Line = hal::pl011::Uart<kUart0, kHertz, DriverEnablePin<kDriverEnable>, LineEndTimer>;
+using Line = hal::pl011::Uart<kUart0, kHertz, hal::DriverEnablePin<kDriverEnable>, LineEndTimer>;
 using Watchdog = HardwareWatchdog<kClock.crystal / kMegahertz>;
 
 /// The memory that stores the settings: its driver, the blocks to release from reset for the driver, whether
@@ -79,14 +74,14 @@ struct Board {
   InputPins<kInputs, kOnlyModel.inputs, kInputsActiveHigh> inputs;
   OutputPins<kOutputs, kOnlyModel.outputs, kOutputsActiveHigh> outputs;
   Settings::Driver memory;
-  InitPin<kInitSwitch> init_switch;
-  LedPin<kStatusLed> status_led;
+  hal::InitPin<kInitSwitch> init_switch;
+  hal::LedPin<kStatusLed> status_led;
   Watchdog watchdog;
 };
 
 hal::Device<Board> device(kOnlyModel);
 Board& board = device.board();
-using Handle = Handlers<device, SilenceTimer, LineEndTimer, WakeTimer>;
+using Run = Runtime<device, Tick, SilenceTimer, LineEndTimer, WakeTimer>;
 
 // --- interrupts; all have the same priority, so an interrupt never interrupts another one ---
 
@@ -105,11 +100,11 @@ constexpr start_up::Served served(Interrupt number, start_up::Handler handler) {
   return {static_cast<unsigned>(number), handler};
 }
 constexpr start_up::Served kServed[] = {
-    served(Interrupt::Timer0, Handle::on_silence_timer),
-    served(Interrupt::Timer1, Handle::on_line_end_timer),
-    served(Interrupt::Timer2, Handle::on_wake_timer),
+    served(Interrupt::Timer0, Run::on_silence_timer),
+    served(Interrupt::Timer1, Run::on_line_end_timer),
+    served(Interrupt::Timer2, Run::on_wake_timer),
     served(Interrupt::Pins, decltype(board.inputs)::any() ? on_edges : nullptr),
-    served(Interrupt::Uart0, Handle::on_line),
+    served(Interrupt::Uart0, Run::on_line),
     served(Interrupt::I2c0, Settings::kHasInterrupt ? on_memory : nullptr),
 };
 
@@ -117,29 +112,18 @@ constexpr unsigned kInterrupts = 26;
 __attribute__((section(".vectors"), used)) constexpr auto kVectors =
     start_up::vectors<kInterrupts>(on_system_tick, kServed);
 
-/// Starts the drivers and the module, and then enables the interrupts of `kServed`. The watchdog is the first
-/// driver to start, so that it can reset the MCU if a later step hangs. The outputs are the second, because
-/// their pins drive nothing until the outputs start.
+/// For the order, see Runtime.
 void start() {
   const ResetReason reason = Watchdog::reset_reason();
   Watchdog::start();
   Resets::restart_second_core();
   Resets::restart(Block::Pins | Block::Pads | Block::Timer);
-  board.outputs.start();
-  board.line.start();
-  board.init_switch.start();
-  board.status_led.start();
-  board.inputs.make_inputs();
+  Run::start_pins();
   Clocks::use<kClock>();
   Resets::restart(Settings::kBlocks | Block::Uart0);  // a UART without a clock would stay in reset
   Gpio::make_peripheral(kUartPins.mask(), Function::Uart);
   Settings::start(board.memory);
-  SilenceTimer::start();
-  LineEndTimer::start();
-  WakeTimer::start();
-  Tick::start();
-  hal::pause(board.clock, hal::kPullsSettle);
-  device.start(reason);
+  Run::start_module(reason);
   Interrupts::enable(start_up::numbers_of(kServed));
 }
 
@@ -149,6 +133,5 @@ void start() {
 int main() {
   using namespace ex9000::board;
   start();
-  Handle::run_main_loop();
+  Run::run_main_loop();
 }
-// NOLINTEND(cert-dcl59-cpp,google-build-namespaces,misc-definitions-in-headers)

@@ -1,3 +1,0 @@
-#include "boards/lm3s6965evb/board.hpp"
-// composition.hpp must follow board.hpp. All boards with a Stellaris or TM4C123 use the same composition.hpp.
-#include "boards/stellaris/composition.hpp"
