@@ -10,7 +10,7 @@
 namespace ex9000::hal {
 
 /// A transfer to or from a device: START, address, bytes in one direction, STOP. A driver of a master has the
-/// following functions. They are for the main loop only and do not block.
+/// following functions. Except `on_interrupt`, they are for the main loop only and do not block.
 ///
 ///     void begin(const I2cTransfer&, Time now)
 ///         Begins a transfer. Call this only while not `busy()`. The transfer must stay valid while `busy()`.
@@ -23,6 +23,11 @@ namespace ex9000::hal {
 ///         Returns whether a transfer is running.
 ///     I2cResult result() const
 ///         Returns the result of the last transfer. Call this only while not `busy()`.
+///     void start()
+///         Begins the recovery of the bus (hal/i2c_bus_recovery.hpp). Once, before the other functions.
+///         Transfers wait until the recovery has ended.
+///     void on_interrupt()
+///         For the interrupt of the master, which then calls `Device::on_memory`.
 struct I2cTransfer {
   std::uint8_t device = 0;   ///< address of the device, 7 bits
   Bytes header;              ///< bytes to write first; if empty, the transfer reads

@@ -4,4 +4,9 @@
 //     bool asserted() const
 //         Returns whether INIT* is connected to GND now. The value is not debounced. For the main loop; does
 //         not block.
+//
+// On a board, also:
+//
+//     void start()
+//         Makes the pin an input. Once, before `asserted`.
 #pragma once

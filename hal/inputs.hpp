@@ -5,6 +5,12 @@
 //     std::uint16_t start()
 //         Starts to report edges, and returns the levels before the first reported edge: bit n is channel n,
 //         1 = logic 1 (+4 to +30 V). For the main loop, once after reset; does not block.
+//
+// On a board, also:
+//
+//     void make_inputs()
+//         Makes the pins inputs. Their weak pulls give an open input the level of logic 0. Once, at least
+//         `kPullsSettle` before `start`.
 #pragma once
 
 #include "firmware/time.hpp"

@@ -7,4 +7,9 @@
 //         during the call, all changes occur within a few tens of clock cycles of the processor. The channels
 //         that do not change have no glitch. The main loop calls this at each change and at least at every
 //         tick. This does not block.
+//
+// On a board, also:
+//
+//     void start()
+//         Makes the pins outputs, with all channels de-energised and without a glitch. Once, before `drive`.
 #pragma once

@@ -20,4 +20,17 @@
 //         valid while `sending()`.
 //     bool sending() const
 //         Returns whether the driver is on. For interrupts and the main loop.
+//
+// On a board, also:
+//
+//     void start()
+//         Turns the driver off. Once, before `open`.
+//     void on_interrupt(Deliver deliver)
+//         Calls `deliver(byte, status)` for a received byte, or continues to send. For the interrupt of the
+//         UART.
+//     bool on_end_timer()
+//         Turns the driver off if the last stop bit has left the shift register, and returns whether it has.
+//         Else restarts the end timer, a one-shot timer that belongs to the line. For the interrupt of this
+//         timer. A UART with an interrupt at the end of a transmission needs neither this function nor the
+//         timer: the handler of that interrupt turns the driver off and calls `Device::on_sent`.
 #pragma once

@@ -3,6 +3,11 @@
 //     void feed()
 //         Restarts the watchdog's countdown, which takes at most `kWatchdogPeriod`. For the main loop; does
 //         not block.
+//
+// On a board, also:
+//
+//     void start()
+//         Starts the countdown. Once after reset, before the other drivers start.
 #pragma once
 
 #include "firmware/time.hpp"

@@ -14,22 +14,24 @@ namespace ex9000::hal::rp2040 {
 template <const auto& groups, unsigned channels, bool active_high>
 class InputPins {
  public:
-  /// Makes the pins inputs. Call this once, at least kPullsSettle before `start`.
+  // --- the functions of hal/inputs.hpp ---
+
   static void make_inputs() { Gpio::make_input(kPins, !active_high); }
 
-  /// See hal/inputs.hpp.
   static std::uint16_t start() {
     if constexpr (!any()) {
       return 0;
     }
     Gpio::watch_edges(kPins);
-    const std::uint32_t levels = logic(levels_in(settle(Gpio(), kPins, kPins)));
+    const std::uint32_t levels = levels_in(settle(Gpio(), kPins, kPins)) ^ (active_high ? 0 : kPins);
     unsigned of_channels = 0;
     for (unsigned channel = 0; channel < channels; ++channel) {
       of_channels |= (levels >> kPinOf[channel] & 1U) << channel;
     }
     return static_cast<std::uint16_t>(of_channels);
   }
+
+  // --- for the composition ---
 
   static constexpr bool any() { return channels != 0; }
 
@@ -38,11 +40,10 @@ class InputPins {
   template <class Deliver>
   static void take_edges(Deliver deliver) {
     const Settled settled = settle(Gpio(), kPins, Gpio::edges());
-    const std::uint32_t levels = logic(levels_in(settled));
     for (unsigned channel = 0; channel < channels; ++channel) {
       const std::uint32_t pin = 1U << kPinOf[channel];
       if ((flagged_in(settled) & pin) != 0) {
-        deliver(channel, (levels & pin) != 0);
+        deliver(channel, ((levels_in(settled) & pin) != 0) == active_high);
       }
     }
   }
@@ -69,8 +70,6 @@ class InputPins {
     return result;
   }
   static constexpr std::uint32_t kPins = mask();
-
-  static std::uint32_t logic(std::uint32_t levels) { return active_high ? levels : ~levels; }
 };
 
 }  // namespace ex9000::hal::rp2040

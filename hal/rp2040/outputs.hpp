@@ -12,7 +12,6 @@ namespace ex9000::hal::rp2040 {
 template <const auto& groups, unsigned channels, bool active_high>
 class OutputPins {
  public:
-  /// Makes the pins outputs, with all channels de-energised. Call this once, before `drive`.
   static void start() { Gpio::make_output(kPins, levels(0)); }
 
   /// Writes one register, so that all channels change at the same time.

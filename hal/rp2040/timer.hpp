@@ -21,11 +21,10 @@ class Clock {
   static constexpr Register<Microseconds> kTime{0x4005'4028};
 };
 
-/// `number`: the number of the alarm, 0 to 3. For `restart`, see hal/one_shot_timer.hpp.
+/// `number`: the number of the alarm, 0 to 3.
 template <unsigned number>
 class OneShotTimer {
  public:
-  /// Enables the interrupt of the timer. Call this once, before `restart`.
   static void start() { kEnable.set(Bits<Enable>(kThis)); }
 
   static void restart(Duration after) {
@@ -44,9 +43,6 @@ class OneShotTimer {
     }
   }
 
-  /// Returns whether the timer has expired, and clears its flag. The interrupt of the timer must call this
-  /// first, and must do nothing else if the result is false. The result is false if the timer was restarted
-  /// while the interrupt was pending, and the timer has not expired again.
   static bool take_expiry() {
     if (!kStatus.read().has(Bits<Status>(kThis))) {
       return false;

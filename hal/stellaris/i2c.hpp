@@ -18,7 +18,6 @@ namespace ex9000::hal::stellaris {
 template <Family family, std::uint32_t clock>
 class I2c {
  public:
-  /// Begins the recovery of the bus. Call this once. Transfers wait until the recovery has ended.
   void start() { begin_freeing(); }
 
   void begin(const I2cTransfer& transfer, Time now) {

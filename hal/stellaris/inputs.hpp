@@ -14,7 +14,8 @@ namespace ex9000::hal::stellaris {
 template <const auto& groups, unsigned channels, bool active_high>
 class InputPins {
  public:
-  /// Makes the pins inputs. Call this once, at least `kPullsSettle` before `start`.
+  // --- the functions of hal/inputs.hpp ---
+
   static void make_inputs() {
     unsigned first = 0;
     for (const PinGroup& group : groups) {
@@ -25,7 +26,6 @@ class InputPins {
     }
   }
 
-  /// See hal/inputs.hpp.
   static std::uint16_t start() {
     unsigned first = 0;
     unsigned levels = 0;
@@ -40,6 +40,8 @@ class InputPins {
     }
     return static_cast<std::uint16_t>(levels & ((1U << channels) - 1U));
   }
+
+  // --- for the composition ---
 
   /// Returns whether `port` has a channel.
   static constexpr bool on(Port port) {

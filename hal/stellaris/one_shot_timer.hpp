@@ -13,8 +13,7 @@ namespace ex9000::hal::stellaris {
 template <unsigned number, std::uint32_t cycles_per_microsecond>
 class OneShotTimer {
  public:
-  /// Makes the timer a one-shot timer and enables its interrupt. Call this once, before `restart`. After
-  /// reset, the timer is stopped and 32 bits wide.
+  /// After reset, the timer is stopped and 32 bits wide.
   static void start() {
     constexpr Bits<Mode> kOneShot(0x1);
     kMode.write(kOneShot);
@@ -28,9 +27,6 @@ class OneShotTimer {
     kControl.write(kEnable);
   }
 
-  /// Returns whether the timer has expired since the last `restart`, and clears the flag of the expiry. The
-  /// timer's interrupt must call this first, because `restart` may have been called while the interrupt was
-  /// pending.
   static bool take_expiry() {
     if (!kMaskedInterrupts.read().has(kHasTimedOut)) {
       return false;

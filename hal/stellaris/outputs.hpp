@@ -14,7 +14,6 @@ namespace ex9000::hal::stellaris {
 template <const auto& groups, unsigned channels, bool active_high>
 class OutputPins {
  public:
-  /// Makes the pins outputs, with all channels de-energised. Call this once, before `drive`.
   static void start() {
     each_group(0, [](const Gpio& gpio, std::uint32_t pins, std::uint32_t levels) {
       gpio.make_output(pins, levels);
