@@ -43,27 +43,24 @@ using WakeTimer = OneShotTimer<2>;
 using Line = hal::pl011::Uart<kUart0, kHertz, hal::DriverEnablePin<kDriverEnable>, LineEndTimer>;
 using Watchdog = HardwareWatchdog<kClock.crystal / kMegahertz>;
 
-/// The memory that stores the settings: its driver, the blocks to release from reset for the driver, whether
-/// it has an interrupt, and the functions that start the driver and handle the interrupt.
+/// The memory that stores the settings: its driver, and the functions that start the driver and handle its
+/// interrupt.
 template <Memory memory>
 struct MemoryOnBoard;
 template <>
 struct MemoryOnBoard<Memory::Flash> {
   using Driver = hal::flash::PageStore<Flash, kSettingsInFlash>;
-  static constexpr std::uint32_t kBlocks = 0;
-  static constexpr bool kHasInterrupt = false;
   static void start(Driver& driver) { driver.flash().start(); }
   static void on_interrupt(Driver& /*driver*/) {}
 };
 template <>
 struct MemoryOnBoard<Memory::Eeprom> {
   using Driver = hal::At24c<I2c<kI2cPins, kHertz>>;
-  static constexpr std::uint32_t kBlocks = static_cast<std::uint32_t>(Block::I2c0);
-  static constexpr bool kHasInterrupt = true;
   static void start(Driver& driver) { driver.master().start(); }
   static void on_interrupt(Driver& driver) { driver.master().on_interrupt(); }
 };
 using Settings = MemoryOnBoard<kMemory>;
+constexpr bool kUsesI2c = kMemory == Memory::Eeprom;
 
 /// See hal::Device.
 struct Board {
@@ -105,7 +102,7 @@ constexpr start_up::Served kServed[] = {
     served(Interrupt::Timer2, Run::on_wake_timer),
     served(Interrupt::Pins, decltype(board.inputs)::any() ? on_edges : nullptr),
     served(Interrupt::Uart0, Run::on_line),
-    served(Interrupt::I2c0, Settings::kHasInterrupt ? on_memory : nullptr),
+    served(Interrupt::I2c0, kUsesI2c ? on_memory : nullptr),
 };
 
 constexpr unsigned kInterrupts = 26;
@@ -120,7 +117,8 @@ void start() {
   Resets::restart(Block::Pins | Block::Pads | Block::Timer);
   Run::start_pins();
   Clocks::use<kClock>();
-  Resets::restart(Settings::kBlocks | Block::Uart0);  // a UART without a clock would stay in reset
+  // This follows the clocks, because a UART without a clock would stay in reset.
+  Resets::restart(kUsesI2c ? Block::Uart0 | Block::I2c0 : 0U | Block::Uart0);
   Gpio::make_peripheral(kUartPins.mask(), Function::Uart);
   Settings::start(board.memory);
   Run::start_module(reason);
