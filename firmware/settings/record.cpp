@@ -15,9 +15,8 @@ constexpr std::size_t kRoomForSettings = kRecordRoom - kSettingsAt - kCheckSize;
 
 constexpr std::size_t known_settings_size() {
   std::size_t size = 0;
-#define EX9000_ADD_SIZE(type, name, factory_value, possible) size += sizeof(type);
-  EX9000_SETTINGS(EX9000_ADD_SIZE)
-#undef EX9000_ADD_SIZE
+  const Settings settings;
+  visit([&size](const auto& setting) { size += sizeof setting; }, settings);
   return size;
 }
 constexpr std::size_t kKnownSettings = known_settings_size();
@@ -121,13 +120,13 @@ std::size_t required_size(const Model& model, const Settings& settings) {
   const Settings factory = Settings::factory(model);
   std::size_t size = 0;
   std::size_t required = kFirstSettings;
-#define EX9000_MEASURE(type, name, factory_value, possible)  \
-  size += sizeof(type);                                      \
-  if (size > required && !(settings.name == factory.name)) { \
-    required = size;                                         \
-  }
-  EX9000_SETTINGS(EX9000_MEASURE)
-#undef EX9000_MEASURE
+  const auto measure = [&](const auto& setting, const auto& of_factory) {
+    size += sizeof setting;
+    if (size > required && !(setting == of_factory)) {
+      required = size;
+    }
+  };
+  visit(measure, settings, factory);
   return required;
 }
 
@@ -151,9 +150,7 @@ void write_record(const Model& model, const Settings& settings, std::uint16_t se
   }
   Encoder(&record[kSequenceAt]).put(sequence);
   Encoder encoder(&record[kSettingsAt]);
-#define EX9000_ENCODE(type, name, factory_value, possible) encoder.put(settings.name);
-  EX9000_SETTINGS(EX9000_ENCODE)
-#undef EX9000_ENCODE
+  visit([&encoder](const auto& setting) { encoder.put(setting); }, settings);
   const std::size_t check_at = kSettingsAt + record[kLengthAt];
   Encoder(&record[check_at]).put(settings_check(model, {record.data(), check_at}));
 }
@@ -175,9 +172,7 @@ std::optional<StoredSettings> read_record(const Model& model, Bytes record) {
   }
   StoredSettings stored{Settings::factory(model), record.low_byte_first_16(kSequenceAt)};
   Decoder decoder(checked.from(kSettingsAt));
-#define EX9000_DECODE(type, name, factory_value, possible) decoder.take(stored.settings.name);
-  EX9000_SETTINGS(EX9000_DECODE)
-#undef EX9000_DECODE
+  visit([&decoder](auto& setting) { decoder.take(setting); }, stored.settings);
   const bool good = decoder.valid() && stored.settings.possible_for(model);
   return good ? std::optional(stored) : std::nullopt;
 }

@@ -36,7 +36,7 @@ constexpr std::size_t kRecordRoom = 128;
 ///     0           layout, 1
 ///     1           length n of the settings in bytes, 0 to 120
 ///     2-3         sequence, low byte first
-///     4 to 3 + n  the settings in the order of EX9000_SETTINGS, without gaps: numbers with the low
+///     4 to 3 + n  the settings in the order of `visit`, without gaps: numbers with the low
 ///                 byte first, flags and the protocol as 0 or 1, the name as seven characters,
 ///                 padded with 0, and its length
 ///     then        CRC-32 over the model's designation and all bytes before it, low byte first

@@ -1,6 +1,5 @@
 #include "firmware/settings/settings.hpp"
 
-// NOLINTBEGIN(bugprone-macro-parentheses): the arguments are types and names
 namespace ex9000 {
 
 bool Name::is_possible(unsigned longest) const {
@@ -26,46 +25,39 @@ bool InputFilters::are_possible(unsigned channels) const {
   return true;
 }
 
-Settings Settings::factory([[maybe_unused]] const Model& model) {
+Settings Settings::factory(const Model& model) {
   Settings settings;
-#define EX9000_TAKE_FACTORY_VALUE(type, name, factory_value, possible) settings.name = factory_value;
-  EX9000_SETTINGS(EX9000_TAKE_FACTORY_VALUE)
-#undef EX9000_TAKE_FACTORY_VALUE
+  settings.address = kFactoryAddress;
+  settings.baud_code = kFactoryBaudCode;
+  settings.protocol = model.speaks_modbus() ? Protocol::ModbusRtu : Protocol::Ascii;
+  settings.watchdog_timeout = kFactoryWatchdogTimeout;
+  settings.name = Name(model.factory_name);
   return settings;
 }
 
 bool Settings::possible_for(const Model& model) const {
-  const bool address_fits = protocol == Protocol::Ascii || is_modbus_address(address);
+  const bool protocol_fits =
+      protocol == Protocol::Ascii ||
+      (protocol == Protocol::ModbusRtu && model.speaks_modbus() && is_modbus_address(address));
   const bool watchdog_fits = !watchdog_enabled || watchdog_timeout != 0;
-  bool each_is_possible = true;
-#define EX9000_JUDGE(type, name, factory_value, possible) \
-  {                                                       \
-    [[maybe_unused]] const type& value = this->name;      \
-    each_is_possible = each_is_possible && (possible);    \
-  }
-  EX9000_SETTINGS(EX9000_JUDGE)
-#undef EX9000_JUDGE
-  return each_is_possible && address_fits && watchdog_fits;
+  const bool outputs_fit = ((power_on_value | safe_value) & ~model.output_mask()) == 0;
+  const bool inputs_fit =
+      (inverted_inputs & ~model.input_mask()) == 0 && input_filters.are_possible(model.inputs);
+  return is_baud_code(baud_code) && (format & ~kFormatMask) == 0 && protocol_fits && watchdog_fits &&
+         name.is_possible(model.longest_name) && outputs_fit && inputs_fit &&
+         response_delay <= kLongestResponseDelay;
 }
 
 bool operator==(const Settings& a, const Settings& b) {
   bool same = true;
-#define EX9000_COMPARE(type, name, factory_value, possible) same = same && a.name == b.name;
-  EX9000_SETTINGS(EX9000_COMPARE)
-#undef EX9000_COMPARE
+  visit([&same](const auto& of_a, const auto& of_b) { same = same && of_a == of_b; }, a, b);
   return same;
 }
 
 Settings SettingsChange::applied_to(const Settings& settings) const {
   Settings changed = settings;
-#define EX9000_APPLY(type, name, factory_value, possible) \
-  if (name) {                                             \
-    changed.name = *name;                                 \
-  }
-  EX9000_SETTINGS(EX9000_APPLY)
-#undef EX9000_APPLY
+  visit([](auto& value, const auto& change) { value = change.value_or(value); }, changed, *this);
   return changed;
 }
 
 }  // namespace ex9000
-// NOLINTEND(bugprone-macro-parentheses)

@@ -96,50 +96,51 @@ constexpr std::uint8_t kLongestResponseDelay = 30;  // in ms
 constexpr std::uint8_t kFactoryAddress = 1;
 constexpr std::uint8_t kFactoryWatchdogTimeout = 0xFF;
 
-/// Lists each setting once: SETTING(type, name, factory value, whether `value` is possible). The last two
-/// arguments may use `model`, and the last one may use `value`. This list defines the members of Settings and
-/// of SettingsChange and the layout of a record (record.hpp), in the same order. Append new settings. Never
-/// remove or move a setting or change its type, because the memories of existing modules contain records in
-/// this layout. Never change the factory value of a setting after `safe_value`, because a record may omit
-/// such a setting if it has its factory value.
-///
-///     address           the module's address
-///     baud_code         CC (model/baud.hpp)
-///     format            FF: kFormatRisingEdge, kFormatChecksum
-///     protocol          protocol from the next reset on
-///     watchdog_timeout  timeout of the host watchdog, VV, in units of 0.1 s
-///     watchdog_enabled  the host watchdog is running
-///     timeout_status    the host watchdog has expired, and no command has cleared this status since
-///     name              the module's name
-///     power_on_value    outputs from reset on if the timeout status is clear; bit n is output channel n
-///     safe_value        outputs while the timeout status is set
-///     input_filters     register 0x0240 + n: filter time of input channel n in ms
-///     inverted_inputs   register 0x0250; bit n is input channel n
-///     fed_by_requests   register 0x0251: every request for this module restarts the host watchdog
-///     response_delay    register 0x0252, in ms
-#define EX9000_SETTINGS(SETTING)                                                               \
-  SETTING(std::uint8_t, address, kFactoryAddress, true)                                        \
-  SETTING(std::uint8_t, baud_code, kFactoryBaudCode, is_baud_code(value))                      \
-  SETTING(std::uint8_t, format, 0, (value & ~kFormatMask) == 0)                                \
-  SETTING(Protocol, protocol, model.speaks_modbus() ? Protocol::ModbusRtu : Protocol::Ascii,   \
-          value == Protocol::Ascii || (value == Protocol::ModbusRtu && model.speaks_modbus())) \
-  SETTING(std::uint8_t, watchdog_timeout, kFactoryWatchdogTimeout, true)                       \
-  SETTING(bool, watchdog_enabled, false, true)                                                 \
-  SETTING(bool, timeout_status, false, true)                                                   \
-  SETTING(Name, name, Name(model.factory_name), value.is_possible(model.longest_name))         \
-  SETTING(std::uint16_t, power_on_value, 0, (value & ~model.output_mask()) == 0)               \
-  SETTING(std::uint16_t, safe_value, 0, (value & ~model.output_mask()) == 0)                   \
-  SETTING(InputFilters, input_filters, {}, value.are_possible(model.inputs))                   \
-  SETTING(std::uint16_t, inverted_inputs, 0, (value & ~model.input_mask()) == 0)               \
-  SETTING(bool, fed_by_requests, false, true)                                                  \
-  SETTING(std::uint8_t, response_delay, 0, value <= kLongestResponseDelay)
+/// One member for each stored setting; `As` is the type of a member. See Settings and SettingsChange.
+template <template <class> class As>
+struct SettingsOf {
+  As<std::uint8_t> address{};
+  As<std::uint8_t> baud_code{};         ///< CC (model/baud.hpp)
+  As<std::uint8_t> format{};            ///< FF: kFormatRisingEdge, kFormatChecksum
+  As<Protocol> protocol{};              ///< from the next reset on
+  As<std::uint8_t> watchdog_timeout{};  ///< VV of the host watchdog, in units of 0.1 s
+  As<bool> watchdog_enabled{};          ///< the host watchdog is running
+  As<bool> timeout_status{};            ///< it has expired, and no command has cleared this status since
+  As<Name> name{};
+  As<std::uint16_t> power_on_value{};   ///< outputs from reset on; bit n is channel n
+  As<std::uint16_t> safe_value{};       ///< outputs instead while the timeout status is set
+  As<InputFilters> input_filters{};     ///< register 0x0240 + n
+  As<std::uint16_t> inverted_inputs{};  ///< register 0x0250; bit n is input channel n
+  As<bool> fed_by_requests{};           ///< register 0x0251: each request restarts the host watchdog
+  As<std::uint8_t> response_delay{};    ///< register 0x0252, in ms
+};
 
-// NOLINTBEGIN(bugprone-macro-parentheses): the arguments are types and names
-struct Settings {
-#define EX9000_MEMBER(type, name, factory_value, possible) type name{};
-  EX9000_SETTINGS(EX9000_MEMBER)
-#undef EX9000_MEMBER
+/// Calls `f` once for each setting, with this setting of all `settings`, in the order of a record
+/// (record.hpp). Append new settings. Never remove or move a setting or change its type, because the memories
+/// of existing modules contain records in this layout. Never change the factory value of a setting after
+/// `safe_value`, because a record may omit such a setting if it has its factory value.
+template <class F, class... Some>
+constexpr void visit(F f, Some&... settings) {
+  f(settings.address...);
+  f(settings.baud_code...);
+  f(settings.format...);
+  f(settings.protocol...);
+  f(settings.watchdog_timeout...);
+  f(settings.watchdog_enabled...);
+  f(settings.timeout_status...);
+  f(settings.name...);
+  f(settings.power_on_value...);
+  f(settings.safe_value...);
+  f(settings.input_filters...);
+  f(settings.inverted_inputs...);
+  f(settings.fed_by_requests...);
+  f(settings.response_delay...);
+}
 
+template <class Value>
+using Itself = Value;
+
+struct Settings : SettingsOf<Itself> {
   /// Returns the settings of a new module (wire.md section 2).
   static Settings factory(const Model& model);
 
@@ -152,14 +153,9 @@ struct Settings {
 };
 
 /// New values for some of the settings. A command stores all of these values or none.
-struct SettingsChange {
-#define EX9000_MEMBER(type, name, factory_value, possible) std::optional<type> name{};
-  EX9000_SETTINGS(EX9000_MEMBER)
-#undef EX9000_MEMBER
-
+struct SettingsChange : SettingsOf<std::optional> {
   /// Returns `settings` with this change. Settings without a new value stay the same.
   [[nodiscard]] Settings applied_to(const Settings& settings) const;
 };
-// NOLINTEND(bugprone-macro-parentheses)
 
 }  // namespace ex9000
