@@ -212,14 +212,10 @@ Duration Module::turn_around() const {
 }
 
 void Module::continue_store(Time now) {
-  const bool awaiting_store = cycle_.phase() == RequestCycle::Phase::AwaitingStore;
   if (keeper_.busy()) {
-    if (awaiting_store) {
-      keeper_.let_command_through();
-    }
     return;
   }
-  if (awaiting_store) {
+  if (cycle_.phase() == RequestCycle::Phase::AwaitingStore) {
     const Settings changed = cycle_.outcome().change().applied_to(state_.settings);
     if (changed == keeper_.stored() && keeper_.certain()) {
       commit(now);  // a reset now would load these settings, so nothing is written

@@ -95,11 +95,9 @@ class Module {
 
   /// See SettingsKeeper::busy.
   [[nodiscard]] bool needs_memory() const { return keeper_.busy(); }
-  /// Returns the memory access to carry out; valid while `needs_memory()`. The result stays the same until
-  /// `memory_done`.
+  /// See SettingsKeeper::job and SettingsKeeper::done.
   [[nodiscard]] MemoryJob memory_job() { return keeper_.job(); }
-  /// See SettingsStore::done.
-  void memory_done(bool ok) { keeper_.done(ok); }
+  void memory_done(const MemoryResult& result) { keeper_.done(result); }
 
   /// Returns the reply if it may be sent now. Returns each reply only once. The result is empty if no reply
   /// is ready, or if it is too early to send the reply. The bytes are valid until `on_reply_sent`.

@@ -148,7 +148,7 @@ class Device {
     const bool polls_again = board_.memory.poll(now);
     if (memory_job_under_way_ && !board_.memory.busy()) {
       memory_job_under_way_ = false;
-      module_.memory_done(board_.memory.succeeded());
+      module_.memory_done(board_.memory.result());
     }
     return polls_again;
   }
@@ -159,12 +159,7 @@ class Device {
     if (memory_job_under_way_ || !module_.needs_memory()) {
       return false;
     }
-    const MemoryJob job = module_.memory_job();
-    if (job.kind == MemoryJob::Kind::Read) {
-      board_.memory.start_read(job.address, job.bytes, now);
-    } else {
-      board_.memory.start_write(job.address, {job.bytes.data, job.bytes.size}, now);
-    }
+    board_.memory.start(module_.memory_job(), now);
     memory_job_under_way_ = true;
     return !board_.memory.busy();
   }

@@ -13,7 +13,8 @@
 #include "hal/cortex_m/interrupts.hpp"
 #include "hal/cortex_m/system_tick.hpp"
 #include "hal/device.hpp"
-#include "hal/flash/page_store.hpp"
+#include "hal/eeprom/two_places.hpp"
+#include "hal/flash/record_log.hpp"
 #include "hal/pins/single_pins.hpp"
 #include "hal/pl011/uart.hpp"
 #include "hal/rp2040/clocks.hpp"
@@ -49,15 +50,15 @@ template <Memory memory>
 struct MemoryOnBoard;
 template <>
 struct MemoryOnBoard<Memory::Flash> {
-  using Driver = hal::flash::PageStore<Flash, kSettingsInFlash>;
+  using Driver = hal::flash::RecordLog<Flash, kSettingsInFlash>;
   static void start(Driver& driver) { driver.flash().start(); }
   static void on_interrupt(Driver& /*driver*/) {}
 };
 template <>
 struct MemoryOnBoard<Memory::Eeprom> {
-  using Driver = hal::At24c<I2c<kI2cPins, kHertz>>;
-  static void start(Driver& driver) { driver.master().start(); }
-  static void on_interrupt(Driver& driver) { driver.master().on_interrupt(); }
+  using Driver = hal::TwoPlaces<hal::At24c<I2c<kI2cPins, kHertz>>>;
+  static void start(Driver& driver) { driver.eeprom().master().start(); }
+  static void on_interrupt(Driver& driver) { driver.eeprom().master().on_interrupt(); }
 };
 using Settings = MemoryOnBoard<kMemory>;
 constexpr bool kUsesI2c = kMemory == Memory::Eeprom;

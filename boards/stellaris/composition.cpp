@@ -12,6 +12,7 @@
 #include "hal/cortex_m/interrupts.hpp"
 #include "hal/cortex_m/system_timer.hpp"
 #include "hal/device.hpp"
+#include "hal/eeprom/two_places.hpp"
 #include "hal/pins/single_pins.hpp"
 #include "hal/stellaris/i2c.hpp"
 #include "hal/stellaris/inputs.hpp"
@@ -36,7 +37,7 @@ using SilenceTimer = OneShotTimer<0, kMegahertz>;
 using LineEndTimer = OneShotTimer<1, kMegahertz>;
 using WakeTimer = OneShotTimer<2, kMegahertz>;
 using Line = Uart<kUart, kHertz, kDriverEnable, LineEndTimer>;
-using Eeprom = hal::At24c<I2c<kFamily, kHertz>>;
+using Memory = hal::TwoPlaces<hal::At24c<I2c<kFamily, kHertz>>>;
 using Watchdog = HardwareWatchdog<kMegahertz>;
 
 /// See hal::Device.
@@ -47,7 +48,7 @@ struct Board {
   WakeTimer wake_timer;
   InputPins<kInputs, kOnlyModel.inputs, kInputsActiveHigh> inputs;
   OutputPins<kOutputs, kOnlyModel.outputs, kOutputsActiveHigh> outputs;
-  Eeprom memory;
+  Memory memory;
   hal::InitPin<kInitSwitch> init_switch;
   hal::LedPin<kStatusLed> status_led;
   Watchdog watchdog;
@@ -65,7 +66,7 @@ void on_system_tick() {
 }
 
 void on_i2c() {
-  board.memory.master().on_interrupt();
+  board.memory.eeprom().master().on_interrupt();
   device.on_memory();
 }
 
@@ -143,7 +144,7 @@ void start() {
   Run::start_pins();
   SystemControl::use(kClock);
   Gpio(kUartPins.port).make_peripheral<kFamily, kUartPins.mask(), kUartFunction>();
-  board.memory.master().start();
+  board.memory.eeprom().master().start();
   Run::start_module(reason);
   Interrupts::enable(start_up::numbers_of(kServed), static_cast<std::uint32_t>(kLineInterrupt));
 }

@@ -5,14 +5,14 @@
 #include <limits>
 
 #include "firmware/reset_reason.hpp"
-#include "firmware/settings/store.hpp"
+#include "firmware/settings/memory_job.hpp"
 
 namespace ex9000 {
 
 /// The values of registers 0x0301 to 0x0306. A reset clears the counts.
 struct Statistics {
   ResetReason reset_reason = ResetReason::Unknown;
-  SettingsStore::Source settings_source = SettingsStore::Source::NoneGood;
+  SettingsSource settings_source = SettingsSource::NoneGood;
   std::uint32_t seconds_up = 0;  ///< since reset
   std::uint16_t timeouts = 0;    ///< of the host watchdog; saturates
   std::uint16_t stores = 0;      ///< verified stores; saturates

@@ -9,7 +9,7 @@ namespace {
 constexpr std::size_t kLayoutAt = 0;
 constexpr std::size_t kLengthAt = 1;
 constexpr std::size_t kSequenceAt = 2;
-constexpr std::size_t kSettingsAt = 4;
+constexpr std::size_t kSettingsAt = kHeaderSize;
 constexpr std::size_t kCheckSize = 4;
 constexpr std::size_t kRoomForSettings = kRecordRoom - kSettingsAt - kCheckSize;
 
@@ -130,9 +130,8 @@ std::size_t required_size(const Model& model, const Settings& settings) {
   return required;
 }
 
-}  // namespace
-
-std::uint32_t settings_check(const Model& model, Bytes bytes) {
+/// Returns the CRC-32 over the model's designation and `bytes`.
+std::uint32_t check_of(const Model& model, Bytes bytes) {
   Crc32 crc;
   for (const char character : model.designation) {
     crc.add(static_cast<std::uint8_t>(character));
@@ -143,6 +142,8 @@ std::uint32_t settings_check(const Model& model, Bytes bytes) {
   return crc.value();
 }
 
+}  // namespace
+
 void write_record(const Model& model, const Settings& settings, std::uint16_t sequence, RecordBytes& record) {
   if (record[kLengthAt] <= kKnownSettings) {  // otherwise the record ends with settings of newer firmware
     record[kLayoutAt] = kLayout;
@@ -152,7 +153,7 @@ void write_record(const Model& model, const Settings& settings, std::uint16_t se
   Encoder encoder(&record[kSettingsAt]);
   visit([&encoder](const auto& setting) { encoder.put(setting); }, settings);
   const std::size_t check_at = kSettingsAt + record[kLengthAt];
-  Encoder(&record[check_at]).put(settings_check(model, {record.data(), check_at}));
+  Encoder(&record[check_at]).put(check_of(model, {record.data(), check_at}));
 }
 
 std::size_t record_size(Bytes beginning) {
@@ -161,16 +162,18 @@ std::size_t record_size(Bytes beginning) {
   return begins ? kSettingsAt + length + kCheckSize : 0;
 }
 
+std::uint16_t sequence_of(Bytes beginning) { return beginning.low_byte_first_16(kSequenceAt); }
+
 std::optional<StoredSettings> read_record(const Model& model, Bytes record) {
   const std::size_t size = record_size(record);
   if (size == 0 || size > record.size) {
     return std::nullopt;
   }
   const Bytes checked = record.first(size - kCheckSize);
-  if (record.low_byte_first_32(checked.size) != settings_check(model, checked)) {
+  if (record.low_byte_first_32(checked.size) != check_of(model, checked)) {
     return std::nullopt;
   }
-  StoredSettings stored{Settings::factory(model), record.low_byte_first_16(kSequenceAt)};
+  StoredSettings stored{Settings::factory(model), sequence_of(record)};
   Decoder decoder(checked.from(kSettingsAt));
   visit([&decoder](auto& setting) { decoder.take(setting); }, stored.settings);
   const bool good = decoder.valid() && stored.settings.possible_for(model);

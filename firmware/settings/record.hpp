@@ -25,9 +25,6 @@ constexpr bool is_later(std::uint16_t sequence, std::uint16_t than) {
   return ahead != 0 && ahead < kHalfRange;
 }
 
-/// Returns the check of stored settings: the CRC-32 over the model's designation and `bytes`.
-std::uint32_t settings_check(const Model& model, Bytes bytes);
-
 /// The largest size of a copy of the settings, in bytes: four pages of an AT24C64.
 constexpr std::size_t kRecordRoom = 128;
 
@@ -51,6 +48,7 @@ constexpr std::size_t kRecordRoom = 128;
 /// and every error of two or three bits. The probability that it does not detect another error, for example
 /// a record with only some new pages, is about 2^-32.
 constexpr std::uint8_t kLayout = 1;
+constexpr std::size_t kHeaderSize = 4;  ///< layout, length and sequence
 using RecordBytes = std::array<std::uint8_t, kRecordRoom>;
 
 /// Writes a complete record with `settings` and `sequence` into `record`. Before the call, `record` must be a
@@ -58,13 +56,14 @@ using RecordBytes = std::array<std::uint8_t, kRecordRoom>;
 /// same.
 void write_record(const Model& model, const Settings& settings, std::uint16_t sequence, RecordBytes& record);
 
-/// Returns the size in bytes of the record that begins with `beginning`, which must have at least two bytes;
-/// 0 if `beginning` is not the beginning of a record.
+/// Return the size in bytes and the sequence number of the record that begins with `beginning`, which must
+/// have at least kHeaderSize bytes. The size is 0 if `beginning` is not the beginning of a record.
 std::size_t record_size(Bytes beginning);
+std::uint16_t sequence_of(Bytes beginning);
 
-/// Returns the settings and their sequence number if `record`, which must have at least two bytes, begins
-/// with a complete and good record: layout, length and check are correct, and the model could have stored
-/// these settings. Otherwise returns nothing.
+/// Returns the settings and their sequence number if `record`, which must have at least kHeaderSize bytes,
+/// begins with a complete and good record: layout, length and check are correct, and the model could have
+/// stored these settings. Otherwise returns nothing.
 std::optional<StoredSettings> read_record(const Model& model, Bytes record);
 
 }  // namespace ex9000

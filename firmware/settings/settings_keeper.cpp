@@ -1,26 +1,100 @@
 #include "firmware/settings/settings_keeper.hpp"
 
+#include "firmware/request/statistics.hpp"
+
 namespace ex9000 {
 
 namespace {
 
-constexpr Duration kRetry = milliseconds(1000);  // wire.md D15
+// wire.md D15
+constexpr Duration kRetry = milliseconds(1000);
+constexpr std::uint8_t kAttemptsOfACommand = 3;
+/// A save without a command does not repeat a failed attempt at once, because a command may wait for its end.
+constexpr std::uint8_t kOwnAttempts = 1;
+
+Bytes bytes_of(const RecordBytes& record) { return {record.data(), record.size()}; }
 
 }  // namespace
 
+MemoryJob SettingsKeeper::job() {
+  using Kind = MemoryJob::Kind;
+  const Kind kind =
+      step_ == Step::Save ? Kind::Save : (step_ == Step::Withdraw ? Kind::Withdraw : Kind::Load);
+  const std::size_t size = kind == Kind::Save ? record_size(bytes_of(record_)) : record_.size();
+  return {kind, &model_.get(), {record_.data(), size}, attempts_};
+}
+
+void SettingsKeeper::done(const MemoryResult& result) {
+  const Step step = step_;
+  step_ = Step::Idle;
+  memory_ = result;
+  saved_ = result.succeeded || step == Step::Withdraw;  // a withdrawal saves nothing, so no save has failed
+  switch (step) {                                       // not covered: the enumeration has no other value
+    case Step::Load:
+      source_ = result.source;
+      unreadable_ = source_ == SettingsSource::NoneGood;
+      use_record();
+      break;
+    case Step::LoadAgain:
+      if (result.succeeded) {
+        sequence_ = result.source == SettingsSource::NoneGood ? sequence_ : sequence_of(bytes_of(record_));
+        begin_writing();
+      }
+      break;
+    case Step::Save:
+      if (result.succeeded) {
+        ++sequence_;
+        stored_ = saving_;
+        unreadable_ = false;
+        count_saturating(saves_);
+      }
+      break;
+    case Step::Withdraw:
+    case Step::Idle:
+      break;
+  }
+}
+
+void SettingsKeeper::use_record() {
+  const auto stored = read_record(model_.get(), bytes_of(record_));
+  stored_ = stored ? stored->settings : Settings::factory(model_.get());
+  sequence_ = stored ? stored->sequence : 0;
+}
+
+// --- saving ---
+
 void SettingsKeeper::save(const Settings& settings, Time now) {
-  end_own_save(now);
-  store_.begin_saving(settings);
+  end_own_action(now);
+  begin_saving(settings, kAttemptsOfACommand);
   may_differ_ = true;  // even if the save succeeds, because the host watchdog may expire during it
 }
+
+/// If the memory has no good record but is not blank, the keeper first loads again. If the memory does not
+/// answer, the save fails. If a record is readable now, the new one gets a later sequence number.
+void SettingsKeeper::begin_saving(const Settings& settings, std::uint8_t attempts) {
+  saving_ = settings;
+  attempts_ = attempts;
+  if (memory_.source == SettingsSource::NoneGood) {
+    step_ = Step::LoadAgain;
+  } else {
+    begin_writing();
+  }
+}
+
+void SettingsKeeper::begin_writing() {
+  write_record(model_.get(), saving_, static_cast<std::uint16_t>(sequence_ + 1U), record_);
+  step_ = Step::Save;
+}
+
+// --- without a command ---
 
 void SettingsKeeper::poll(const Settings& in_force, Time now) {
   if (busy()) {
     return;
   }
-  end_own_save(now);
-  const bool unsaved = may_differ_ && in_force != stored();
-  if (!unsaved && !store_.needs_invalidation()) {
+  end_own_action(now);
+  const bool unsaved = may_differ_ && in_force != stored_;
+  if (!unsaved && !memory_.refused) {
     may_differ_ = false;
     retry_.disarm();
     return;
@@ -29,19 +103,19 @@ void SettingsKeeper::poll(const Settings& in_force, Time now) {
     return;
   }
   retry_.disarm();
-  own_save_ = true;
+  own_action_ = true;
   if (unsaved) {
-    store_.begin_saving(in_force);
+    begin_saving(in_force, kOwnAttempts);
   } else {
-    store_.begin_invalidating();
+    step_ = Step::Withdraw;
   }
 }
 
-void SettingsKeeper::end_own_save(Time now) {
-  if (own_save_ && (!saved() || store_.needs_invalidation())) {
+void SettingsKeeper::end_own_action(Time now) {
+  if (own_action_ && (!saved_ || memory_.refused)) {
     retry_.set(now + kRetry);
   }
-  own_save_ = false;
+  own_action_ = false;
 }
 
 }  // namespace ex9000

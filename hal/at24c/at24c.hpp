@@ -12,7 +12,7 @@
 
 namespace ex9000::hal {
 
-/// An EEPROM of 8 KiB in pages of 32 bytes. For its functions, see hal/memory.hpp; for `Master`, see
+/// An EEPROM of 8 KiB in pages of 32 bytes. For its functions, see hal/eeprom/eeprom.hpp; for `Master`, see
 /// I2cTransfer.
 ///
 /// The EEPROM acknowledges nothing while it programs a page, so the driver repeats the device address until
@@ -73,7 +73,7 @@ class At24c {
     return rest_.size < room ? rest_.size : room;
   }
 
-  void transfer(Time now) {
+  [[gnu::noinline]] void transfer(Time now) {  // the driver of the bus is large, and there are five callers
     // After the transfer of the bytes for a page, the driver polls: it sends the device address and the first
     // byte of the memory address. This writes nothing. When the EEPROM acknowledges these two bytes, it has
     // programmed the page.

@@ -6,8 +6,10 @@
 #include <utility>
 #include <vector>
 
+#include "firmware/bytes.hpp"
+#include "firmware/time.hpp"
 #include "hal/doubles/virtual_clock.hpp"
-#include "hal/memory.hpp"
+#include "hal/eeprom/eeprom.hpp"
 
 namespace ex9000::hal::doubles {
 
@@ -16,7 +18,7 @@ namespace ex9000::hal::doubles {
 class Memory {
  public:
   static constexpr std::size_t kSize = 8192;
-  static constexpr std::size_t kPage = 32;
+  static constexpr std::size_t kPage = kEepromPage;
   static constexpr VirtualTime kByteOnBus = std::chrono::microseconds(90);
   static constexpr VirtualTime kProgram = std::chrono::milliseconds(5);
 
@@ -74,6 +76,5 @@ class Memory {
   VirtualTime ends_ = kNever;
   std::uint64_t writes_ = 0;
 };
-static_assert(kIsMemory<Memory>);
 
 }  // namespace ex9000::hal::doubles

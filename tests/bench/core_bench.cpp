@@ -8,8 +8,8 @@
 
 #include "firmware/line/crc16.hpp"
 #include "firmware/module.hpp"
-#include "firmware/settings/places.hpp"
 #include "tests/support/clock_at.hpp"
+#include "tests/support/instant_memory.hpp"
 
 namespace ex9000::bench {
 namespace {
@@ -18,13 +18,11 @@ namespace {
 /// during its start, because no request in this file stores settings.
 class BareModule {
  public:
-  explicit BareModule(const Model& model, bool ascii) : module_(model), memory_(8192, 0xFF) {
+  explicit BareModule(const Model& model, bool ascii) : module_(model) {
     if (ascii && model.speaks_modbus()) {
       Settings settings = Settings::factory(model);
       settings.protocol = Protocol::Ascii;
-      RecordBytes record{};
-      write_record(model, settings, 1, record);
-      std::copy(record.begin(), record.end(), memory_.begin() + kPlaces[0]);
+      memory_.store(model, settings);
     }
     module_.start(0, now_);
     while (!module_.listening()) {
@@ -50,17 +48,13 @@ class BareModule {
 
  private:
   void pass(std::uint32_t microseconds) {
-    if (module_.needs_memory()) {
-      const MemoryJob job = module_.memory_job();
-      std::copy_n(memory_.begin() + job.address, job.bytes.size, job.bytes.data);
-      module_.memory_done(true);
-    }
+    memory_.serve(module_, now_);
     now_ = now_ + Duration(microseconds);
     module_.step(false, now_);
   }
 
   Module module_;
-  std::vector<std::uint8_t> memory_;
+  InstantMemory memory_;
   Time now_;
 };
 

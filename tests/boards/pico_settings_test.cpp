@@ -146,7 +146,7 @@ TEST_F(PicoSettings, NoRequestAndNoPulseIsLostDuringContinuousStores) {
   std::printf("%u requests, %ld erases; longest turn-around: %.1f ms after a store, %.2f ms after a read\n",
               kRequests, erases(), static_cast<double>(longest_store.count()) / 1e6,
               static_cast<double>(longest_read.count()) / 1e6);
-  EXPECT_GE(erases(), static_cast<long>(kRequests / 2 / 79));  // a sector has room for 79 entries
+  EXPECT_GE(erases(), static_cast<long>(kRequests / 2 / 31));  // a sector has room for 31 records
   bench_.run_for(end + milliseconds(100) - bench_.now());
   EXPECT_EQ(counters_in(ask(read_counters, kReplySize)), std::vector<unsigned>(kInputs, kPulses));
   for (const char* wrong : {"lost", "early", "late", "framing", "shorts", "timeouts", "requests"}) {
@@ -159,7 +159,7 @@ TEST_F(PicoSettings, TheModuleRepliesInTimeToStoresHalfASecondApartWithTheSlowes
   bench_.forget_erased_sectors();
   bench_.execute("flash-times 400000000 3000000");
   start();
-  constexpr int kStores = 170;  // two sectors have room for only 158 entries
+  constexpr int kStores = 170;  // five sectors have room for only 155 records
   nanoseconds longest{};
   for (int i = 0; i < kStores; ++i) {
     // The pauses differ, so that the stores begin at different times during an erase.
@@ -171,7 +171,7 @@ TEST_F(PicoSettings, TheModuleRepliesInTimeToStoresHalfASecondApartWithTheSlowes
               static_cast<double>(longest.count()) / 1e6);
   // After the start, the module erases 13 of the 14 sectors, because the first sector contains the settings.
   // Later it erases one sector for each full sector.
-  EXPECT_GE(erases(), 13 + kStores / 79);
+  EXPECT_GE(erases(), 13 + kStores / 31);
 }
 
 TEST_F(PicoSettings, AModuleWithAnErasedFlashStoresTheFirstCommandInTime) {

@@ -1,7 +1,6 @@
 // A Modbus module without a board and without a simulated line, for tests that send many frames.
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 #include <string_view>
 #include <vector>
@@ -9,6 +8,7 @@
 #include "firmware/line/crc16.hpp"
 #include "firmware/module.hpp"
 #include "tests/support/clock_at.hpp"
+#include "tests/support/instant_memory.hpp"
 
 namespace ex9000 {
 
@@ -20,7 +20,7 @@ class CoreBench {
   explicit CoreBench(std::string_view model) : module_(*find_model(model)) {
     module_.start(0, now_);
     while (!module_.listening()) {
-      do_memory_jobs();
+      memory_.serve(module_, now_);
       pass(milliseconds(1));
     }
     module_.listen(LineTiming::at(module_.baud(), module_.format()));
@@ -58,7 +58,7 @@ class CoreBench {
   /// the frame changes. Returns the reply with its CRC; empty if there is no reply.
   FrameBytes answer() {
     module_.step(false, now_);
-    do_memory_jobs();
+    memory_.serve(module_, now_);
     const Bytes reply = module_.take_reply(now_);
     FrameBytes answer(reply.begin(), reply.end());
     if (!answer.empty()) {
@@ -80,21 +80,7 @@ class CoreBench {
   }
 
  private:
-  void do_memory_jobs() {
-    while (module_.needs_memory()) {
-      const MemoryJob job = module_.memory_job();
-      std::uint8_t* const place = memory_.data() + job.address;
-      if (job.kind == MemoryJob::Kind::Read) {
-        std::copy(place, place + job.bytes.size, job.bytes.data);
-      } else {
-        std::copy(job.bytes.data, job.bytes.data + job.bytes.size, place);
-      }
-      module_.memory_done(true);
-      module_.step(false, now_);
-    }
-  }
-
-  std::vector<std::uint8_t> memory_ = std::vector<std::uint8_t>(8192, 0xFF);
+  InstantMemory memory_;
   Module module_;
   Time now_;
 };

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "firmware/request/statistics.hpp"
-#include "firmware/settings/places.hpp"
+#include "hal/eeprom/two_places.hpp"
 #include "sim/app/play/modbus_frame.hpp"
 #include "sim/text/values.hpp"
 #include "tests/firmware/module_bench.hpp"
@@ -295,9 +295,9 @@ TEST(SettingsSourceRegister, ReturnsTheSourceOfTheSettings) {
   std::vector<std::uint8_t> memory = SimulatedModule::memory_image(model, settings);
   EXPECT_EQ(settings_source("EX9043D", memory), "0000");  // the second copy is blank
   std::vector<std::uint8_t> one_bad = memory;
-  one_bad[kPlaces[1]] = 0x00;
+  one_bad[hal::kPlaces[1]] = 0x00;
   EXPECT_EQ(settings_source("EX9043D", one_bad), "0001");
-  one_bad[kPlaces[0] + 8U] ^= 1U;
+  one_bad[hal::kPlaces[0] + 8U] ^= 1U;
   EXPECT_EQ(settings_source("EX9043D", one_bad), "0002");
 }
 

@@ -2,13 +2,12 @@
 // and the command `~**`.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <array>
 #include <string>
 
 #include "firmware/dcon/dcon.hpp"
 #include "firmware/module.hpp"
 #include "tests/support/clock_at.hpp"
+#include "tests/support/instant_memory.hpp"
 
 namespace ex9000 {
 namespace {
@@ -21,10 +20,7 @@ class ModuleTurns : public testing::Test {
   /// Starts the module with an erased memory, and runs it until it listens.
   ModuleTurns() {
     module_.start(0, now_);
-    while (module_.needs_memory()) {
-      do_memory_job();
-      step();
-    }
+    memory_.serve(module_, now_);
     while (!module_.listening()) {
       pass(milliseconds(1));
       step();
@@ -37,19 +33,8 @@ class ModuleTurns : public testing::Test {
 
   /// Does one memory job. Does not run the main loop (`step`) afterwards.
   void do_memory_job() {
-    const MemoryJob job = module_.memory_job();
-    if (job.kind == MemoryJob::Kind::Write) {
-      ++writes_;
-    }
-    for (std::size_t i = 0; answers_ && i < job.bytes.size; ++i) {
-      if (job.kind == MemoryJob::Kind::Read) {
-        job.bytes.data[i] = written_ ? page_[i] : 0xFF;
-      } else {
-        page_[i] = job.bytes.data[i];
-        written_ = true;
-      }
-    }
-    module_.memory_done(answers_);
+    memory_.start(module_.memory_job(), now_);
+    module_.memory_done(memory_.result());
   }
 
   /// Sends a command and a CR to the module. Then lets two character times pass, so that the turn-around time
@@ -71,12 +56,7 @@ class ModuleTurns : public testing::Test {
 
   Module module_{*find_model("EX9043D")};
   Time now_;
-  bool answers_ = true;  ///< whether the memory answers
-  unsigned writes_ = 0;  ///< number of writes, whether or not the memory answers them
-
- private:
-  std::array<std::uint8_t, 32> page_{};
-  bool written_ = false;
+  InstantMemory memory_;
 };
 
 TEST_F(ModuleTurns, TheModuleIsAtRestOnlyAfterItsStartAndWithoutARequestInProgress) {
@@ -156,31 +136,27 @@ TEST_F(ModuleTurns, ATimeoutFlashesTheLedInItsTurnAndIsStoredAfterIt) {
 
 // wire.md D15. With more attempts to store the timeout, the reply to the command could begin later than 200
 // ms after the command if a record has several pages.
-TEST_F(ModuleTurns, ACommandAfterATimeoutThatCannotBeStoredWaitsForOnlyOneAttempt) {
+TEST_F(ModuleTurns, AStoreOfATimeoutHasOneAttemptAndAStoreOfACommandHasThree) {
   put("~013101");
   step();
-  while (module_.needs_memory()) {
-    do_memory_job();
-  }
+  EXPECT_EQ(module_.memory_job().attempts, 3);
+  do_memory_job();
   step();
   ASSERT_EQ(take_reply(), "!01\r");
   module_.on_reply_sent(now_);
   pass(kUnitOfTimeout + milliseconds(1));
-  answers_ = false;
-  writes_ = 0;
-  step();  // begins to store the timeout
-  ASSERT_TRUE(module_.needs_memory());
-  put("~013105");
   step();
-  while (module_.needs_memory()) {
-    do_memory_job();
-    step();
-  }
+  ASSERT_TRUE(module_.needs_memory());
+  EXPECT_EQ(module_.memory_job().attempts, 1);
+  put("~013105");
+  memory_.answers = false;
+  do_memory_job();
+  step();
+  ASSERT_TRUE(module_.needs_memory()) << "the command waits for only one job";
+  EXPECT_EQ(module_.memory_job().attempts, 3);
+  do_memory_job();
+  step();
   EXPECT_EQ(take_reply(), "?01\r");
-  // The module makes one attempt to store the timeout and three attempts to store the command. After each of
-  // these two failed stores, one more write tries to invalidate the copy that the failed store may have
-  // written.
-  EXPECT_EQ(writes_, 1U + 1U + 3U + 1U);
 }
 
 TEST_F(ModuleTurns, AHostOkWaitsForTheNextTurn) {

@@ -6,6 +6,7 @@
 #include "firmware/bytes.hpp"
 #include "firmware/line/timing.hpp"
 #include "firmware/model/line_format.hpp"
+#include "firmware/settings/memory_job.hpp"
 #include "firmware/time.hpp"
 
 namespace ex9000 {
@@ -20,11 +21,10 @@ struct Nothing {
   [[nodiscard]] static bool sending();
   static void restart(Duration after);
   static void drive(std::uint16_t channels);
-  static void start_read(std::uint16_t address, MutableBytes destination, Time now);
-  static void start_write(std::uint16_t address, Bytes source, Time now);
+  static void start(const MemoryJob& job, Time now);
   static bool poll(Time now);
   [[nodiscard]] static bool busy();
-  [[nodiscard]] static bool succeeded();
+  [[nodiscard]] static MemoryResult result();
   [[nodiscard]] static bool asserted();
   static void light(bool on);
   static void feed();

@@ -4,7 +4,7 @@
 #include <array>
 #include <cstring>
 
-#include "firmware/settings/places.hpp"
+#include "hal/eeprom/two_places.hpp"
 
 extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t most);
 
@@ -40,7 +40,7 @@ class Life {
     if (settings != Settings::factory(model)) {
       RecordBytes record{};
       write_record(model, settings, 1, record);
-      std::copy(record.begin(), record.end(), session_.around().memory.begin() + kPlaces[0]);
+      std::copy(record.begin(), record.end(), session_.around().memory.begin() + hal::kPlaces[0]);
     }
     session_.around().init_asserted = (flags & 0x80U) != 0;
     session_.reset();

@@ -4,9 +4,7 @@
 #include <sstream>
 
 #include "boards/pico/board.hpp"
-#include "hal/flash/entry.hpp"
-#include "hal/flash/mark.hpp"
-#include "hal/flash/slot.hpp"
+#include "hal/flash/record_log.hpp"
 #include "sim/text/values.hpp"
 #include "sim/virtual_line/bus/module.hpp"
 
@@ -46,21 +44,11 @@ unsigned pin_of(const Groups& groups, unsigned channel) {
   throw std::out_of_range("channel: the board has no pin for it; expected a channel of kInputs or kOutputs");
 }
 
-/// Returns a sector of a page store with `entries` entries. The first entry contains page 0 of `memory`, and
-/// each further entry contains the next page. After the last page, the next page is page 0. `sequence` is the
-/// sequence number of the first entry.
-Bytes sector_with(const Bytes& memory, std::uint32_t sequence, std::size_t entries) {
-  using namespace hal::flash;
-  Bytes sector(hal::kFlashSector, 0xFF);
-  std::copy(kNoMark.begin(), kNoMark.end(), sector.begin());
-  for (std::size_t i = 0; i < entries; ++i) {
-    const std::size_t page = i % kPages;
-    EntryBytes entry{};
-    std::copy_n(memory.begin() + static_cast<std::ptrdiff_t>(page * kPage), kPage,
-                entry.begin() + kContentAt);
-    seal(entry, sequence + static_cast<std::uint32_t>(i), page);
-    std::copy(entry.begin(), entry.end(), sector.begin() + offset_of(static_cast<Slot>(i + 1)));
-  }
+/// Returns a sector of the log with `records`, each of which has kRecordRoom bytes.
+Bytes sector_with(const Bytes& records) {
+  Bytes sector(kRecordRoom, 0xFF);
+  std::fill_n(sector.begin(), hal::flash::kMark.size(), std::uint8_t{0});
+  sector.insert(sector.end(), records.begin(), records.end());
   return sector;
 }
 
@@ -106,7 +94,7 @@ void PicoBench::begin_anew(const Model& model, const Bytes& memory) {
   if (memory_ == Memory::Eeprom) {
     execute("memory " + hex_of(memory));
   } else {
-    set_sector(0, sector_with(memory, 1, hal::flash::kPages));
+    set_sector(0, sector_with({memory.begin(), memory.begin() + 2 * kRecordRoom}));
   }
 }
 
@@ -117,10 +105,15 @@ void PicoBench::forget_erased_sectors() {
 }
 
 void PicoBench::fill_log(const Settings& settings) {
-  constexpr std::uint32_t kEntries = hal::flash::kSlotsOfASector - 1;
-  const Bytes memory = memory_with(*model_, settings);
+  std::uint16_t sequence = 0;
   for (unsigned sector = 0; sector < hal::flash::kSectors; ++sector) {
-    set_sector(sector, sector_with(memory, 1 + sector * kEntries, kEntries));
+    Bytes records;
+    for (unsigned place = 1; place < hal::flash::kPlacesOfASector; ++place) {
+      RecordBytes record{};
+      write_record(*model_, settings, ++sequence, record);
+      records.insert(records.end(), record.begin(), record.end());
+    }
+    set_sector(sector, sector_with(records));
   }
 }
 

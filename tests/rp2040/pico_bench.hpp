@@ -27,14 +27,14 @@ class PicoBench {
   /// settings if `settings` is null. If the memory is in the flash, each sector without settings is marked as
   /// erased.
   void begin_anew(const Model& model, const Settings* settings);
-  /// Provides a new board in the same way, but with `memory` as the content of its memory. `memory` has at
-  /// least 384 bytes, or is empty. If `memory` is empty, the board has no stored settings.
+  /// Provides a new board in the same way, but with `memory` as the content of its memory. `memory` is the
+  /// content of an EEPROM, or is empty. If `memory` is empty, the board has no stored settings.
   void begin_anew(const Model& model, const play::Bytes& memory);
   /// Removes the marks of erased sectors from all sectors except the first, which contains the settings.
-  /// After the next start, the store in the flash erases these sectors, as after the first start of a module.
+  /// After the next start, the log in the flash erases these sectors, as after the first start of a module.
   /// Call `begin_anew` with settings before you call this function.
   void forget_erased_sectors();
-  /// Fills the log of the page store: all sectors are full of entries with these settings. Call `begin_anew`
+  /// Fills the log in the flash: all sectors are full of records with these settings. Call `begin_anew`
   /// first.
   void fill_log(const Settings& settings);
   /// Provides a new board. Its flash begins with the content of `file`, its EEPROM is erased, and its supply
@@ -82,7 +82,7 @@ class PicoBench {
 
  private:
   void set_pin(unsigned number, const char* level);
-  /// Sets the first bytes of a sector of the page store to `bytes`.
+  /// Sets the first bytes of a sector of the log to `bytes`.
   void set_sector(unsigned sector, const play::Bytes& bytes);
 
   Memory memory_;

@@ -137,7 +137,7 @@ std::string RunningLine::remark(std::size_t index) const {
     return file->path() +
            " contains no settings of this model; the module uses factory settings until it stores new ones";
   }
-  const bool blank = module.state().statistics.settings_source == SettingsStore::Source::Blank;
+  const bool blank = module.state().statistics.settings_source == SettingsSource::Blank;
   const bool overruled = spec.settings_given && module.state().settings != spec.settings;
   const bool of_a_bus_file = !setup_.places.empty();
   const std::string others = of_a_bus_file ? ", not from the bus file" : ", not from the command line";

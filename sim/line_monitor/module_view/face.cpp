@@ -3,6 +3,8 @@
 #include <chrono>
 #include <tuple>
 
+#include "hal/eeprom/two_places.hpp"
+
 namespace ex9000::sim {
 
 namespace {
@@ -81,11 +83,11 @@ Stored stored_of(const SimulatedModule& module) {
   stored.settings = Settings::factory(module.model());
   stored.blank = true;
   std::uint16_t newest = 0;
-  for (const std::uint16_t place : kPlaces) {
+  for (const std::uint16_t place : hal::kPlaces) {
     const Bytes room{module.memory().contents().data() + place, kRecordRoom};
     const auto read = read_record(module.model(), room);
-    const Bytes bytes = room.first(read ? record_size(room) : kMemoryPage);
-    stored.blank = stored.blank && is_blank(bytes);
+    const Bytes bytes = room.first(read ? record_size(room) : hal::kEepromPage);
+    stored.blank = stored.blank && hal::is_blank(bytes);
     if (read && (!stored.current || is_later(read->sequence, newest))) {
       stored.current = stored.copies.size();
       stored.settings = read->settings;

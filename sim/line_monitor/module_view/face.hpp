@@ -9,7 +9,6 @@
 #include <string_view>
 
 #include "firmware/model/model.hpp"
-#include "firmware/settings/places.hpp"
 #include "firmware/settings/settings.hpp"
 #include "sim/virtual_line/bus/module.hpp"
 
@@ -74,7 +73,7 @@ struct Stored {
     friend bool operator==(const Copy& a, const Copy& b) { return a.bytes == b.bytes; }
   };
 
-  std::vector<Copy> copies;            ///< in the order of kPlaces
+  std::vector<Copy> copies;            ///< in the order of hal::kPlaces
   std::optional<std::size_t> current;  ///< index of the copy that a reset would load; nullopt: none is valid
   bool blank = false;                  ///< all copies are blank, so a reset would load factory settings
   Settings settings;                   ///< settings in copy `current`; factory settings if no copy is valid

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "firmware/settings/places.hpp"
-
 namespace ex9000::sim {
 
 namespace {
@@ -21,7 +19,8 @@ SimulatedModule::Mcu::Mcu(SimulatedModule& module)
       tick(module.clock_, kTick),
       watchdog(module.clock_),
       device(module.model_, {module.clock_, line, silence_timer, wake_timer, module.inputs_, module.outputs_,
-                             module.memory_, module.init_switch_, module.led_, watchdog}) {}
+                             hal::TwoPlaces<hal::doubles::Memory&>(module.memory_), module.init_switch_,
+                             module.led_, watchdog}) {}
 
 SimulatedModule::SimulatedModule(Bus& bus, const Model& model, TimingAt timing_at)
     : clock_(bus.clock()),
@@ -149,7 +148,7 @@ std::vector<std::uint8_t> SimulatedModule::memory_image(const Model& model, cons
   if (settings != Settings::factory(model)) {
     RecordBytes record{};
     write_record(model, settings, 1, record);
-    std::copy_n(record.begin(), record_size({record.data(), record.size()}), image.begin() + kPlaces[0]);
+    std::copy_n(record.begin(), record_size({record.data(), record.size()}), image.begin() + hal::kPlaces[0]);
   }
   return image;
 }

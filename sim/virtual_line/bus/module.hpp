@@ -21,6 +21,7 @@
 #include "hal/doubles/tick.hpp"
 #include "hal/doubles/virtual_clock.hpp"
 #include "hal/doubles/watchdog.hpp"
+#include "hal/eeprom/two_places.hpp"
 #include "sim/virtual_line/bus/bus.hpp"
 #include "sim/virtual_line/bus/module_wire.hpp"
 
@@ -112,7 +113,7 @@ class SimulatedModule final : public Station {
     hal::doubles::OneShotTimer& wake_timer;
     hal::doubles::Inputs& inputs;
     hal::doubles::Outputs& outputs;
-    hal::doubles::Memory& memory;
+    hal::TwoPlaces<hal::doubles::Memory&> memory;
     hal::doubles::InitSwitch& init_switch;
     hal::doubles::StatusLed& status_led;
     hal::doubles::Watchdog& watchdog;

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <string_view>
 
-#include "firmware/settings/places.hpp"
+#include "hal/eeprom/two_places.hpp"
 #include "tests/support/stored_settings.hpp"
 
 namespace ex9000::registers {
@@ -14,7 +14,7 @@ void put(const Model& model, const Settings& settings, std::uint16_t sequence, s
          Contents& contents) {
   RecordBytes record{};
   write_record(model, settings, sequence, record);
-  std::copy_n(record.begin(), record_size({record.data(), record.size()}), contents.begin() + kPlaces[copy]);
+  std::copy_n(record.begin(), record_size({record.data(), record.size()}), contents.begin() + hal::kPlaces[copy]);
 }
 
 /// Returns settings that differ from the factory settings as far as the model and the command permit. There
@@ -66,7 +66,7 @@ State begin_at(Beginning beginning, const Model& model, const StoringCommand& co
   put(model, state.settings, 0xFFFF, 1, state.contents);
   if (beginning == Beginning::Longer) {
     constexpr std::uint8_t kLength = 96;
-    lengthen(model, state.contents.data(), kPlaces[1], kLength);
+    lengthen(model, state.contents.data(), hal::kPlaces[1], kLength);
   }
   return state;
 }

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "firmware/settings/places.hpp"
 #include "hal/device.hpp"
+#include "hal/eeprom/two_places.hpp"
 #include "hal/stellaris/gpio.hpp"
 #include "hal/stellaris/uart.hpp"
 #include "hal/tick.hpp"
@@ -22,7 +22,7 @@ struct Board {
   WakeTimer wake_timer;
   Inputs inputs;
   Outputs outputs;
-  Memory memory;
+  hal::TwoPlaces<Memory> memory;
   InitSwitch init_switch;
   StatusLed status_led;
   Watchdog watchdog;
@@ -41,7 +41,7 @@ class Bench {
     change(settings);
     RecordBytes record{};
     write_record(*find_model(model), settings, 1, record);
-    std::copy(record.begin(), record.end(), device_.board().memory.contents.begin() + kPlaces[0]);
+    std::copy(record.begin(), record.end(), device_.board().memory.eeprom().contents.begin() + hal::kPlaces[0]);
     device_.start(ResetReason::PowerOn);
     rest(milliseconds(15));
     chip_.sent.clear();

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/firmware/settings/settings_store_bench.hpp"
+#include "tests/hal/eeprom/two_places_bench.hpp"
 
 namespace ex9000 {
 namespace {
@@ -12,10 +12,10 @@ namespace {
 /// settings that were stored. The firmware must not write when it reads.
 TEST(StoredBytes, AreReadWithoutAWriteAsTheSettingsThatWereStored) {
   for (const StoredBytes& stored : all_stored_bytes()) {
-    FakeMemory memory;
+    FakeEeprom memory;
     memory.cells = stored.memory;
     const Boot run(memory, *stored.model);
-    EXPECT_EQ(run.found(), Found::Settings) << stored.file;
+    EXPECT_EQ(run.source(), SettingsSource::Good) << stored.file;
     EXPECT_TRUE(run.stored() == stored.settings) << stored.file;
     EXPECT_TRUE(settings_from(*stored.model, stored.memory.data()) == stored.settings) << stored.file;
     EXPECT_TRUE(memory.writes.empty()) << stored.file;
@@ -24,7 +24,7 @@ TEST(StoredBytes, AreReadWithoutAWriteAsTheSettingsThatWereStored) {
 
 TEST(StoredBytes, TheModulesAddressIsKeptWhenAnotherSettingIsStored) {
   for (const StoredBytes& stored : all_stored_bytes()) {
-    FakeMemory memory;
+    FakeEeprom memory;
     memory.cells = stored.memory;
     Settings changed = stored.settings;
     changed.watchdog_timeout = 0x11;
@@ -37,9 +37,9 @@ TEST(StoredBytes, SettingsOfAnotherModelAreNotRead) {
   for (const StoredBytes& stored : all_stored_bytes()) {
     for (const Model& each : kModels) {
       if (&each != stored.model) {
-        FakeMemory memory;
+        FakeEeprom memory;
         memory.cells = stored.memory;
-        EXPECT_EQ(Boot(memory, each).found(), Found::Unreadable) << stored.file << " as " << each.designation;
+        EXPECT_EQ(Boot(memory, each).source(), SettingsSource::NoneGood) << stored.file << " as " << each.designation;
       }
     }
   }

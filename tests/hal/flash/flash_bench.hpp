@@ -1,19 +1,20 @@
-// A page store on the model of a flash, from one reset to the next.
+// A module's settings in a log on the model of a flash, from one reset to the next.
 #pragma once
 
 #include <gtest/gtest.h>
 
-#include <array>
+#include <algorithm>
 #include <cstdint>
-#include <vector>
 
-#include "hal/flash/page_store.hpp"
+#include "firmware/settings/settings_keeper.hpp"
+#include "hal/flash/record_log.hpp"
 #include "hal/memory.hpp"
 #include "tests/hal/flash/flash_chip.hpp"
+#include "tests/hal/numbered_settings.hpp"
 
 namespace ex9000::hal::flash {
 
-/// Passes the calls of the store to a chip, which must outlive the store.
+/// Passes the calls of the log to a chip, which must outlive the log.
 struct FlashPort {
   FlashChip* chip = nullptr;
 
@@ -25,66 +26,41 @@ struct FlashPort {
   void read(std::uint32_t address, MutableBytes destination) const { chip->read(address, destination); }
 };
 
-using Store = PageStore<FlashPort, FlashChip::kBegin>;
-static_assert(kIsMemory<Store>);
+using Log = RecordLog<FlashPort, FlashChip::kBegin>;
 
-using Page = std::array<std::uint8_t, kPage>;
-constexpr std::size_t kStoreSize = kPages * kPage;
-
-/// Returns a page that differs for each `number`.
-inline Page numbered(unsigned number) {
-  Page page{};
-  for (std::size_t i = 0; i < kPage; ++i) {
-    page[i] = static_cast<std::uint8_t>((number >> (8U * (i % 4))) + i);
-  }
-  return page;
-}
-
-/// A page store with its main loop. `read`, `write` and `page` run the main loop until their result is
-/// available.
-class Session {
+/// A log with its main loop.
+class OnFlash {
  public:
-  /// Begins with a new store, as a reset does. `chip` must outlive this object.
-  explicit Session(FlashChip& chip) : chip_(chip) { store_.flash().chip = &chip; }
-  /// Continues with a copy of `store`. `chip` is the chip of `store` or a copy of that chip.
-  Session(FlashChip& chip, const Store& store) : chip_(chip), store_(store) { store_.flash().chip = &chip; }
+  /// Begins as a reset does, and loads the settings. `chip` must outlive this object.
+  explicit OnFlash(FlashChip& chip, const Model& which = the_model()) : chip_(&chip), keeper_(which) {
+    log_.flash().chip = &chip;
+    latency = drive();
+  }
+  /// Continues with a copy of `other`. `chip` is a copy of the chip of `other`.
+  OnFlash(FlashChip& chip, const OnFlash& other) : OnFlash(other) {
+    chip_ = &chip;
+    log_.flash().chip = &chip;
+  }
+  OnFlash(const OnFlash&) = default;
+  OnFlash& operator=(const OnFlash&) = delete;
 
-  bool read(std::size_t address, std::vector<std::uint8_t>& into) {
-    store_.start_read(static_cast<std::uint16_t>(address), {into.data(), into.size()}, chip_.time());
-    return finish();
+  /// Saves `settings` as for a command. Returns whether the save succeeded.
+  bool save(const Settings& settings) {
+    keeper_.save(settings, chip_->time());
+    latency = drive();
+    return keeper_.saved();
   }
-  bool write(std::size_t address, Bytes source) {
-    store_.start_write(static_cast<std::uint16_t>(address), source, chip_.time());
-    return finish();
+  /// Begins to save `settings`, and runs the main loop for `microseconds`.
+  void begin_save(const Settings& settings, std::uint64_t microseconds) {
+    keeper_.save(settings, chip_->time());
+    log_.start(keeper_.job(), chip_->time());
+    run(microseconds);
   }
-  bool write(std::size_t page, const Page& content) {
-    return write(page * kPage, Bytes{content.data(), content.size()});
-  }
-  Page page(std::size_t number) {
-    std::vector<std::uint8_t> bytes(kPage);
-    EXPECT_TRUE(read(number * kPage, bytes)) << "page " << number;
-    Page page{};
-    std::copy(bytes.begin(), bytes.end(), page.begin());
-    return page;
-  }
-
-  /// Runs the main loop until the job is over. Returns whether the job succeeded. If the job takes more than
-  /// 1 s, fails the test and returns false. Sets `latency` if the job ends in time.
-  bool finish() {
-    const std::uint64_t began = chip_.now;
-    while (store_.busy()) {
-      turn();
-      if (chip_.now - began > 1'000'000) {
-        ADD_FAILURE() << "the job does not end";
-        return false;
-      }
-    }
-    latency = chip_.now - began;
-    return store_.succeeded();
-  }
-  /// Runs the main loop for at least `microseconds`.
-  void run(std::uint64_t microseconds) {
-    for (const std::uint64_t end = chip_.now + microseconds; chip_.now < end;) {
+  /// Runs the main loop for at least `microseconds` without a command, while `stored()` is in force.
+  void idle(std::uint64_t microseconds) {
+    for (const std::uint64_t end = chip_->now + microseconds; chip_->now < end;) {
+      keeper_.poll(keeper_.stored(), chip_->time());
+      drive();
       turn();
     }
   }
@@ -93,26 +69,63 @@ class Session {
     constexpr int kQuietTurns = 6;
     for (int quiet = 0; quiet < kQuietTurns; ++quiet) {
       turn();
-      if (chip_.busy() || chip_.erase_suspended()) {
+      if (chip_->busy() || chip_->erase_suspended()) {
         quiet = 0;
       }
     }
   }
-  /// Calls `poll` every 10 us until it returns false. Then lets kMemoryPollPeriod pass.
-  void turn() {
-    constexpr std::uint64_t kTurn = 10;  // us
-    while (store_.poll(chip_.time())) {
-      chip_.run(kTurn);
+  /// Runs the main loop for `microseconds`, in steps of at most kMemoryPollPeriod.
+  void run(std::uint64_t microseconds) {
+    for (const std::uint64_t end = chip_->now + microseconds; chip_->now < end;) {
+      poll();
+      chip_->run(std::min<std::uint64_t>(kMemoryPollPeriod.microseconds(), end - chip_->now));
     }
-    chip_.run(kMemoryPollPeriod.microseconds());
   }
 
-  Store& store() { return store_; }
-  std::uint64_t latency = 0;  ///< duration of the last job in us
+  [[nodiscard]] const Settings& stored() const { return keeper_.stored(); }
+  [[nodiscard]] SettingsSource source() const { return keeper_.source(); }
+  SettingsKeeper& keeper() { return keeper_; }
+  Log& log() { return log_; }
+  std::uint64_t latency = 0;  ///< duration of the last load or save in us
 
  private:
-  FlashChip& chip_;
-  Store store_;
+  /// Runs all jobs of the keeper. Returns their duration in us. Fails the test if it exceeds 1 s.
+  std::uint64_t drive() {
+    const std::uint64_t began = chip_->now;
+    while (keeper_.busy()) {
+      for (log_.start(keeper_.job(), chip_->time()); log_.busy(); turn()) {
+        if (chip_->now - began > 1'000'000) {
+          ADD_FAILURE() << "the job does not end";
+          return chip_->now - began;
+        }
+      }
+      keeper_.done(log_.result());
+    }
+    return chip_->now - began;
+  }
+  /// Calls `poll` every 10 us until it returns false.
+  void poll() {
+    constexpr std::uint64_t kTurn = 10;
+    while (log_.poll(chip_->time())) {
+      chip_->run(kTurn);
+    }
+  }
+  void turn() {
+    poll();
+    chip_->run(kMemoryPollPeriod.microseconds());
+  }
+
+  FlashChip* chip_;
+  Log log_;
+  SettingsKeeper keeper_;
 };
+
+/// Returns a chip with the given times whose sectors are all erased and marked.
+inline FlashChip settled(const FlashChip::Times& times = {}) {
+  FlashChip chip;
+  chip.times = times;
+  OnFlash(chip).settle();
+  return chip;
+}
 
 }  // namespace ex9000::hal::flash

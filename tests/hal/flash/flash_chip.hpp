@@ -103,6 +103,10 @@ class FlashChip {
     EXPECT_FALSE(busy()) << "a read is ignored now";
     std::copy_n(cells.begin() + static_cast<std::ptrdiff_t>(at), destination.size, destination.data);
     bytes_read += destination.size;
+    if (destination.size > 16 && noisy_reads != 0) {
+      --noisy_reads;
+      destination.data[destination.size / 2] ^= 0x10U;
+    }
   }
 
   // --- functions for the test ---
@@ -172,8 +176,10 @@ class FlashChip {
   /// the lowest bit of each broken byte becomes 0 whenever an operation ends.
   std::size_t broken = SIZE_MAX;
   std::size_t broken_size = 1;
-  bool broken_keeps = false;  ///< if true, programming does not change the broken bytes
-  std::uint64_t now = 1;      ///< us
+  std::size_t broken_every = SIZE_MAX / 2;  ///< more bytes are broken at this distance
+  bool broken_keeps = false;                ///< if true, programming does not change the broken bytes
+  unsigned noisy_reads = 0;  ///< number of the next reads of more than 16 bytes that return a wrong bit
+  std::uint64_t now = 1;     ///< us
   std::array<unsigned, kSectorsOfStore> erases{};
   unsigned programs = 0;
   unsigned suspensions = 0;
@@ -185,7 +191,9 @@ class FlashChip {
     EXPECT_TRUE(in_store) << "outside the store: " << address;
     return in_store ? address - kBegin : 0;
   }
-  [[nodiscard]] bool is_broken(std::size_t at) const { return at >= broken && at - broken < broken_size; }
+  [[nodiscard]] bool is_broken(std::size_t at) const {
+    return at >= broken && (at - broken) % broken_every < broken_size;
+  }
   void begin(Operation operation, std::size_t at, std::uint64_t time) {
     operation_ = operation;
     at_ = at;
@@ -211,8 +219,8 @@ class FlashChip {
       std::fill_n(cells.begin() + begin, kSector, std::uint8_t{0xFF});
       std::fill_n(weak_.begin() + begin, kSector, false);
     }
-    for (std::size_t i = 0; !broken_keeps && i < broken_size && broken < cells.size(); ++i) {
-      cells[broken + i] &= 0xFE;
+    for (std::size_t at = broken; !broken_keeps && at < cells.size(); ++at) {
+      cells[at] &= is_broken(at) ? 0xFE : 0xFF;
     }
     operation_ = Operation::None;
   }

@@ -12,7 +12,6 @@
 #include "firmware/line/timing.hpp"
 #include "hal/device.hpp"
 #include "hal/tick.hpp"
-#include "tests/firmware/settings/settings_store_bench.hpp"
 #include "tests/hal/flash/flash_bench.hpp"
 
 namespace ex9000 {
@@ -20,7 +19,8 @@ namespace {
 
 using hal::flash::FlashChip;
 using hal::flash::FlashPort;
-using hal::flash::Session;
+using hal::flash::kPlacesOfASector;
+using hal::flash::OnFlash;
 
 constexpr std::uint64_t kForever = UINT64_MAX;
 constexpr std::uint32_t kBaud = 115'200;
@@ -80,7 +80,7 @@ struct FlashBoard {
   Timer wake_timer;
   NoInputs inputs;
   NoOutputs outputs;
-  hal::flash::Store memory;
+  hal::flash::Log memory;
   NoSwitch init_switch;
   NoLed status_led;
   NoWatchdog watchdog;
@@ -191,14 +191,10 @@ class ModuleOnFlash {
 
 /// Returns a flash that contains settings with 115200 baud. All its free sectors are erased.
 FlashChip flash_at_115200() {
-  FlashChip chip;
-  Session run(chip);
-  run.settle();
+  FlashChip chip = hal::flash::settled();
   Settings settings = factory();
   settings.baud_code = kBaudCode;
-  RecordBytes record{};
-  write_record(the_model(), settings, 1, record);
-  EXPECT_TRUE(run.write(kCopies[0], Bytes{record.data(), 32}));
+  EXPECT_TRUE(OnFlash(chip).save(settings));
   return chip;
 }
 

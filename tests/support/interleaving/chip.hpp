@@ -206,7 +206,7 @@ struct Watchdog {
   }
 };
 
-/// A memory. A read or a write ends after `kMemoryJob` microseconds, with an interrupt.
+/// An EEPROM. A read or a write ends after `kMemoryJob` microseconds, with an interrupt.
 class Memory {
  public:
   static constexpr std::size_t kSize = 0x100;

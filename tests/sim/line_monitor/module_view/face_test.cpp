@@ -138,7 +138,7 @@ TEST(Face, IgnoresADamagedCopyOfTheSettings) {
   ASSERT_EQ(bench.ask("~01OONE"), "!01");
   ASSERT_EQ(bench.ask("~01OTWO"), "!01");
   const std::size_t current = *face_of(bench).stored.current;
-  bench.module().memory().contents()[kPlaces[current]] ^= 1U;
+  bench.module().memory().contents()[hal::kPlaces[current]] ^= 1U;
   const Stored stored = face_of(bench).stored;
   EXPECT_FALSE(stored.copies[current].sequence);
   EXPECT_EQ(stored.current, 1 - current);
@@ -147,8 +147,8 @@ TEST(Face, IgnoresADamagedCopyOfTheSettings) {
 
 TEST(Face, TheLedShowsUnreadableSettings) {
   ModuleBench bench("EX9042D");
-  bench.module().memory().contents()[kPlaces[0]] = 0;
-  bench.module().memory().contents()[kPlaces[1]] = 0;
+  bench.module().memory().contents()[hal::kPlaces[0]] = 0;
+  bench.module().memory().contents()[hal::kPlaces[1]] = 0;
   bench.power_cycle();
   EXPECT_EQ(face_of(bench).plate.led, Led::SettingsUnreadable);
   EXPECT_FALSE(face_of(bench).stored.current);

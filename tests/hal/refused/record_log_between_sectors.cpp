@@ -1,14 +1,16 @@
-// Must not compile: this flash cannot suspend an erase, so a save would have to wait for the end of an erase.
-#include "hal/flash/page_store.hpp"
+// Must not compile: the log does not begin at the start of a sector.
+#include "hal/flash/record_log.hpp"
 
 namespace ex9000::hal {
 
-struct FlashWithoutSuspend {
+struct Flash {
   static void start_erase(std::uint32_t address);
   static void start_program(std::uint32_t address, Bytes source);
   [[nodiscard]] static bool busy();
+  static void suspend();
+  static void resume();
   static void read(std::uint32_t address, MutableBytes destination);
 };
-template class flash::PageStore<FlashWithoutSuspend, 0>;
+template class flash::RecordLog<Flash, 0x1100>;
 
 }  // namespace ex9000::hal

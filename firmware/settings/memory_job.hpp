@@ -1,0 +1,47 @@
+// What the module requests from its memory, and what the memory reports. See hal/memory.hpp.
+#pragma once
+
+#include <cstdint>
+
+#include "firmware/bytes.hpp"
+#include "firmware/model/model.hpp"
+
+namespace ex9000 {
+
+/// A job for the memory.
+///
+///     Load      Copies the newest good record of `model` to `record`, which has kRecordRoom bytes. If there
+///     is
+///               none, `record` stays the same. The load fails if there is none and a part of the memory does
+///               not answer.
+///     Save      Writes `record` and reads it back, up to `attempts` times. The sequence of the record must
+///               follow that of the newest record. If the power fails, a reset loads either the previous
+///               record or this one. If the save fails, the memory withdraws the record: it makes sure that a
+///               reset loads the previous one. Only after a load that has succeeded.
+///     Withdraw  Tries again to withdraw the record of a failed save. Only if MemoryResult::refused.
+struct MemoryJob {
+  enum class Kind : std::uint8_t { Load, Save, Withdraw };
+
+  Kind kind = Kind::Load;
+  const Model* model = nullptr;
+  MutableBytes record;        ///< valid until the job has ended
+  std::uint8_t attempts = 0;  ///< at least 1
+};
+
+/// The origin of the settings that were loaded at reset: register 0x0306 (firmware/extensions.md).
+enum class SettingsSource : std::uint8_t {
+  Good = 0,        ///< a good record; no other record is bad
+  OneCopyBad = 1,  ///< a good record; another one, which may be newer, is bad
+  NoneGood = 2,    ///< no good record, but the memory is not blank or does not answer: factory settings
+  Blank = 4,       ///< nothing was ever stored: factory settings; 3 is for a record of an older layout
+};
+
+/// The state of the memory when a job has ended.
+struct MemoryResult {
+  bool succeeded = false;
+  SettingsSource source = SettingsSource::NoneGood;  ///< of the last load; Good after a successful save
+  bool certain = false;  ///< a reset now would certainly load the last record that was loaded or saved
+  bool refused = false;  ///< a reset now may load the record of a failed save
+};
+
+}  // namespace ex9000

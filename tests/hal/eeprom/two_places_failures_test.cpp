@@ -1,0 +1,192 @@
+// Tests saves during which the EEPROM fails: wire.md section 8, "A valid reply means that the settings are
+// stored."
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+
+#include "tests/hal/eeprom/two_places_bench.hpp"
+
+namespace ex9000 {
+namespace {
+
+TEST(TwoPlacesFailures, IfTheReadBackDiffersOnceOrTwiceTheWriteIsRepeated) {
+  for (std::size_t noisy = 1; noisy < kAttempts; ++noisy) {
+    FakeEeprom memory;
+    Boot run(memory);
+    memory.noisy_reads = noisy;
+    EXPECT_TRUE(run.save(numbered(1)));
+    EXPECT_EQ(memory.writes.size(), noisy + 1);
+    EXPECT_TRUE(Boot(memory).stored() == numbered(1));
+  }
+}
+
+TEST(TwoPlacesFailures, IfAWriteIsNotAnsweredOnceOrTwiceItIsRepeated) {
+  for (std::size_t unanswered = 1; unanswered < kAttempts; ++unanswered) {
+    FakeEeprom memory;
+    Boot run(memory);
+    memory.unanswered_writes = unanswered;
+    EXPECT_TRUE(run.save(numbered(1)));
+    EXPECT_EQ(memory.writes.size(), unanswered + 1);
+    EXPECT_TRUE(Boot(memory).stored() == numbered(1));
+  }
+}
+
+TEST(TwoPlacesFailures, AReadBackThatIsNotAnsweredIsAFailedAttemptToo) {
+  FakeEeprom memory;
+  Boot run(memory);
+  memory.failing_reads = kAttempts - 1;
+  EXPECT_TRUE(run.save(numbered(1)));
+  EXPECT_EQ(memory.writes.size(), kAttempts);
+}
+
+TEST(TwoPlacesFailures, AfterThreeFailedAttemptsTheOldSettingsStayAndAreFoundAtTheNextLoad) {
+  for (std::size_t failure = 0; failure < kFailures.size(); ++failure) {
+    FakeEeprom memory;
+    Boot first(memory);
+    ASSERT_TRUE(first.save(numbered(1)));
+    ASSERT_TRUE(first.save(numbered(2)));
+    Boot run(memory);
+    memory.writes.clear();
+    kFailures[failure](memory);
+    EXPECT_FALSE(run.save(numbered(3))) << failure;
+    EXPECT_TRUE(run.stored() == numbered(2)) << failure;
+    EXPECT_TRUE(Boot(memory).stored() == numbered(2)) << failure;
+  }
+}
+
+TEST(TwoPlacesFailures, AfterThreeFailedAttemptsTheNewRecordIsWithdrawn) {
+  FakeEeprom memory;
+  Boot run(memory);
+  memory.noisy_reads = kAttempts;
+  EXPECT_FALSE(run.save(numbered(1)));
+  EXPECT_EQ(memory.writes.size(), kAttempts + 1);
+  EXPECT_TRUE(run.stored() == factory());
+  EXPECT_TRUE(Boot(memory).stored() == factory());
+}
+
+TEST(TwoPlacesFailures, AfterAFailedSaveUnreadableSettingsStayUnreadable) {
+  FakeEeprom memory;
+  put(memory, 0, numbered(5), 7);
+  corrupt(memory, 0);
+  Boot run(memory);
+  memory.unanswered_writes = kAttempts + 1;
+  EXPECT_FALSE(run.save(numbered(1)));
+  EXPECT_TRUE(run.keeper().unreadable());
+}
+
+TEST(TwoPlacesFailures, ASaveAfterAFailedSaveSucceeds) {
+  for (const auto fail : kFailures) {
+    FakeEeprom memory;
+    Boot run(memory);
+    ASSERT_TRUE(run.save(numbered(1)));
+    fail(memory);
+    EXPECT_FALSE(run.save(numbered(2)));
+    memory.stuck = false;
+    EXPECT_TRUE(run.save(numbered(3)));
+    EXPECT_TRUE(run.stored() == numbered(3));
+    EXPECT_TRUE(Boot(memory).stored() == numbered(3));
+  }
+}
+
+TEST(TwoPlacesFailures, AFailedSaveDoesNotWriteTheCopyThatHoldsTheOldSettings) {
+  FakeEeprom memory;
+  put(memory, 0, numbered(5), 7);
+  Boot run(memory);
+  memory.noisy_reads = kAttempts;
+  EXPECT_FALSE(run.save(numbered(1)));
+  for (const std::uint16_t address : memory.writes) {
+    EXPECT_NE(address / kPage, kCopies[0] / kPage);
+  }
+}
+
+/// Saves settings, of which `pages_before` pages succeed. The read-back of the next page, the last one,
+/// differs each time, so the save fails although its record is complete. The write that withdraws the record
+/// has no effect.
+void refuse_a_complete_record(Boot& run, FakeEeprom& memory, std::size_t pages_before = 0) {
+  memory.good_jobs = 2 * pages_before;
+  memory.noisy_reads = kAttempts;
+  memory.ignored_after = pages_before + kAttempts;
+  EXPECT_FALSE(run.save(numbered(21)));
+  ASSERT_TRUE(Boot(memory).stored() == numbered(21)) << "the record is valid, so this test can fail";
+  EXPECT_FALSE(run.keeper().certain());
+}
+
+// A memory that answers a write without doing it must not make refused settings valid.
+TEST(TwoPlacesFailures, AWithdrawalWithoutEffectIsNoticedAndRepeated) {
+  FakeEeprom memory;
+  put(memory, 0, numbered(1), 7);
+  Boot run(memory);
+  refuse_a_complete_record(run, memory);
+  EXPECT_TRUE(run.pass(milliseconds(0), numbered(1)));
+  EXPECT_FALSE(run.keeper().certain());
+
+  memory.ignored_after = SIZE_MAX;
+  EXPECT_TRUE(run.pass(milliseconds(1000), numbered(1)) || run.pass(milliseconds(1000), numbered(1)));
+  EXPECT_TRUE(run.keeper().certain());
+  EXPECT_TRUE(Boot(memory).stored() == numbered(1));
+}
+
+TEST(TwoPlacesFailures, AWithdrawalWithoutEffectOfALongOrOfTheFirstRecordIsNoticed) {
+  FakeEeprom longer;
+  put_longer(longer, 0, numbered(1), 7, 96);
+  Boot run(longer);
+  refuse_a_complete_record(run, longer, 3);
+  FakeEeprom blank;
+  Boot first(blank);
+  refuse_a_complete_record(first, blank);
+}
+
+TEST(TwoPlacesFailures, AWithdrawalThatCannotBeReadBackIsRepeated) {
+  FakeEeprom memory;
+  Boot run(memory);
+  memory.noisy_reads = kAttempts;
+  EXPECT_FALSE(run.save(numbered(1)));
+  EXPECT_TRUE(run.keeper().certain());
+  memory.good_jobs = 1;
+  memory.failing_reads = kAttempts + 1;  // also the read-back of the withdrawal
+  EXPECT_FALSE(run.save(numbered(2)));
+  EXPECT_FALSE(run.keeper().certain());
+  EXPECT_TRUE(run.pass(milliseconds(0), factory()));
+  EXPECT_TRUE(run.keeper().certain());
+}
+
+// A worn cell that keeps its value does not make the copy valid, so it is not written again and again.
+TEST(TwoPlacesFailures, AWithdrawalThatIsIncompleteButSufficientIsNotRepeated) {
+  FakeEeprom memory;
+  Boot run(memory);
+  ASSERT_TRUE(run.save(numbered(1)));
+  memory.noisy_reads = kAttempts;
+  memory.stuck = true;
+  EXPECT_FALSE(run.save(numbered(21)));
+  EXPECT_TRUE(run.keeper().certain());
+  EXPECT_TRUE(Boot(memory).stored() == numbered(1));
+}
+
+// The memory did not answer at reset. Then a save failed, and its copy could not be withdrawn. The next
+// save reads all copies again.
+TEST(TwoPlacesFailures, RefusedSettingsAreNotUsedWhenAllCopiesAreReadAgain) {
+  FakeEeprom memory;
+  put(memory, 0, numbered(5), 7);
+  memory.failing_reads = kReadsOfASilentEeprom;
+  Boot run(memory);
+  ASSERT_EQ(run.source(), SettingsSource::NoneGood);
+  memory.unanswered_writes = kAttempts + 1;
+  // The memory carries out these writes but does not answer them. First it stores the refused settings. Then
+  // it stores the zeros that withdraw this copy.
+  memory.unanswered_but_done = true;
+  EXPECT_FALSE(run.save(numbered(6)));
+  put(memory, 1, numbered(6), 8);  // as if the withdrawal had not been done
+  memory.writes.clear();
+  memory.unanswered_writes = kAttempts;
+  memory.unanswered_but_done = false;
+  EXPECT_FALSE(run.save(numbered(9)));
+  for (const std::uint16_t address : memory.writes) {
+    EXPECT_NE(address, kCopies[0]) << "a write to the only copy without refused settings";
+  }
+  EXPECT_TRUE(Boot(memory).stored() == numbered(5));
+}
+
+}  // namespace
+}  // namespace ex9000
