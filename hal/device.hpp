@@ -110,8 +110,8 @@ class Device {
       board_.watchdog.feed();
     }
     serve_line(now);
-    const bool memory_is_done = begin_memory_job(now);
-    return set_wake_timer(now) || memory_polls || memory_is_done;
+    const bool memory_begins = begin_memory_job(now);
+    return set_wake_timer(now) || memory_polls || memory_begins;
   }
 
   constexpr Board& board() { return board_; }
@@ -153,15 +153,14 @@ class Device {
     return polls_again;
   }
 
-  /// Begins the next memory job. Returns whether the memory has completed it at once, so that no interrupt
-  /// follows.
+  /// Begins the next memory job. Returns whether there was one, so that the memory must be polled.
   bool begin_memory_job(Time now) {
     if (memory_job_under_way_ || !module_.needs_memory()) {
       return false;
     }
     board_.memory.start(module_.memory_job(), now);
     memory_job_under_way_ = true;
-    return !board_.memory.busy();
+    return true;
   }
 
   /// Sets the wake timer to the time until the next deadline, or until the memory must be polled; at most

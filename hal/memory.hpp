@@ -4,14 +4,14 @@
 // `Device::on_memory`. All functions are for the main loop and do not block.
 //
 //     void start(const MemoryJob& job, Time now)
-//         Begins a job. Call this only while not `busy()`.
+//         Accepts a job. Call this only while not `busy()`, and then call `poll` immediately.
 //     bool poll(Time now)
 //         Continues the job. Call this in every pass of the main loop, even if no job is running, because a
 //         memory may prepare for the next job. During a job, also call this after each interrupt of the
 //         memory and at least every `kMemoryPollPeriod`. If this returns true, call it again immediately,
 //         because no interrupt will occur.
 //     bool busy() const
-//         Returns whether a job is running. A job may end at once: then this is false after `start`.
+//         Returns whether a job is running.
 //     MemoryResult result() const
 //         Call this only while not `busy()`.
 #pragma once

@@ -42,10 +42,9 @@ class TwoPlaces {
   explicit constexpr TwoPlaces(Eeprom eeprom) : eeprom_(eeprom) {}
   Eeprom& eeprom() { return eeprom_; }
 
-  void start(const MemoryJob& job, Time now) {
+  void start(const MemoryJob& job, Time /*now*/) {
     job_ = job;
     step_ = Step::Start;
-    poll(now);
   }
 
   bool poll(Time now) {

@@ -76,7 +76,6 @@ class RecordLog {
     job_ = job;
     busy_ = true;
     deadline_.set(now + (job.kind == MemoryJob::Kind::Load ? kLongestLoad : kLongestSave));
-    poll(now);
   }
 
   bool poll(Time now) {

@@ -1,4 +1,4 @@
-// Tests how the device uses a memory that completes a job at once: hal/memory.hpp.
+// Tests that the device polls the memory immediately after it has begun a job: hal/memory.hpp.
 #include "hal/device.hpp"
 
 #include <gtest/gtest.h>
