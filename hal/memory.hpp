@@ -29,8 +29,6 @@ namespace ex9000::hal {
 /// interrupt, for example the expiry of a timeout.
 inline constexpr Duration kMemoryPollPeriod = milliseconds(1);
 
-/// The number of reads of a bad place before a load gives it up.
-inline constexpr unsigned kReadAttempts = 3;
 
 /// Zeros in the first bytes of a record, which include its layout, withdraw it.
 inline constexpr std::array<std::uint8_t, 8> kNoRecord{};

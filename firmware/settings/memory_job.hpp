@@ -11,13 +11,12 @@ namespace ex9000 {
 /// A job for the memory.
 ///
 ///     Load      Copies the newest good record of `model` to `record`, which has kRecordRoom bytes. If there
-///     is
-///               none, `record` stays the same. The load fails if there is none and a part of the memory does
-///               not answer.
+///               is none, `record` stays the same. The load fails if there is none and a part of the memory
+///               does not answer.
 ///     Save      Writes `record` and reads it back, up to `attempts` times. The sequence of the record must
 ///               follow that of the newest record. If the power fails, a reset loads either the previous
-///               record or this one. If the save fails, the memory withdraws the record: it makes sure that a
-///               reset loads the previous one. Only after a load that has succeeded.
+///               record or this one. If the save fails, the memory withdraws the record: it makes sure that
+///               a reset loads the previous one. Only after a load that has succeeded.
 ///     Withdraw  Tries again to withdraw the record of a failed save. Only if MemoryResult::refused.
 struct MemoryJob {
   enum class Kind : std::uint8_t { Load, Save, Withdraw };
@@ -25,7 +24,7 @@ struct MemoryJob {
   Kind kind = Kind::Load;
   const Model* model = nullptr;
   MutableBytes record;        ///< valid until the job has ended
-  std::uint8_t attempts = 0;  ///< at least 1
+  std::uint8_t attempts = 0;  ///< for Save, at least 1
 };
 
 /// The origin of the settings that were loaded at reset: register 0x0306 (firmware/extensions.md).

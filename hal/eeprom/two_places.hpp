@@ -32,9 +32,9 @@ constexpr bool is_blank(Bytes bytes) {
 /// record, page by page, and reads back each page. The new record becomes good only when the check at its end
 /// is written. For the functions, see hal/memory.hpp; for `Eeprom`, see hal/eeprom/eeprom.hpp.
 ///
-/// A load reads each place up to kReadAttempts times. If the last read at the first place gets no answer, and
-/// a read at the second one gets none either, the load does not repeat the latter: a module must be ready
-/// 100 ms after a reset. A place is blank if its first page is.
+/// A load reads each place up to three times until its record is good. If the last read at the first place
+/// gets no answer, and a read at the second one gets none either, the load does not repeat the latter: a
+/// module must be ready 100 ms after a reset. A place is blank if its first page is.
 template <class Eeprom>
 class TwoPlaces {
  public:
@@ -69,6 +69,7 @@ class TwoPlaces {
  private:
   enum class Step : std::uint8_t { Idle, Start, Load, Write, Verify, Withdraw, CheckWithdrawn };
   static constexpr std::size_t kNoPlace = kPlaces.size();
+  static constexpr std::uint8_t kReads = 3;
 
   void begin_job() {
     switch (job_.kind) {  // not covered: the enumeration has no other value
@@ -90,7 +91,7 @@ class TwoPlaces {
 
   void load(std::size_t place) {
     place_ = place;
-    job_.attempts = kReadAttempts;
+    job_.attempts = kReads;
     begin(Step::Load, kEepromPage);  // `end_read` sets the size of a record
   }
   void write(Step step, std::size_t place, Bytes source) {

@@ -37,8 +37,8 @@ inline constexpr std::array<std::uint8_t, 8> kNoMark{};
 ///
 /// A save appends a record and reads it back. The newest good record is in force, so a power failure during a
 /// save leaves the previous record or the new one. The log begins to write to a sector only if the sector has
-/// a mark. It begins a new sector for the first save after a reset, because a power failure may
-/// have interrupted the programming of a place whose bytes nevertheless read as FF, and for the save after a
+/// a mark. It begins a new sector for the first save after a reset, because a power failure may have
+/// interrupted the programming of a place whose bytes nevertheless read as FF, and for the save after a
 /// failed attempt.
 ///
 /// While no job is running, `poll` erases all free sectors in advance: those that have no mark, do not hold
@@ -56,7 +56,7 @@ inline constexpr std::array<std::uint8_t, 8> kNoMark{};
 /// most 434 records. A load fails if the flash does not answer within kLongestLoad, and a save fails if it
 /// has not ended after kLongestSave.
 ///
-/// The tests in tests/hal/flash measure these times, cut the power at each operation, and count erases.
+/// The tests in tests/hal measure these times, cut the power at each operation, and count erases.
 template <class Flash, std::uint32_t kBegin>
 class RecordLog {
   static_assert(kBegin % kFlashSector == 0, "kBegin: not the start of a sector");
