@@ -14,7 +14,8 @@ void put(const Model& model, const Settings& settings, std::uint16_t sequence, s
          Contents& contents) {
   RecordBytes record{};
   write_record(model, settings, sequence, record);
-  std::copy_n(record.begin(), record_size({record.data(), record.size()}), contents.begin() + hal::kPlaces[copy]);
+  std::copy_n(record.begin(), record_size({record.data(), record.size()}),
+              contents.begin() + hal::kPlaces[copy]);
 }
 
 /// Returns settings that differ from the factory settings as far as the model and the command permit. There

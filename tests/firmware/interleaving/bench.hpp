@@ -41,7 +41,8 @@ class Bench {
     change(settings);
     RecordBytes record{};
     write_record(*find_model(model), settings, 1, record);
-    std::copy(record.begin(), record.end(), device_.board().memory.eeprom().contents.begin() + hal::kPlaces[0]);
+    std::copy(record.begin(), record.end(),
+              device_.board().memory.eeprom().contents.begin() + hal::kPlaces[0]);
     device_.start(ResetReason::PowerOn);
     rest(milliseconds(15));
     chip_.sent.clear();

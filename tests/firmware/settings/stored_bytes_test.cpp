@@ -39,7 +39,8 @@ TEST(StoredBytes, SettingsOfAnotherModelAreNotRead) {
       if (&each != stored.model) {
         FakeEeprom memory;
         memory.cells = stored.memory;
-        EXPECT_EQ(Boot(memory, each).source(), SettingsSource::NoneGood) << stored.file << " as " << each.designation;
+        EXPECT_EQ(Boot(memory, each).source(), SettingsSource::NoneGood)
+            << stored.file << " as " << each.designation;
       }
     }
   }
