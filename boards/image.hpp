@@ -1,6 +1,6 @@
-// Checks and definitions for all images. Include this file in only one source file of a program, after the `board.hpp` of a board.
-// `board.hpp` must define kOutputs and kInputs, which are arrays of pin groups. Each pin group must have a
-// member `count`, its number of pins.
+// Checks and definitions for all images. Include this file in only one source file of a program, after the
+// `board.hpp` of a board. `board.hpp` must define kOutputs and kInputs, which are arrays of pin groups. Each
+// pin group must have a member `count`, its number of pins.
 #pragma once
 
 #include <iterator>

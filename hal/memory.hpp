@@ -29,7 +29,6 @@ namespace ex9000::hal {
 /// interrupt, for example the expiry of a timeout.
 inline constexpr Duration kMemoryPollPeriod = milliseconds(1);
 
-
 /// Zeros in the first bytes of a record, which include its layout, withdraw it.
 inline constexpr std::array<std::uint8_t, 8> kNoRecord{};
 

@@ -32,8 +32,7 @@ class Bench {
  public:
   /// Starts the module with the factory settings, 115200 baud and the changes that `change` makes. When the
   /// constructor returns, the module is idle.
-  Bench(const char* model, const std::function<void(Settings&)>& change)
-      : device_(*find_model(model)) {
+  Bench(const char* model, const std::function<void(Settings&)>& change) : device_(*find_model(model)) {
     chip = &chip_;
     hal::bus::peripherals = &chip_;
     Settings settings = Settings::factory(*find_model(model));

@@ -65,7 +65,8 @@ inline Parts restarted(Bench& bench) {
 
 /// Does the same as `restarted` for Modbus, in which a host OK counts from the end of its silence.
 inline Parts modbus_restarted(Bench& bench) {
-  bench.asked["host OK"] += LineTiming::reported_in_stop_bit(115200, LineFormat::k8N1).rtu_silence.microseconds();
+  bench.asked["host OK"] +=
+      LineTiming::reported_in_stop_bit(115200, LineFormat::k8N1).rtu_silence.microseconds();
   return restarted(bench);
 }
 
