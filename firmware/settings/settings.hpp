@@ -120,7 +120,7 @@ struct SettingsOf {
 /// of existing modules contain records in this layout. Never change the factory value of a setting after
 /// `safe_value`, because a record may omit such a setting if it has its factory value.
 template <class F, class... Some>
-constexpr void visit(F f, Some&... settings) {
+[[gnu::always_inline]] constexpr void visit(F f, Some&... settings) {
   f(settings.address...);
   f(settings.baud_code...);
   f(settings.format...);

@@ -252,7 +252,6 @@ class RecordLog {
 
   void begin_scan() {
     newest_ = kNoPlace;
-    next_ = kNoPlace;
     bad_ = false;
     scanned_ = 0;
     step_ = Step::Scanning;
@@ -277,7 +276,7 @@ class RecordLog {
       return;
     }
     const Bytes record = read(place, size);
-    if (place == refused_ || !read_record(*job_.model, record)) {
+    if (!read_record(*job_.model, record)) {
       bad_ = bad_ || newest_ == kNoPlace || sector_of(newest_) == sector_of(place);
     } else if (counts(record)) {
       take(record, place);
@@ -344,8 +343,7 @@ class RecordLog {
     if (!counts(read(refused_, kHeaderSize))) {
       refused_ = kNoPlace;
     }
-    const bool ends = job_.kind == Kind::Withdraw || refused_ != kNoPlace || job_.attempts == 0;
-    if (ends && job_.kind != Kind::Load) {
+    if (job_.kind == Kind::Withdraw || refused_ != kNoPlace || job_.attempts == 0) {
       finish(false);
     }
   }

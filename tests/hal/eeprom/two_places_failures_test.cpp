@@ -188,5 +188,36 @@ TEST(TwoPlacesFailures, RefusedSettingsAreNotUsedWhenAllCopiesAreReadAgain) {
   EXPECT_TRUE(Boot(memory).stored() == numbered(5));
 }
 
+TEST(TwoPlacesFailures, RefusedSettingsAreNotUsedWhenAllCopiesWereBadAndAreReadAgain) {
+  constexpr std::size_t kUntilTheReadBack = 2 * kAttempts + 1;  // the reads of both places, and the write
+  FakeEeprom memory;
+  put(memory, 0, numbered(5), 7);
+  put(memory, 1, numbered(6), 8);
+  corrupt(memory, 0);
+  corrupt(memory, 1);
+  Boot run(memory);
+  memory.good_jobs = kUntilTheReadBack;
+  memory.noisy_reads = kAttempts;
+  memory.ignored_after = kAttempts;
+  EXPECT_FALSE(run.save(numbered(21)));
+  ASSERT_TRUE(Boot(memory).stored() == numbered(21)) << "the record is valid, so this test can fail";
+  memory.good_jobs = kUntilTheReadBack;
+  memory.noisy_reads = kAttempts;
+  memory.ignored_after = SIZE_MAX;
+  EXPECT_FALSE(run.save(numbered(9)));
+  EXPECT_TRUE(Boot(memory).stored() == factory());
+}
+
+TEST(TwoPlacesFailures, AfterAnUnreadableResetASaveFailsWhileAPlaceDoesNotAnswer) {
+  FakeEeprom memory;
+  put(memory, 0, numbered(5), 7);
+  memory.failing_reads = kReadsOfASilentEeprom;
+  Boot run(memory);
+  memory.failing_reads = kAttempts;
+  EXPECT_FALSE(run.save(numbered(9)));
+  EXPECT_TRUE(memory.writes.empty());
+  EXPECT_TRUE(Boot(memory).stored() == numbered(5));
+}
+
 }  // namespace
 }  // namespace ex9000
