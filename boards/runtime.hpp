@@ -20,9 +20,8 @@ namespace ex9000::board {
 ///   2. The pins, with `start_pins`.
 ///   3. The clocks, the pins of the UART, and the memory.
 ///   4. The module, with `start_module`.
-///   5. The interrupts. All have the same preemption priority, so that no handler can interrupt another one.
-///   If
-///      both are pending, the silence timer's handler must run before the line's (hal/one_shot_timer.hpp).
+///   5. The interrupts, with one preemption priority, so that no handler interrupts another one. If both are
+///      pending, the handler of the silence timer must run before that of the line (hal/one_shot_timer.hpp).
 template <auto& device, class Tick, class SilenceTimer, class LineEndTimer, class WakeTimer>
 struct Runtime {
   /// Starts the outputs first, because their pins float until then.

@@ -6,7 +6,6 @@
 #include "firmware/crossing.hpp"
 #include "firmware/module.hpp"
 #include "hal/memory.hpp"
-#include "hal/one_shot_timer.hpp"
 
 namespace ex9000::hal {
 
@@ -163,10 +162,9 @@ class Device {
     return true;
   }
 
-  /// Sets the wake timer to the time until the next deadline, or until the memory must be polled; at most
-  /// kLongestWake. `now` is the start of this pass, so the timer expires late by the duration of the pass.
-  /// The delays of several passes do not accumulate. If the deadline is already reached, returns true and
-  /// does not set the timer.
+  /// Sets the wake timer to the time until the next deadline, or until the memory must be polled. `now` is
+  /// the start of this pass, so the timer expires late by the duration of the pass. The delays of several
+  /// passes do not accumulate. If the deadline is already reached, returns true and does not set the timer.
   bool set_wake_timer(Time now) {
     Deadline next = module_.next_deadline();
     if (memory_job_under_way_) {
@@ -179,7 +177,7 @@ class Device {
     if (sleep == Duration()) {
       return true;
     }
-    board_.wake_timer.restart(sleep < kLongestWake ? sleep : kLongestWake);
+    board_.wake_timer.restart(sleep);
     return false;
   }
 

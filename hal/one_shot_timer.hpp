@@ -5,10 +5,9 @@
 //     each other. If both are pending, the interrupt of the silence timer must run first, because a byte
 //     after the silence does not belong to the frame before the silence.
 //   - The wake timer. Its interrupt calls `Device::on_wake_timer`. The timer is set to the time until the
-//     next event, at least 1 us and at most `kLongestWake`. On a board, the main loop sets the timer again
-//     after each tick, every 10 ms. A timer of 16 bits at 1 MHz (65.535 ms) therefore suffices: if it is set
-//     to more than 65 ms, it may expire after 65 ms. If this timer failed, the main loop would process the
-//     event after the next tick.
+//     next deadline, 1 us to 30 s. On a board, the main loop sets it again after each tick, every 10 ms. A
+//     timer of 16 bits at 1 MHz (65.535 ms) therefore suffices: if it is set to more than 65 ms, it may
+//     expire after 65 ms. If this timer failed, the main loop would act after the next tick.
 //
 //     void restart(Duration after)
 //         Makes the timer expire once, when the duration `after` has passed: never early, and at most 5 us
@@ -24,13 +23,3 @@
 //         The handler of the timer calls this first and does nothing if the result is false, because another
 //         interrupt may have restarted the timer while this one was pending.
 #pragma once
-
-#include "firmware/time.hpp"
-
-namespace ex9000::hal {
-
-/// The longest time to which the wake timer is set. Only the simulator, whose tick is slow, waits so long:
-/// with 10 ms, an idle line would take 30 times as much processor time.
-inline constexpr Duration kLongestWake = milliseconds(1000);
-
-}  // namespace ex9000::hal
