@@ -50,11 +50,18 @@ class OnFlash {
     latency = drive();
     return keeper_.saved();
   }
-  /// Begins to save `settings`, and runs the main loop for `microseconds`.
-  void begin_save(const Settings& settings, std::uint64_t microseconds) {
+  /// Begins to save `settings`. Then call `run` or `Log::poll`, and `end_save`.
+  void begin_save(const Settings& settings) {
     keeper_.save(settings, chip_->time());
     log_.start(keeper_.job(), chip_->time());
-    run(microseconds);
+  }
+  /// Runs the main loop until the save has ended. Returns whether it succeeded.
+  bool end_save() {
+    while (log_.busy()) {
+      turn();
+    }
+    keeper_.done(log_.result());
+    return keeper_.saved();
   }
   /// Runs the main loop for at least `microseconds` without a command, while `stored()` is in force.
   void idle(std::uint64_t microseconds) {
