@@ -37,8 +37,7 @@ Settings Settings::factory(const Model& model) {
 
 bool Settings::possible_for(const Model& model) const {
   const bool protocol_fits =
-      protocol == Protocol::Ascii ||
-      (protocol == Protocol::ModbusRtu && model.speaks_modbus() && is_modbus_address(address));
+      protocol == Protocol::Ascii || (model.speaks_modbus() && is_modbus_address(address));
   const bool watchdog_fits = !watchdog_enabled || watchdog_timeout != 0;
   const bool outputs_fit = ((power_on_value | safe_value) & ~model.output_mask()) == 0;
   const bool inputs_fit =

@@ -50,7 +50,7 @@ void SettingsKeeper::done(const MemoryResult& result) {
       }
       break;
     case Step::Withdraw:
-    case Step::Idle:
+    case Step::Idle:  // not covered: no job is running while idle
       break;
   }
 }

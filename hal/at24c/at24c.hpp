@@ -12,7 +12,7 @@
 
 namespace ex9000::hal {
 
-/// An EEPROM of 8 KiB in pages of 32 bytes. For its functions, see hal/eeprom/eeprom.hpp; for `Master`, see
+/// An EEPROM of 8 KiB in pages of 32 bytes. For its functions, see hal/eeprom.hpp; for `Master`, see
 /// I2cTransfer.
 ///
 /// The EEPROM acknowledges nothing while it programs a page, so the driver repeats the device address until

@@ -9,7 +9,7 @@
 #include "firmware/bytes.hpp"
 #include "firmware/time.hpp"
 #include "hal/doubles/virtual_clock.hpp"
-#include "hal/eeprom/eeprom.hpp"
+#include "hal/eeprom.hpp"
 
 namespace ex9000::hal::doubles {
 

@@ -9,7 +9,7 @@
 #include "firmware/bytes.hpp"
 #include "firmware/settings/record.hpp"
 #include "firmware/time.hpp"
-#include "hal/eeprom/eeprom.hpp"
+#include "hal/eeprom.hpp"
 #include "hal/memory.hpp"
 
 namespace ex9000::hal {
@@ -30,7 +30,7 @@ constexpr bool is_blank(Bytes bytes) {
 
 /// Keeps up to two records, each in its own place. A save writes to the place that does not hold the newest
 /// record, page by page, and reads back each page. The new record becomes good only when the check at its end
-/// is written. For the functions, see hal/memory.hpp; for `Eeprom`, see hal/eeprom/eeprom.hpp.
+/// is written. For the functions, see hal/memory.hpp; for `Eeprom`, see hal/eeprom.hpp.
 ///
 /// A load reads each place up to three times until its record is good. If the last read at the first place
 /// gets no answer, and a read at the second one gets none either, the load does not repeat the latter: a

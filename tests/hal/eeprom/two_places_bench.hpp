@@ -26,7 +26,7 @@ inline constexpr std::size_t kStuckCell = 4;
 /// Thrown when the power fails during a write.
 struct PowerFailure {};
 
-/// An EEPROM (hal/eeprom/eeprom.hpp) of kStoredMemory bytes. Each job ends at once. The public members
+/// An EEPROM (hal/eeprom.hpp) of kStoredMemory bytes. Each job ends at once. The public members
 /// determine how it fails, and record what it has done.
 class FakeEeprom {
  public:
