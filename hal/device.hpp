@@ -61,9 +61,7 @@ class Device {
   /// this when the silence timer expires.
   void on_silence() {
     const Duration more = module_.on_silence(board_.clock.now_in_interrupt());
-    // While a reply is being sent, no timer is necessary: `on_sent` completes or drops a frame that is still
-    // open.
-    if (!(more == Duration()) && !board_.line.sending()) {
+    if (!(more == Duration())) {
       board_.silence_timer.restart(more);
     }
     wake_for_frame();

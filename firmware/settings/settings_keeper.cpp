@@ -43,10 +43,13 @@ void SettingsKeeper::done(const MemoryResult& result) {
       break;
     case Step::Save:
       if (result.succeeded) {
-        ++sequence_;
+        sequence_ = sequence_of(bytes_of(record_));
+        ahead_ = 1;
         stored_ = saving_;
         unreadable_ = false;
         count_saturating(saves_);
+      } else {
+        ahead_ = ahead_ == 1 ? 2 : 1;
       }
       break;
     case Step::Withdraw:
@@ -82,7 +85,7 @@ void SettingsKeeper::begin_saving(const Settings& settings, std::uint8_t attempt
 }
 
 void SettingsKeeper::begin_writing() {
-  write_record(model_.get(), saving_, static_cast<std::uint16_t>(sequence_ + 1U), record_);
+  write_record(model_.get(), saving_, static_cast<std::uint16_t>(sequence_ + ahead_), record_);
   step_ = Step::Save;
 }
 

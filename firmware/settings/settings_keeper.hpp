@@ -84,7 +84,10 @@ class SettingsKeeper {
   Settings saving_;             ///< settings that are being saved
   std::uint8_t attempts_ = 0;   ///< of that save
   std::uint16_t sequence_ = 0;  ///< sequence number of the newest good record
-  RecordBytes record_{};        ///< that record, or the record of the last save; zeros if there is none
+  /// Of the next record, relative to `sequence_`: 1 or 2. It differs from that of a refused record, whose end
+  /// may still be in the memory, so that no power failure can complete that record with the next one.
+  std::uint8_t ahead_ = 1;
+  RecordBytes record_{};  ///< that record, or the record of the last save; zeros if there is none
 };
 
 }  // namespace ex9000

@@ -276,7 +276,7 @@ class RecordLog {
       return;
     }
     const Bytes record = read(place, size);
-    if (!read_record(*job_.model, record)) {
+    if (place == refused_ || !read_record(*job_.model, record)) {
       bad_ = bad_ || newest_ == kNoPlace || sector_of(newest_) == sector_of(place);
     } else if (counts(record)) {
       take(record, place);
@@ -374,6 +374,10 @@ class RecordLog {
     if (erase_ == Erase::Suspended) {
       erase_ = Erase::Running;
       flash_.resume();
+      return;
+    }
+    if (!busy() && result_.source == SettingsSource::NoneGood) {
+      erases_ahead_ = false;
       return;
     }
     erasing_ = first_sector([this](unsigned each) {

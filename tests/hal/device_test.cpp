@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <initializer_list>
+
 #include <cstdint>
 
 #include "firmware/line/timing.hpp"
@@ -11,20 +13,24 @@
 namespace ex9000::hal {
 namespace {
 
-/// A board on which no time passes and no interrupt occurs.
+/// A board on which no interrupt occurs, and only the test lets time pass.
 struct StillBoard {
   struct Clock {
-    static Time now() { return {}; }
-    static Time now_in_interrupt() { return {}; }
+    Time time;
+    [[nodiscard]] Time now() const { return time; }
+    [[nodiscard]] Time now_in_interrupt() const { return time; }
   };
   struct Line {
-    static LineTiming timing(std::uint32_t baud, LineFormat format) { return LineTiming::at(baud, format); }
+    static LineTiming timing(std::uint32_t baud, LineFormat format) {
+      return LineTiming::strictly_at(baud, format);
+    }
     static void open(std::uint32_t /*baud*/, LineFormat /*format*/) {}
     static void send(Bytes /*bytes*/) {}
-    static bool sending() { return false; }
+    static bool sending() { return true; }
   };
   struct Timer {
-    static void restart(Duration /*after*/) {}
+    unsigned restarts = 0;
+    void restart(Duration /*after*/) { ++restarts; }
   };
   struct Inputs {
     static std::uint16_t start() { return 0; }
@@ -62,6 +68,29 @@ TEST(Device, AJobThatTheMemoryCompletesAtOnceWaitsForNoPoll) {
   }
   EXPECT_FALSE(device.module().needs_memory()) << "loading waits for a poll";
   EXPECT_EQ(device.board().memory.jobs, 1U);
+}
+
+// wire.md D11. If gaps are limited, the silence after a host OK takes two runs of the silence timer. A reply
+// may begin during the first one.
+TEST(Device, TheSilenceTimerRunsToTheEndOfTheSilenceEvenDuringAReply) {
+  Device<StillBoard> device(*find_model("EX9042D-M"), StillBoard());
+  device.start(ResetReason::PowerOn);
+  while (device.turn()) {
+  }
+  device.board().clock.time = Time(60'000);
+  while (device.turn()) {
+  }
+  ASSERT_TRUE(device.module().listening());
+  for (const std::uint8_t byte :
+       std::initializer_list<std::uint8_t>{0x01, 0x03, 0x30, 0x38, 0x00, 0x00, 0xCB, 0x07}) {
+    device.on_receive(byte, ByteStatus::Good);
+  }
+  EXPECT_FALSE(device.module().frame_waits());
+  const unsigned restarts = device.board().silence_timer.restarts;
+  device.on_silence();
+  EXPECT_EQ(device.board().silence_timer.restarts, restarts + 1);
+  device.on_silence();
+  EXPECT_TRUE(device.module().frame_waits());
 }
 
 }  // namespace

@@ -47,7 +47,7 @@ TEST(ALongerRecord, KeepsUnknownSettingsAfterAFailedSave) {
   EXPECT_TRUE(Boot(memory).stored() == numbered(5));
   EXPECT_TRUE(run.save(numbered(7)));
   FakeEeprom expected;
-  put_longer(expected, 1, numbered(7), 8, 96);
+  put_longer(expected, 1, numbered(7), 9, 96);  // 8 is that of the refused record
   EXPECT_TRUE(std::equal(memory.cells.begin() + kCopies[1], memory.cells.begin() + kCopies[1] + 104,
                          expected.cells.begin() + kCopies[1]));
 }

@@ -101,6 +101,29 @@ TEST(TwoPlacesFailures, AFailedSaveDoesNotWriteTheCopyThatHoldsTheOldSettings) {
   }
 }
 
+// The end of a refused record stays in the memory after its beginning has been overwritten.
+TEST(TwoPlacesFailures, NoPowerFailureInTheNextSaveCompletesARefusedRecord) {
+  Settings refused = numbered(1);
+  refused.name = Name("REFUSE");
+  Settings next = numbered(1);
+  next.name = Name("NEXT");
+  for (std::size_t written = 0;; ++written) {
+    FakeEeprom memory;
+    put(memory, 0, numbered(1), 7);
+    Boot run(memory);
+    memory.noisy_reads = kAttempts;
+    ASSERT_FALSE(run.save(refused));
+    ASSERT_TRUE(run.keeper().certain());
+    memory.power = written;
+    if (run.save(next)) {
+      EXPECT_GT(written, 20U);
+      break;
+    }
+    memory.power.reset();
+    EXPECT_FALSE(Boot(memory).stored() == refused) << written;
+  }
+}
+
 /// Saves settings, of which `pages_before` pages succeed. The read-back of the next page, the last one,
 /// differs each time, so the save fails although its record is complete. The write that withdraws the record
 /// has no effect.

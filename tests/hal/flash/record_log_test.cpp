@@ -339,6 +339,28 @@ TEST(RecordLog, ASaveAfterATimeoutWithdrawsTheRefusedRecordFirst) {
   EXPECT_TRUE(loaded(chip) == numbered(3));
 }
 
+// Every sector holds settings of another model. An erase takes longer than a save may wait, so the first save
+// fails; it must not cost the other model more than the sector that the save needs.
+TEST(RecordLog, ARefusedSaveDoesNotEraseTheSettingsOfAnotherModel) {
+  const Model& other = model("EX9043D-M");
+  FlashChip chip;
+  for (unsigned sector = 0; sector < kSectors; ++sector) {
+    Settings settings = Settings::factory(other);
+    settings.address = static_cast<std::uint8_t>(sector + 1);
+    RecordBytes record{};
+    write_record(other, settings, static_cast<std::uint16_t>(100 + sector), record);
+    const auto begin = chip.cells.begin() + static_cast<std::ptrdiff_t>(sector * FlashChip::kSector);
+    std::fill_n(begin, kMark.size(), std::uint8_t{0});
+    std::copy_n(record.begin(), record_size({record.data(), record.size()}), begin + kRecordRoom);
+  }
+  chip.times = FlashChip::kLongest;
+  OnFlash run(chip);
+  EXPECT_FALSE(run.save(numbered(1)));
+  run.run(10'000'000);
+  chip.power_off({});
+  EXPECT_EQ(OnFlash(chip, other).stored().address, kSectors);
+}
+
 // The first erases of a new flash are still running when the save fails. FlashChip fails the test if the log
 // programs a place of an erased sector twice.
 TEST(RecordLog, TheSectorOfARefusedRecordIsNotErasedBeforeTheRecordIsWithdrawn) {
