@@ -28,8 +28,7 @@ StatusLed::Pattern Module::led_pattern_due() const {
   if (state_.settings.timeout_status) {
     return StatusLed::Pattern::HostTimeout;
   }
-  return start_ != Start::Loading && settings_unreadable() ? StatusLed::Pattern::SettingsUnreadable
-                                                           : StatusLed::Pattern::Steady;
+  return settings_unreadable() ? StatusLed::Pattern::SettingsUnreadable : StatusLed::Pattern::Steady;
 }
 
 void Module::step(bool init_switch, Time now) {
@@ -211,6 +210,7 @@ Duration Module::turn_around() const {
   return state_.speaks_modbus() ? receiver_.timing().rtu_silence : receiver_.timing().dcon_turn_around;
 }
 
+/// Continues the store of a command. Call this only while `cycle_.stores()`.
 void Module::continue_store(Time now) {
   if (keeper_.busy()) {
     return;
@@ -223,13 +223,11 @@ void Module::continue_store(Time now) {
       keeper_.save(changed, now);
       cycle_.store_begun();
     }
-  } else if (cycle_.phase() == RequestCycle::Phase::Storing) {
-    if (keeper_.saved()) {
-      commit(now);
-    } else {
-      cycle_.refuse_store();
-      finish_request();
-    }
+  } else if (keeper_.saved()) {
+    commit(now);
+  } else {
+    cycle_.refuse_store();
+    finish_request();
   }
 }
 

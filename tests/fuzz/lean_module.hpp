@@ -13,6 +13,7 @@
 #include "firmware/line/timing.hpp"
 #include "firmware/model/model.hpp"
 #include "hal/device.hpp"
+#include "hal/eeprom/two_places.hpp"
 #include "tests/fuzz/require.hpp"
 #include "tests/oracles/judges/time.hpp"
 
@@ -60,7 +61,7 @@ struct LeanBoard {
         wake_timer{surroundings},
         inputs{surroundings},
         outputs{surroundings},
-        memory{surroundings},
+        memory(Eeprom{surroundings}),
         init_switch{surroundings} {}
 
   struct Clock {
@@ -119,7 +120,7 @@ struct LeanBoard {
   };
 
   /// An EEPROM on a 100 kHz bus. The EEPROM takes 5 ms to program a page.
-  struct Memory {
+  struct Eeprom {
     Surroundings& around;
     Microseconds ends = kNever;
     Microseconds began = 0;
@@ -197,7 +198,7 @@ struct LeanBoard {
   WakeTimer wake_timer;
   Inputs inputs;
   Outputs outputs;
-  Memory memory;
+  hal::TwoPlaces<Eeprom> memory;
   InitSwitch init_switch;
   StatusLed status_led;
   Watchdog watchdog;
@@ -213,7 +214,7 @@ class LeanModule {
   /// progress. Returns when the module has started; aborts if this takes more than 100 ms.
   void reset() {
     if (device_) {
-      board().memory.cut();
+      board().memory.eeprom().cut();
       device_.reset();
     }
     held_ = false;
@@ -274,8 +275,8 @@ class LeanModule {
   LeanBoard& board() { return device_->board(); }
 
   Microseconds next_event() {
-    const LeanBoard& its = board();
-    return std::min(std::min(its.line.ends, its.memory.ends),
+    LeanBoard& its = board();
+    return std::min(std::min(its.line.ends, its.memory.eeprom().ends),
                     std::min(its.silence_timer.fires, its.wake_timer.fires));
   }
 
@@ -286,8 +287,8 @@ class LeanModule {
       around_.observer.reply_ends();
       device_->on_sent();
     }
-    if (its.memory.ends <= around_.now) {
-      its.memory.finish();
+    if (its.memory.eeprom().ends <= around_.now) {
+      its.memory.eeprom().finish();
     }
     if (its.silence_timer.fires <= around_.now) {
       its.silence_timer.fires = kNever;

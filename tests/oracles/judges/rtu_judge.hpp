@@ -26,13 +26,13 @@ class RtuJudge {
         doubt_(doubt) {}
 
   /// Returns the time at which the test must report the next byte: `end`, or a later time if the gap before
-  /// the byte is too near a limit. The clock and the module round times to whole microseconds. Near a limit,
-  /// this rounding could change the result.
+  /// the byte is too near a limit. The clock and the module round times, and the module allows for late
+  /// timers (wire.md D11). Near a limit, this could change the result.
   [[nodiscard]] Microseconds beyond_doubt(Microseconds end) const {
     if (size_ == 0) {
       return end;
     }
-    constexpr Microseconds kDoubt = 6;
+    constexpr Microseconds kDoubt = 15;
     for (const Microseconds border : {silence_, silence_ + received_, apart_}) {
       const Microseconds gap = end - last_;
       if (border != kNever && gap + kDoubt > border && gap < border + kDoubt) {
