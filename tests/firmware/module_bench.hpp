@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sim/app/play/modbus_frame.hpp"
+#include "sim/notation/module_notation.hpp"
 #include "sim/virtual_line/line/line.hpp"
 #include "tests/sim/virtual_line/bus/bus_recorder.hpp"
 

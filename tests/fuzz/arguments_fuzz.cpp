@@ -8,6 +8,7 @@
 
 #include "sim/app/main/arguments.hpp"
 #include "sim/app/setup_from_bus_file/bus_file.hpp"
+#include "sim/notation/fault_notation.hpp"
 #include "tests/fuzz/require.hpp"
 
 namespace ex9000::fuzz {

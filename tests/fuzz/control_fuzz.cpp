@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "sim/front_ends/control_socket/control.hpp"
+#include "sim/notation/module_notation.hpp"
 #include "sim/virtual_line/line/line.hpp"
 #include "tests/fuzz/fault_judge.hpp"
 #include "tests/fuzz/require.hpp"

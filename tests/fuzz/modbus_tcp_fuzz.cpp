@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "sim/front_ends/modbus_tcp/mbap_session.hpp"
+#include "sim/notation/module_notation.hpp"
 #include "tests/fuzz/require.hpp"
 
 namespace ex9000::fuzz {

@@ -1,7 +1,7 @@
 #include "sim/app/main/help.hpp"
 
 #include "sim/front_ends/control_socket/control.hpp"
-#include "sim/virtual_line/bus_faults/fault.hpp"
+#include "sim/notation/fault_notation.hpp"
 
 namespace ex9000::sim::help {
 

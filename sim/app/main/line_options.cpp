@@ -4,6 +4,9 @@
 #include <utility>
 
 #include "sim/app/main/option_values.hpp"
+#include "sim/notation/fault_notation.hpp"
+#include "sim/notation/input_notation.hpp"
+#include "sim/notation/module_notation.hpp"
 #include "sim/text/durations.hpp"
 #include "sim/text/fail.hpp"
 #include "sim/text/values.hpp"

@@ -2,10 +2,10 @@
 
 #include "firmware/settings/settings.hpp"
 #include "sim/app/model_exports/formats.hpp"
+#include "sim/notation/module_notation.hpp"
 #include "sim/text/fail.hpp"
 #include "sim/text/values.hpp"
 #include "sim/text/words.hpp"
-#include "sim/virtual_line/line/module_spec.hpp"
 
 namespace ex9000::sim {
 

@@ -6,6 +6,7 @@
 #include "sim/app/setup/line_factory.hpp"
 #include "sim/files_and_ports/files/eeprom_file.hpp"
 #include "sim/front_ends/control_socket/control.hpp"
+#include "sim/notation/module_notation.hpp"
 #include "sim/text/fail.hpp"
 #include "sim/text/words.hpp"
 

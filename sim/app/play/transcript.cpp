@@ -10,12 +10,12 @@
 
 #include "sim/files_and_ports/files/regular_file.hpp"
 #include "sim/front_ends/control_socket/control.hpp"
+#include "sim/notation/module_notation.hpp"
+#include "sim/notation/named_settings.hpp"
 #include "sim/text/durations.hpp"
 #include "sim/text/fail.hpp"
 #include "sim/text/values.hpp"
 #include "sim/text/words.hpp"
-#include "sim/virtual_line/line/module_spec.hpp"
-#include "sim/virtual_line/line/named_settings.hpp"
 
 namespace ex9000::play {
 

@@ -3,6 +3,9 @@
 #include <string>
 #include <utility>
 
+#include "sim/notation/fault_notation.hpp"
+#include "sim/notation/input_notation.hpp"
+#include "sim/notation/module_notation.hpp"
 #include "sim/text/durations.hpp"
 #include "sim/text/values.hpp"
 #include "sim/text/words.hpp"

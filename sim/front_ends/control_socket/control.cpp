@@ -1,4 +1,6 @@
 #include "sim/front_ends/control_socket/control.hpp"
+#include "sim/notation/fault_notation.hpp"
+#include "sim/notation/input_notation.hpp"
 #include "sim/text/fail.hpp"
 #include "sim/text/values.hpp"
 #include "sim/text/words.hpp"

@@ -15,6 +15,7 @@
 #include "sim/front_ends/panel/messages.hpp"
 #include "sim/front_ends/panel/recent_traffic.hpp"
 #include "sim/line_monitor/module_view/face.hpp"
+#include "sim/notation/fault_notation.hpp"
 #include "sim/text/values.hpp"
 #include "sim/text/words.hpp"
 

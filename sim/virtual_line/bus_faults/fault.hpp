@@ -1,10 +1,4 @@
-// A fault in the notation of the user: the kind of fault, then a value and a schedule, if the fault has them.
-//
-//   bit-errors 1e-4                     probability for each bit on the line
-//   lost-reply every 10th reply
-//   late-reply 50ms with probability 0.01
-//   gone at 12.5s for 2s
-//   power-cut after 3 writes
+// The kinds of faults, and when a fault occurs.
 #pragma once
 
 #include <cstddef>
@@ -60,19 +54,5 @@ struct Fault {
   std::optional<std::size_t> module;  ///< the position on the line, from 0; nullopt: all modules
   std::string text;                   ///< the notation of the user, with single spaces
 };
-
-/// Returns true if a fault of this kind affects a module, false if it affects the wires.
-bool concerns_a_module(Trouble trouble);
-
-/// Parses `TROUBLE [VALUE] [SCHEDULE]`. The result applies to all modules of the line; the caller may set
-/// `module`. Throws std::invalid_argument with a one-line message that says what is wrong and what would be
-/// right.
-Fault parse_fault(const std::string& text);
-
-/// Returns a typical fault of each kind, in the notation of the user.
-std::vector<std::string> usual_faults();
-
-/// Returns one line for each kind of fault, with its name, its value and its effect, for --help.
-std::string fault_help();
 
 }  // namespace ex9000::sim

@@ -6,6 +6,7 @@
 #include <array>
 
 #include "sim/app/play/modbus_frame.hpp"
+#include "sim/notation/module_notation.hpp"
 #include "tests/oracles/reference/dcon_check.hpp"
 #include "tests/oracles/reference/hexadecimal.hpp"
 

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "sim/app/play/modbus_frame.hpp"
+#include "sim/notation/module_notation.hpp"
 #include "tests/firmware/noise/theory.hpp"
 #include "tests/oracles/reference/dcon_check.hpp"
 #include "tests/oracles/reference/hexadecimal.hpp"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "sim/virtual_line/line/module_spec.hpp"
+#include "sim/notation/module_notation.hpp"
 #include "tests/oracles/reference/dcon_check.hpp"
 #include "tests/oracles/reference/hexadecimal.hpp"
 #include "tests/oracles/reference/modbus_check.hpp"

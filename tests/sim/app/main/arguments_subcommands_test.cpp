@@ -10,6 +10,7 @@
 #include "sim/app/model_exports/formats.hpp"
 #include "sim/app/setup_from_bus_file/bus_file.hpp"
 #include "sim/front_ends/control_socket/control.hpp"
+#include "sim/notation/fault_notation.hpp"
 #include "tests/sim/app/main/parsed_arguments.hpp"
 
 namespace ex9000::sim {

@@ -14,6 +14,7 @@
 #include "sim/app/play/transcript.hpp"
 #include "sim/app/setup_from_bus_file/bus_file.hpp"
 #include "sim/files_and_ports/files/eeprom_file.hpp"
+#include "sim/notation/module_notation.hpp"
 #include "sim/virtual_line/bus/module.hpp"
 #include "tests/support/directory.hpp"
 

@@ -9,6 +9,7 @@
 
 #include "sim/app/play/modbus_frame.hpp"
 #include "sim/app/running_line/line_record.hpp"
+#include "sim/notation/module_notation.hpp"
 
 namespace ex9000::sim {
 namespace {

@@ -13,6 +13,8 @@
 #include <vector>
 
 #include "sim/app/play/modbus_frame.hpp"
+#include "sim/notation/fault_notation.hpp"
+#include "sim/notation/module_notation.hpp"
 #include "tests/sim/virtual_line/bus/bus_recorder.hpp"
 
 namespace ex9000::sim {

@@ -8,7 +8,8 @@
 #include <vector>
 
 #include "sim/app/play/modbus_frame.hpp"
-#include "sim/virtual_line/line/module_spec.hpp"
+#include "sim/notation/fault_notation.hpp"
+#include "sim/notation/module_notation.hpp"
 
 namespace ex9000::sim {
 namespace {

@@ -1,6 +1,9 @@
 // Tests lines that are created from a setup: their input programs, their faults and the transmission
 // time of a byte.
 #include "sim/app/setup/line_factory.hpp"
+#include "sim/notation/fault_notation.hpp"
+#include "sim/notation/input_notation.hpp"
+#include "sim/notation/module_notation.hpp"
 
 #include <gtest/gtest.h>
 

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "sim/front_ends/control_socket/control.hpp"
+#include "sim/notation/module_notation.hpp"
 #include "tests/firmware/module_bench.hpp"
 
 namespace ex9000::sim {

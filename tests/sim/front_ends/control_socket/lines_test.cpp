@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "sim/notation/module_notation.hpp"
 #include "tests/sim/front_ends/control_socket/control_bench.hpp"
 
 namespace ex9000::sim {

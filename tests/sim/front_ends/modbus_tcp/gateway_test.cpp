@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "sim/notation/fault_notation.hpp"
+#include "sim/notation/module_notation.hpp"
 #include "sim/virtual_line/line/rtu_frame.hpp"
 
 namespace ex9000::sim {

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/notation/module_notation.hpp"
 #include "tests/support/environment.hpp"
 
 namespace ex9000::sim {

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "sim/front_ends/modbus_tcp/mbap.hpp"
+#include "sim/notation/module_notation.hpp"
 
 namespace ex9000::sim {
 namespace {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/notation/fault_notation.hpp"
 #include "tests/sim/front_ends/panel/panel_bench.hpp"
 
 namespace ex9000::sim {

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "sim/notation/module_notation.hpp"
 #include "tests/sim/front_ends/panel/panel_bench.hpp"
 
 namespace ex9000::sim {

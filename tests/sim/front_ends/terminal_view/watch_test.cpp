@@ -1,6 +1,7 @@
 // Tests the view of modules. In a terminal, the program repaints the view in place. Without a terminal, the
 // program prints one line for each change.
 #include "sim/front_ends/terminal_view/watch.hpp"
+#include "sim/notation/module_notation.hpp"
 
 #include <gtest/gtest.h>
 

@@ -8,6 +8,7 @@
 
 #include "sim/app/play/modbus_frame.hpp"
 #include "sim/line_monitor/capture/capture.hpp"
+#include "sim/notation/module_notation.hpp"
 #include "sim/virtual_line/line/line.hpp"
 #include "tests/sim/line_monitor/capture/tshark.hpp"
 #include "tests/support/directory.hpp"

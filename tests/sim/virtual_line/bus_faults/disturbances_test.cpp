@@ -3,6 +3,7 @@
 #include <utility>
 #include <vector>
 
+#include "sim/notation/module_notation.hpp"
 #include "sim/virtual_line/bus/bus.hpp"
 #include "sim/virtual_line/bus/master.hpp"
 #include "sim/virtual_line/bus_faults/echo.hpp"

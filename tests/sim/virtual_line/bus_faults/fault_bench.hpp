@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "sim/notation/fault_notation.hpp"
+#include "sim/notation/module_notation.hpp"
 #include "sim/virtual_line/line/line.hpp"
 #include "tests/sim/virtual_line/bus/bus_recorder.hpp"
 

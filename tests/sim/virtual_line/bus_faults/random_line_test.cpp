@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "sim/app/play/modbus_frame.hpp"
+#include "sim/notation/module_notation.hpp"
 #include "sim/virtual_line/bus/bus.hpp"
 #include "sim/virtual_line/bus/module.hpp"
-#include "sim/virtual_line/line/module_spec.hpp"
 #include "tests/firmware/noise/onlooker.hpp"
 #include "tests/oracles/reference/dcon_check.hpp"
 

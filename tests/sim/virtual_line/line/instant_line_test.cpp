@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "sim/app/play/modbus_frame.hpp"
+#include "sim/notation/module_notation.hpp"
 #include "sim/virtual_line/line/line.hpp"
 
 namespace ex9000::sim {

@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "sim/virtual_line/line/module_spec.hpp"
+#include "sim/notation/module_notation.hpp"
 
 namespace ex9000::sim {
 namespace {

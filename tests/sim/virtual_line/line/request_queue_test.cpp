@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "sim/app/play/modbus_frame.hpp"
+#include "sim/notation/module_notation.hpp"
 #include "sim/text/values.hpp"
 #include "sim/virtual_line/line/line.hpp"
 

@@ -1,11 +1,12 @@
 // Tests the syntax of faults and the texts about them.
-#include "sim/virtual_line/bus_faults/fault.hpp"
+#include "sim/notation/fault_notation.hpp"
 
 #include <gtest/gtest.h>
 
 #include <string>
 #include <vector>
 
+#include "sim/notation/fault_notation.hpp"
 #include "tests/support/refusal.hpp"
 
 namespace ex9000::sim {

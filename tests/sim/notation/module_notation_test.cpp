@@ -1,5 +1,5 @@
 // Tests the syntax MODEL[@ADDR][,KEY=VALUE]... on the simulator's command line.
-#include "sim/virtual_line/line/module_spec.hpp"
+#include "sim/notation/module_notation.hpp"
 
 #include <gtest/gtest.h>
 

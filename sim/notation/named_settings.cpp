@@ -1,4 +1,4 @@
-#include "sim/virtual_line/line/named_settings.hpp"
+#include "sim/notation/named_settings.hpp"
 
 #include <algorithm>
 #include <string_view>

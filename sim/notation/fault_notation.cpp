@@ -1,4 +1,4 @@
-#include "sim/virtual_line/bus_faults/fault.hpp"
+#include "sim/notation/fault_notation.hpp"
 
 #include <algorithm>
 #include <array>

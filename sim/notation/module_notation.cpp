@@ -1,4 +1,4 @@
-#include "sim/virtual_line/line/module_spec.hpp"
+#include "sim/notation/module_notation.hpp"
 
 #include <algorithm>
 #include <cctype>
@@ -9,10 +9,10 @@
 #include <string_view>
 #include <utility>
 
+#include "sim/notation/named_settings.hpp"
 #include "sim/text/fail.hpp"
 #include "sim/text/values.hpp"
 #include "sim/text/words.hpp"
-#include "sim/virtual_line/line/named_settings.hpp"
 
 namespace ex9000::sim {
 

@@ -1,0 +1,22 @@
+// The notation of programs that change the level of a module's input: square waves and key presses.
+//
+//   0 square 100ms                          on for one half of the period, off for the other half
+//   3 key at 2s for 300ms                   pressed once
+//   3 key every 10s for 300ms bounce 5ms    pressed every 10 s; the contacts bounce for 5 ms
+#pragma once
+
+#include <string>
+
+#include "firmware/model/model.hpp"
+#include "sim/virtual_line/line/input_program.hpp"
+
+namespace ex9000::sim {
+
+/// Parses a program. `model` defines which channels exist. Throws std::invalid_argument with a one-line
+/// message that says what is wrong and what would be right.
+InputProgram parse_input_program(const std::string& text, const Model& model);
+
+/// Parses the number of an input channel of this model. Throws std::invalid_argument with a one-line message.
+unsigned parse_input(const std::string& text, const Model& model);
+
+}  // namespace ex9000::sim
