@@ -4,12 +4,11 @@
 #include <cctype>
 #include <iterator>
 #include <numeric>
-#include <set>
 #include <sstream>
 #include <string_view>
 #include <utility>
 
-#include "sim/notation/named_settings.hpp"
+#include "sim/notation/module_settings.hpp"
 #include "sim/text/fail.hpp"
 #include "sim/text/values.hpp"
 #include "sim/text/words.hpp"
@@ -96,24 +95,20 @@ ModuleSpec factory_fresh(const Model& model) {
   return spec;
 }
 
-void set_address(ModuleSpec& spec, const std::string& text) {
-  spec.settings.address = parse_hex_byte(text);
-  spec.settings_given = true;
-}
-
-void apply_setting(ModuleSpec& spec, const std::string& key, const std::string& value) {
-  if (key == "eeprom") {
-    if (value.empty()) {
-      fail("is empty; name a path");
+void take_module_setting(ModuleSpec& spec, const std::string& name, const std::string& place,
+                         const std::string& value) {
+  for (const Setting<ModuleSpec>& setting : kModuleSettings) {
+    if (setting.name == name) {
+      with_place(place, [&] {
+        if (setting.form != Form::List && spec.places.count(name) != 0) {
+          fail("is given twice; leave out one of them");
+        }
+      });
+      take_setting(setting, spec, place, value);
+      return;
     }
-    spec.eeprom = value;
-  } else if (key == "init") {
-    spec.init_asserted = parse_on_off(value);
-  } else if (set_by_name(spec.settings, *spec.model, key, value)) {
-    spec.settings_given = true;
-  } else {
-    fail("unknown key; expected one of protocol, baud, format, checksum, edge, name, init, eeprom");
   }
+  fail(place + "unknown key; expected one of " + names_of(kModuleSettings));
 }
 
 void check(const ModuleSpec& spec) {
@@ -131,18 +126,13 @@ ModuleSpec parse_module_spec(const std::string& text) {
     const auto at = name.find('@');
     ModuleSpec spec = factory_fresh(model_called(name.substr(0, at)));
     if (at != std::string::npos) {
-      with_place("address: ", [&] { set_address(spec, name.substr(at + 1)); });
+      take_module_setting(spec, "address", "address: ", name.substr(at + 1));
     }
-    std::set<std::string> keys;
     for (std::string option; std::getline(parts, option, ',');) {
       const auto equals = option.find('=');
       const std::string key = option.substr(0, equals);
-      with_place(key + "=: ", [&] {
-        if (!keys.insert(key).second) {
-          fail("is given twice; leave out one of them");
-        }
-        apply_setting(spec, key, equals == std::string::npos ? "" : option.substr(equals + 1));
-      });
+      take_module_setting(spec, key,
+                          key + "=: ", equals == std::string::npos ? "" : option.substr(equals + 1));
     }
     if (text.back() == ',') {
       fail("ends with a comma; leave it out, or add KEY=VALUE");

@@ -16,11 +16,9 @@ ModuleSpec parse_module_spec(const std::string& text);
 
 /// Returns a module of this model with factory settings.
 ModuleSpec factory_fresh(const Model& model);
-/// Sets the address. `text` is one or two hex digits.
-void set_address(ModuleSpec& spec, const std::string& text);
-/// Applies `value` of one of these keys: protocol, baud, format, checksum, edge, name, init or eeprom. The
-/// command line and bus files use the same names for these keys.
-void apply_setting(ModuleSpec& spec, const std::string& key, const std::string& value);
+/// Takes the value of the setting that kModuleSettings calls `name`. An error begins with `place`.
+void take_module_setting(ModuleSpec& spec, const std::string& name, const std::string& place,
+                         const std::string& value);
 /// Checks that the address is a Modbus address if the protocol is Modbus RTU.
 void check(const ModuleSpec& spec);
 

@@ -30,6 +30,19 @@ inline std::string joined(const Words& words, std::string_view separator = " ") 
   return text;
 }
 
+/// The path as one word for the shell, in quotes if it needs them.
+inline std::string shell_word(const std::string& path) {
+  const std::string plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./-+:@%";
+  if (path.find_first_not_of(plain) == std::string::npos) {
+    return path;
+  }
+  std::string text = "'";
+  for (const char character : path) {
+    text += character == '\'' ? std::string("'\\''") : std::string(1, character);
+  }
+  return text + "'";
+}
+
 /// Returns the names of the rows of a table, with `separator` between them.
 template <class Rows>
 std::string names_of(const Rows& rows, std::string_view separator = ", ") {

@@ -2,7 +2,7 @@
 // begins with a command that starts a simulator, this block runs in the first terminal. The simulator runs
 // until the test stops it. All other `sh` blocks and all `python` blocks run in a second terminal. The `text`
 // blocks are the expected output of the second terminal. A `json` block is the content of the file
-// `bus.json`. Apart from this file, the working directory at first contains only links to `boards` and
+// `bus.yaml`. Apart from this file, the working directory at first contains only links to `boards` and
 // `build`, because the examples use the programs and images there. For the line `sim/run`, the test runs only
 // the last command of sim/run. The script itself also installs packages and builds the simulator;
 // tests/first-command runs the script. Another test in this file checks that the tables of the documents list
@@ -143,8 +143,8 @@ void paste(const Section& section) {
   for (const Block& block : section.blocks) {
     if (block.language == "text") {
       expected += block.text;
-    } else if (block.language == "json") {
-      write_file(directory / "bus.json", block.text);
+    } else if (block.language == "yaml") {
+      write_file(directory / "bus.yaml", block.text);
     } else if (block.language == "sh" && starts_the_simulator(block)) {
       simulator = std::make_unique<ChildProcess>(std::vector<std::string>{"sh", "-c", "exec " + block.text},
                                                  directory.path(), ChildProcess::Errors::WithOutput);
@@ -263,8 +263,10 @@ TEST(Documents, EveryOptionCommandAndFaultHasATableRow) {
   for (const std::string& option : options) {
     EXPECT_TRUE(has_row(option)) << option;
   }
-  const std::vector<std::string> commands = column_of(help, "through all lines of the bus file:\n", 20);
-  const std::vector<std::string> troubles = column_of(help, "The troubles:\n", 22);
+  const std::vector<std::string> commands =
+      column_of(run({simulator_path(), "help", "control"}).output, "through all lines.\n\n", 20);
+  const std::vector<std::string> troubles =
+      column_of(run({simulator_path(), "help", "faults"}).output, "[for TIME].\n\n", 22);
   EXPECT_GE(commands.size(), 15U);
   EXPECT_GE(troubles.size(), 13U);
   for (const std::string& command : commands) {

@@ -6,12 +6,14 @@ parts and files.
 
 from __future__ import annotations
 
+import os
 import re
 import subprocess
 import unittest
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
+PROGRAM = os.environ.get("EX9000_SIMULATOR", str(ROOT / "build/host-debug/sim/ex9000-sim"))
 
 
 def printed(command: list[str], given: str = "") -> str:
@@ -31,10 +33,11 @@ class Generated(unittest.TestCase):
         pictured = section_of(".github/CONTRIBUTING.md", "toolchain/draw-folders")
         self.assertEqual(pictured, printed(["toolchain/draw-folders"]))
 
-    def test_the_table_of_bus_file_keys_is_up_to_date(self) -> None:
-        schema = (ROOT / "sim/docs/bus-file.schema.json").read_text(encoding="utf-8")
-        written = section_of("sim/docs/bus-files.md", "toolchain/bus-file-keys")
-        self.assertEqual(written, printed(["toolchain/bus-file-keys"], schema))
+    def test_the_tables_of_the_command_line_are_up_to_date(self) -> None:
+        for table, words in (("options", ["--help"]), ("modules", ["help", "modules"]), ("ports", ["help", "ports"])):
+            with self.subTest(table=table):
+                written = section_of("sim/docs/command-line.md", f"toolchain/help-tables {table}")
+                self.assertEqual(written, printed(["toolchain/help-tables", table], printed([PROGRAM, *words])))
 
     def test_the_tables_of_recorded_figures_are_up_to_date(self) -> None:
         for document, record in (("boards/README.md", "sizes"), ("tests/README.md", "instructions")):

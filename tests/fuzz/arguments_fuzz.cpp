@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "sim/app/main/arguments.hpp"
-#include "sim/app/setup_from_bus_file/bus_file.hpp"
+#include "sim/app/setup/bus_file.hpp"
 #include "sim/notation/fault_notation.hpp"
 #include "tests/fuzz/require.hpp"
 

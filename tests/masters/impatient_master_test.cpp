@@ -47,7 +47,7 @@ class Line {
 
  private:
   static std::vector<std::string> with_modules(std::vector<std::string> options) {
-    options.insert(options.begin(), {"EX9042D-M@01", "EX9052D-M@02", "EX9042D@03", "--tcp", "0"});
+    options.insert(options.begin(), {"EX9042D-M@01", "EX9052D-M@02", "EX9042D@03", "--port", "tcp:0"});
     return options;
   }
 
@@ -56,7 +56,7 @@ class Line {
 };
 
 TEST(ImpatientMaster, OnAnInstantLineEachOfTwoFramesSentTogetherGetsAReply) {
-  Line line({"--line", "instant"});
+  Line line({"--timing", "instant"});
   for (int round = 0; round < 10; ++round) {
     EXPECT_EQ(line.ask(kOutputs1 + kInputs2, 13), kOutputs1Off + kInputs2Off);
     EXPECT_EQ(line.ask(kOutputs1 + kOutputs1, 14), kOutputs1Off + kOutputs1Off);
@@ -64,7 +64,7 @@ TEST(ImpatientMaster, OnAnInstantLineEachOfTwoFramesSentTogetherGetsAReply) {
 }
 
 TEST(ImpatientMaster, OnAnInstantLineARequestMayImmediatelyFollowAnUnansweredRequest) {
-  Line line({"--line", "instant"});
+  Line line({"--timing", "instant"});
   for (const Bytes& unanswered : {kHostOk1, kHostOkAll, kAbsent}) {
     for (int round = 0; round < 10; ++round) {
       EXPECT_EQ(line.ask(unanswered + kOutputs1, 7), kOutputs1Off);
@@ -77,7 +77,7 @@ TEST(ImpatientMaster, OnAnInstantLineARequestMayImmediatelyFollowAnUnansweredReq
 
 TEST(ImpatientMaster, AModbusRequestMayImmediatelyFollowAnAsciiReply) {
   for (const char* kind : {"paced", "instant"}) {
-    Line line({"--line", kind});
+    Line line({"--timing", kind});
     for (int round = 0; round < 5; ++round) {
       EXPECT_EQ(line.ask("$03M\r", 9), "!039042D\r") << kind;
       EXPECT_EQ(line.ask(kInputs2, 6), kInputs2Off) << kind;
@@ -87,7 +87,7 @@ TEST(ImpatientMaster, AModbusRequestMayImmediatelyFollowAnAsciiReply) {
 
 TEST(ImpatientMaster, ARequestToAnotherModuleMayImmediatelyFollowAReply) {
   for (const char* kind : {"paced", "instant"}) {
-    Line line({"--line", kind});
+    Line line({"--timing", kind});
     for (int round = 0; round < 5; ++round) {
       EXPECT_EQ(line.ask(kOutputs1, 7), kOutputs1Off) << kind;
       EXPECT_EQ(line.ask(kInputs2, 6), kInputs2Off) << kind;
@@ -99,7 +99,7 @@ TEST(ImpatientMaster, ARequestToAnotherModuleMayImmediatelyFollowAReply) {
 // at 157 ms. The first request to module 02 begins at 175 ms, less than T3.5 later. Module 02 also receives
 // the reply, so it treats the reply and this request as one frame.
 TEST(ImpatientMaster, ARequestLessThanT35AfterAReplyIsLostIfGapsAreStrict) {
-  SimulatorProcess simulator({"EX9042D-M@01,baud=1200", "EX9052D-M@02,baud=1200", "--tcp", "0",
+  SimulatorProcess simulator({"EX9042D-M@01,baud=1200", "EX9052D-M@02,baud=1200", "--port", "tcp:0",
                               "--strict-gaps", "--speed", "step", "--control", "ctl"});
   ControlClient control(simulator.directory() + "/ctl");
   SocketClient client(simulator.tcp_port());

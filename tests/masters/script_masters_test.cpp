@@ -60,21 +60,22 @@ TEST_P(ScriptMaster, GetsEveryExpectedReplyOnThePseudoTerminal) {
 
 TEST_P(ScriptMaster, GetsEveryExpectedReplyOverTcp) {
   std::vector<std::string> arguments = modules("115200");
-  arguments.insert(arguments.end(), {"--tcp", "0"});
+  arguments.insert(arguments.end(), {"--port", "tcp:0"});
   SimulatorProcess simulator(arguments);
   expect_to_pass({"--tcp", "127.0.0.1:" + std::to_string(simulator.tcp_port()), "--baud", "115200"});
 }
 
 TEST_P(ScriptMaster, GetsEveryExpectedReplyOverModbusTcp) {
   std::vector<std::string> arguments = modules("115200");
-  arguments.insert(arguments.end(), {"--modbus-tcp", "0"});
+  arguments.insert(arguments.end(), {"--port", "modbus-tcp:0"});
   SimulatorProcess simulator(arguments);
-  expect_to_pass({"--modbus-tcp", "127.0.0.1:" + std::to_string(simulator.tcp_port()), "--baud", "115200"});
+  expect_to_pass(
+      {"--port", "modbus-tcp:127.0.0.1:" + std::to_string(simulator.tcp_port()), "--baud", "115200"});
 }
 
 TEST_P(ScriptMaster, GetsEveryExpectedReplyOnAnInstantLine) {
   std::vector<std::string> arguments = modules("9600");
-  arguments.insert(arguments.end(), {"--line", "instant"});
+  arguments.insert(arguments.end(), {"--timing", "instant"});
   SimulatorProcess simulator(arguments);
   expect_to_pass({"--tty", simulator.tty(), "--baud", "9600"});
 }

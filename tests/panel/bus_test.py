@@ -83,7 +83,7 @@ class Bus(Panel):
 
     def test_after_a_pause_the_page_shows_for_each_line_the_number_of_omitted_rows(self):
         modules = [{"model": "EX9052D-M", "address": "02"}]
-        simulator = self.bus([{"name": name, "tcp": 0, "line": "instant", "modules": modules}
+        simulator = self.bus([{"name": name, "port": "tcp:0", "timing": "instant", "modules": modules}
                               for name in ("hall", "yard")])
         self.look_at(simulator)
         masters = [Master(port) for port in simulator.lines]
@@ -131,7 +131,7 @@ class Bus(Panel):
         self.browser.until(f"{TALLY} === '2 frames, 2 more'")
         simulator.kill()
         self.browser.until(LOST)
-        simulator.start_again("EX9055D@02", "EX9063D@03", "EX9042D@04", "--tcp", "0")
+        simulator.start_again("EX9055D@02", "EX9063D@03", "EX9042D@04", "--port", "tcp:0")
         self.browser.until(f"!({LOST})")
         self.browser.until(f"!({PAUSED}) && {TALLY} === '0 frames' && {ROWS} === 0")
         models = "return [...document.querySelectorAll('.plate h3')].map((each) => each.textContent)"
@@ -180,7 +180,7 @@ class Bus(Panel):
         self.assertIn(notes[0], self.browser.run(after))
 
     def test_every_line_has_a_lane(self):
-        lines = [{"name": f"line{n}", "tcp": 0, "modules": [{"model": "EX9052D-M", "address": "02"}]} for n in range(9)]
+        lines = [{"name": f"line{n}", "port": "tcp:0", "modules": ["EX9052D-M@02"]} for n in range(9)]
         simulator = self.bus(lines)
         self.look_at(simulator)
         self.assertIn("9 lines", self.browser.run("return document.getElementById('about').textContent"))

@@ -168,7 +168,7 @@ class Looks(Panel):
         self.browser.size(320, 640, phone=True)
         modules = [{"model": model, "address": f"{n + 1:02X}"}
                    for n, model in enumerate(("EX9043D-M", "EX9055D", "EX9052D"))]
-        self.look_at(self.bus([{"name": name, "tcp": 0, "modules": modules} for name in ("n" * 60, "m")]))
+        self.look_at(self.bus([{"name": name, "port": "tcp:0", "modules": modules} for name in ("n" * 60, "m")]))
         self.browser.run("document.querySelectorAll('details').forEach((each) => { each.open = true; })")
         self.browser.until("document.querySelector('.drawer dd').textContent !== ''")
         self.expect_no_scrolling_sideways()
@@ -177,7 +177,7 @@ class Looks(Panel):
     def test_the_header_does_not_hide_the_focused_element(self):
         self.browser.size(660, 700)
         modules = [{"model": "EX9052D-M", "address": f"{n + 1:02X}"} for n in range(30)]
-        self.look_at(self.bus([{"name": "n" * 60, "tcp": 0, "modules": modules}]))
+        self.look_at(self.bus([{"name": "n" * 60, "port": "tcp:0", "modules": modules}]))
         self.browser.run("""document.querySelector("[aria-label='30 EX9052D-M: input DI3']").focus()""")
         hidden = """const header = document.querySelector('.top').getBoundingClientRect();
             return document.activeElement.getBoundingClientRect().top < header.bottom && header.height > 64"""

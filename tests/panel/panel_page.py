@@ -58,7 +58,7 @@ def bus(lines):
 # Two lines with 32 modules each, in groups of four. The first and the last module of a group have outputs, the second
 # has inputs, and the third has both.
 MANY = [
-    {"name": name, "tcp": 0, "modules": [
+    {"name": name, "port": "tcp:0", "modules": [
         {"model": ("EX9042D-M", "EX9052D-M", "EX9055D", "EX9068D-M")[i % 4], "address": f"{i + 1:02X}", "baud": 115200}
         for i in range(32)]}
     for name in ("hall", "yard")
@@ -101,7 +101,7 @@ class Panel(unittest.TestCase):
         self.expect_rows_in_order()
 
     def show(self, *arguments):
-        simulator = Simulator(*arguments, "--tcp", "0")
+        simulator = Simulator(*arguments, "--port", "tcp:0")
         self.addCleanup(simulator.close)
         self.look_at(simulator)
         return simulator

@@ -6,7 +6,7 @@ from panel_page import Panel
 from simulator import Master
 
 LINES = [
-    {"name": f"hall{n}", "tcp": 0, "line": "instant", "modules": [
+    {"name": f"hall{n}", "port": "tcp:0", "timing": "instant", "modules": [
         {"model": ("EX9042D-M", "EX9052D-M")[i % 2], "address": f"{i + 1:02X}", "name": f"P{n}V{i}"}
         for i in range(10)]}
     for n in range(7)

@@ -50,7 +50,7 @@ class Polling:
 
 class Server(unittest.TestCase):
     def setUp(self):
-        self.simulator = Simulator("EX9042D-M@01,baud=115200", "EX9052D-M@02,baud=115200", "--tcp", "0")
+        self.simulator = Simulator("EX9042D-M@01,baud=115200", "EX9052D-M@02,baud=115200", "--port", "tcp:0")
         self.addCleanup(self.simulator.close)
         self.port = self.simulator.port
         self.polling = Polling(self.simulator.lines[0])
@@ -239,7 +239,7 @@ class Server(unittest.TestCase):
 
 class Start(unittest.TestCase):
     def test_the_simulator_ends_without_an_error_while_pages_are_open(self):
-        simulator = Simulator("EX9042D", "--tcp", "0")
+        simulator = Simulator("EX9042D", "--port", "tcp:0")
         self.addCleanup(simulator.close)
         pages = [Page(simulator.port) for _ in range(3)]
         waiting = open_socket(simulator.port)
@@ -251,23 +251,23 @@ class Start(unittest.TestCase):
             each.close()
 
     def test_a_port_in_use_is_refused_if_it_is_named_and_replaced_if_it_is_the_default(self):
-        first = Simulator("EX9042D", "--tcp", "0")
+        first = Simulator("EX9042D", "--port", "tcp:0")
         self.addCleanup(first.close)
-        second = run("EX9042D", "--tcp", "0", "--panel", str(first.port))
+        second = run("EX9042D", "--port", "tcp:0", "--panel", str(first.port))
         self.assertEqual(second.returncode, 1)
         self.assertEqual(
             second.stderr,
             f"ex9000-sim: --panel {first.port}: the port is in use; name another port, or end the program that uses "
             "it\n",
         )
-        usual = [Simulator("EX9042D", "--tcp", "0", panel=None) for _ in range(2)]
+        usual = [Simulator("EX9042D", "--port", "tcp:0", panel=None) for _ in range(2)]
         for each in usual:
             self.addCleanup(each.close)
             self.assertEqual(status(ask(each.port, request(each.port))), 200)
         self.assertNotEqual(usual[0].port, usual[1].port)
 
     def test_the_server_listens_on_the_loopback_address_and_not_on_all_addresses(self):
-        simulator = Simulator("EX9042D", "--tcp", "0")
+        simulator = Simulator("EX9042D", "--port", "tcp:0")
         self.addCleanup(simulator.close)
         listening = [line.split()[1] for line in tcp_sockets() if line.split()[3] == "0A"]
         self.assertIn(f"0100007F:{simulator.port:04X}", listening)
@@ -275,7 +275,7 @@ class Start(unittest.TestCase):
 
     @unittest.skipUnless(pathlib.Path("/proc/net/if_inet6").exists(), "this machine has no IPv6")
     def test_the_server_does_not_listen_on_the_loopback_address_of_ipv6(self):
-        simulator = Simulator("EX9042D", "--tcp", "0")
+        simulator = Simulator("EX9042D", "--port", "tcp:0")
         self.addCleanup(simulator.close)
         with self.assertRaises(OSError):
             socket.create_connection(("::1", simulator.port), HANG)
@@ -297,8 +297,8 @@ class Broken(unittest.TestCase):
 
             # Every frame is written to the capture, so the write fails in a timer of the line, in a command of the
             # page, or in the command that undoes it.
-            simulator = Simulator("EX9055D", "--tcp", "0", "--capture", fifo, "--line", "instant", "--speed", "10",
-                                  "--fault", "foreign-traffic 2430314D0D every 10ms", stderr=subprocess.PIPE)
+            simulator = Simulator("EX9055D", "--port", "tcp:0", "--capture", fifo, "--timing", "instant",
+                                  "--speed", "10", "--fault", "foreign-traffic 2430314D0D every 10ms", stderr=subprocess.PIPE)
             self.addCleanup(simulator.close)
             page = Page(simulator.port)
             self.addCleanup(page.close)
@@ -310,12 +310,12 @@ class Broken(unittest.TestCase):
             drains.join()
             error = simulator.process.stderr.read()
             self.assertEqual(simulator.process.wait(HANG), 1, error)
-            self.assertRegex(error, r"\Aex9000-sim: --capture \S+: cannot be written: Broken pipe[^\n]*\n\Z")
+            self.assertRegex(error, r"\Aex9000-sim: --capture: \S+: cannot be written: Broken pipe[^\n]*\n\Z")
 
 
 class Slow(unittest.TestCase):
     def test_a_page_that_does_not_read_delays_no_other_page_and_later_gets_the_state(self):
-        simulator = Simulator("EX9042D-M@01", "EX9052D-M@02", "--tcp", "0", "--line", "instant")
+        simulator = Simulator("EX9042D-M@01", "EX9052D-M@02", "--port", "tcp:0", "--timing", "instant")
         self.addCleanup(simulator.close)
         master = Master(simulator.lines[0])
         self.addCleanup(master.close)

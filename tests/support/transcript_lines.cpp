@@ -13,8 +13,8 @@ std::string name(std::size_t position) { return "line-" + std::to_string(positio
 
 std::string line_of(const play::Transcript& transcript, std::size_t position, TranscriptLines::Over over) {
   std::string line = R"({"name": ")" + name(position) + R"(", )";
-  line +=
-      over == TranscriptLines::Over::Tcp ? R"("tcp": "127.0.0.1:0")" : R"("pty": ")" + name(position) + "\"";
+  line += over == TranscriptLines::Over::Tcp ? R"("port": "tcp:127.0.0.1:0")"
+                                             : R"("port": "pty:)" + name(position) + "\"";
   line += R"(, "modules": [{"model": ")";
   line += std::string(transcript.model->designation) + "\"";
   if (transcript.preset_given) {

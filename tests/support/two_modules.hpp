@@ -52,13 +52,13 @@ class TwoModules {
   static const char* option_of(Way::Port port) {
     switch (port) {
       case Way::Pty:
-        return "--pty=ex9000.tty";
+        return "--port=pty:ex9000.tty";
       case Way::Tcp:
-        return "--tcp=0";
+        return "--port=tcp:0";
       case Way::ModbusTcp:
         break;
     }
-    return "--modbus-tcp=0";
+    return "--port=modbus-tcp:0";
   }
 
   SimulatorProcess simulator_;

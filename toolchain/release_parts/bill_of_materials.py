@@ -36,6 +36,7 @@ COMPONENTS = (
     Component("Boost", "Boost", "BSL-1.0", "libboost1.74-dev", "headers: Asio, Beast, text algorithms"),
     Component("CLI11", "CLI11", "BSD-3-Clause", "libcli11-dev", "headers: the command line"),
     Component("nlohmann-json", "JSON for Modern C++", _MIT, "nlohmann-json3-dev", "headers: JSON"),
+    Component("yaml-cpp", "yaml-cpp", _MIT, "libyaml-cpp-dev", "bus files"),
     Component("libstdcxx", "libstdc++", _GCC_RUNTIME, "libstdc++-12-dev", "the C++ library of the host"),
     Component(
         "libgcc", "libgcc", _GCC_RUNTIME, "libgcc-12-dev",
@@ -54,7 +55,7 @@ COMPONENTS = (
 
 _SIMULATOR = {
     **dict.fromkeys(("Boost", "CLI11", "nlohmann-json"), "CONTAINS"),
-    **dict.fromkeys(("libstdcxx", "libgcc"), "STATIC_LINK"),
+    **dict.fromkeys(("yaml-cpp", "libstdcxx", "libgcc"), "STATIC_LINK"),
 }
 PRODUCTS = (
     Product(

@@ -92,7 +92,7 @@ def zsh_completion(program: Help, subcommands: dict[str, Help], models: list[str
         "_ex9000_sim_arguments() {",
         f"  compadd -- {' '.join(subcommands)}",
         "  _ex9000_sim_modules",
-        "  _files -g '*.json'",
+        "  _files -g '*.(yaml|yml|json)'",
         "}",
         "case $words[2] in",
     ]

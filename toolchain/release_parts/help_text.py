@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 _HEADING = re.compile(r"^(Positionals|Options|Subcommands):$")
 _ENTRY = re.compile(r"^  (\S+(?: \S+)*)(?: {2,}(\S.*))?$")
 _CONTINUED = re.compile(r"^ {10,}(\S.*)$")
-_SUBCOMMAND = re.compile(r"^[a-z][a-z-]*$")
+_SUBCOMMAND = re.compile(r"^  ([a-z][a-z-]*) {2,}\S")
 
 
 class UnknownHelp(Exception):
@@ -52,8 +52,8 @@ def read(text: str) -> Help:
         if heading := _HEADING.match(line):
             part = heading[1]
         elif part == "Subcommands":
-            if _SUBCOMMAND.match(line):
-                result.subcommands.append(line)
+            if subcommand := _SUBCOMMAND.match(line):
+                result.subcommands.append(subcommand[1])
             elif line and not line.startswith(" "):
                 result.notes = lines[number:]
                 break

@@ -17,8 +17,10 @@ _CONTINUED = re.compile(r"^ {10,}(\S.*)$")
 _ESCAPES = {"\\": "\\e", '"': "\\(dq", "-": "\\-", "'": "\\(aq", "`": "\\(ga"}
 
 
-def manual_page(program: Help, subcommands: dict[str, Help], released: datetime.date) -> str:
-    """Returns the page. `released` is the date that the page shows."""
+def manual_page(
+    program: Help, subcommands: dict[str, Help], topics: dict[str, str], released: datetime.date
+) -> str:
+    """Returns the page. `topics` are the texts of `help`; `released` is the date that the page shows."""
     lines = [
         f".Dd {released.strftime('%B')} {released.day}, {released.year}",
         ".Dt EX9000-SIM 1",
@@ -33,13 +35,14 @@ def manual_page(program: Help, subcommands: dict[str, Help], released: datetime.
         lines += [".Nm", f".Cm {name}", *_usage(help_of)]
     lines += [".Sh DESCRIPTION", *_prose(program.description)]
     lines += [".Sh OPTIONS", *_options(program)]
-    notes, examples = _without_examples(program.notes)
+    _, examples = _without_examples(program.notes)
     lines += [".Sh COMMANDS"]
     for name, help_of in subcommands.items():
         its_notes, its_examples = _without_examples(help_of.notes)
         examples += its_examples
         lines += [f".Ss {name}", *_prose(_sentence(help_of.description)), *_options(help_of), *_notes(its_notes)]
-    lines += [".Sh MODULES, BUS FILES, CONTROL SOCKET, FAULTS", *_first(_notes(notes))]
+    for topic, text in topics.items():
+        lines += [f".Sh {topic.upper()}", *_first(_notes(text.splitlines()))]
     lines += [".Sh FILES", ".Bl -tag -width Ds", *_FILES, ".El"]
     lines += [".Sh EXIT STATUS", *_EXIT_STATUS]
     lines += [".Sh EXAMPLES", *_first(_notes(examples))]
@@ -47,7 +50,7 @@ def manual_page(program: Help, subcommands: dict[str, Help], released: datetime.
 
 
 _FILES = [
-    ".It Pa /etc/ex9000/NAME.json",
+    ".It Pa /etc/ex9000/NAME.yaml",
     "the bus file of the service",
     ".Ql ex9000-sim@NAME",
     ".It Pa /var/lib/ex9000/NAME",

@@ -1,16 +1,22 @@
-// The texts that --help prints after the options.
+// The texts that --help and the subcommand `help` print.
 #pragma once
 
+#include <cstddef>
 #include <string>
 
 namespace ex9000::sim::help {
 
-/// Returns the syntax of modules, control commands, faults and inputs that change by themselves, and
-/// examples.
-std::string of_the_program();
-/// Returns the syntax of the steps of transcripts and scenarios.
+/// The column at which descriptions begin.
+constexpr std::size_t kColumn = 30;
+
+/// Printed after the options.
+extern const char* const kExamples;
+/// The steps of transcripts and scenarios.
 std::string of_play();
-/// Returns examples of `describe`.
-std::string of_describe();
+
+/// The topics of `help`, separated by |.
+std::string topics();
+/// Throws std::invalid_argument with a one-line message if there is no such topic.
+std::string on(const std::string& topic);
 
 }  // namespace ex9000::sim::help

@@ -10,7 +10,7 @@ PlayRecord::PlayRecord(Writing writing, Print print)
 void PlayRecord::run_begins(const std::string& what) {
   if (writing_.capture && !capture_) {
     capture_file_.emplace(*writing_.capture, is_there(*writing_.capture));
-    capture_ = std::make_unique<Capture>(*writing_.capture, "--capture ");
+    capture_ = std::make_unique<Capture>(*writing_.capture, "--capture: ");
     capture_->begin();
   }
   what_ = what;

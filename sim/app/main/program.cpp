@@ -7,7 +7,6 @@
 #include <boost/asio/signal_set.hpp>
 #include <csignal>
 #include <iostream>
-#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -18,7 +17,6 @@
 #include "sim/app/play/play.hpp"
 #include "sim/app/running_program/running_program.hpp"
 #include "sim/app/running_program/stop_signals.hpp"
-#include "sim/front_ends/terminal_view/terminal_output.hpp"
 
 namespace ex9000::sim {
 
@@ -46,12 +44,7 @@ void run(const Setup& setup) {
   add_stop_signals(signals);
   signals.async_wait([&io](const boost::system::error_code& /*error*/, int /*signal*/) { io.stop(); });
   const auto greet = [&errors](const std::string& text) { errors.write(text + "\n"); };
-  std::optional<TerminalOutput> terminal;
-  if (setup.watch) {
-    terminal.emplace(STDOUT_FILENO, gives_up);
-  }
-  RunningProgram running(io, setup, print_line, greet, terminal && terminal->is_open() ? &*terminal : nullptr,
-                         setup.panel ? json_of(all_models()) : "");
+  RunningProgram running(io, setup, print_line, greet, setup.panel ? json_of(all_models()) : "");
   running.start();
   if (setup.speed.max()) {
     running.run_unpaced();

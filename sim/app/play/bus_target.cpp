@@ -22,7 +22,7 @@ Memories read_memories(const sim::Setup& setup) {
   Memories memories;
   for (const sim::LineSetup& line : setup.lines) {
     for (const sim::ModuleSpec& module : line.modules) {
-      memories.push_back(sim::with_place(module.eeprom_place, [&] {
+      memories.push_back(sim::with_place(sim::place_of(module.places, "eeprom"), [&] {
         return module.eeprom.empty() ? std::nullopt : sim::read_eeprom_file(module.eeprom);
       }));
     }

@@ -52,7 +52,7 @@ void check_capture_path(const Task& task, const std::vector<Transcript>& all) {
   for (const Transcript& transcript : all) {
     read.push_back({"the file of steps", transcript.file});
   }
-  sim::with_place("--capture ", [&] { sim::refuse_overwriting(*task.writing.capture, read); });
+  sim::with_place("--capture: ", [&] { sim::refuse_overwriting(*task.writing.capture, read); });
 }
 
 }  // namespace

@@ -11,7 +11,6 @@
 #include "sim/files_and_ports/files/regular_file.hpp"
 #include "sim/front_ends/control_socket/control.hpp"
 #include "sim/notation/module_notation.hpp"
-#include "sim/notation/named_settings.hpp"
 #include "sim/text/durations.hpp"
 #include "sim/text/fail.hpp"
 #include "sim/text/values.hpp"
@@ -62,18 +61,16 @@ const Model& model_named(const std::string& name) {
   return *model;
 }
 
-/// Applies one KEY=VALUE of a `preset:` line.
-void apply_preset(const std::string& word, const Model& model, Settings& settings) {
-  const auto equals = word.find('=');
-  const std::string key = word.substr(0, equals);
-  const std::string value = equals == std::string::npos ? "" : word.substr(equals + 1);
-  sim::with_place("preset " + key + "=: ", [&] {
-    if (key == "address") {
-      settings.address = parse_hex_byte(value);
-    } else if (!sim::set_by_name(settings, model, key, value)) {
-      fail("unknown key; expected one of address, protocol, baud, format, checksum, edge, name");
-    }
-  });
+/// The settings of a `preset:` line.
+Settings preset_of(const ModelRun& run) {
+  sim::ModuleSpec spec = sim::factory_fresh(*run.model);
+  for (const std::string& word : run.presets) {
+    const auto equals = word.find('=');
+    const std::string key = word.substr(0, equals);
+    sim::take_module_setting(
+        spec, key, "preset " + key + "=: ", equals == std::string::npos ? "" : word.substr(equals + 1));
+  }
+  return spec.settings;
 }
 
 std::string substitute(std::string text, const Variables& variables) {
@@ -332,12 +329,9 @@ Transcript transcript_of(const std::string& path, const Source& source, const Mo
   Transcript transcript;
   transcript.file = path;
   transcript.model = run.model;
-  transcript.preset = Settings::factory(*run.model);
   transcript.preset_given = !run.presets.empty();
   line = run.presets.empty() ? line : run.preset_line;
-  for (const std::string& preset : run.presets) {
-    apply_preset(preset, *run.model, transcript.preset);
-  }
+  transcript.preset = preset_of(run);
   transcript.slow = source.slow;
   for (const Line& raw : source.steps) {
     line = raw.number;

@@ -71,7 +71,8 @@ std::string hint_for(const Frame& frame, const Line& line) {
     return address ? hint_for_address(line, Protocol::Ascii, *address) : "";
   }
   if (looks_like_modbus_tcp(bytes)) {
-    return "these bytes look like Modbus TCP; use --modbus-tcp, or set the master to Modbus RTU over TCP";
+    return "these bytes look like Modbus TCP; use --port modbus-tcp:PORT, or set the master to Modbus RTU "
+           "over TCP";
   }
   if (!is_valid_rtu(bytes)) {
     return "";

@@ -5,8 +5,8 @@
 
 namespace ex9000::sim {
 
-LinePorts::LinePorts(Line& line, const All& ports, ModbusTcpServer* server, Notice notice)
-    : line_(line), ports_(ports), server_(server), notice_(std::move(notice)), reported_(line.size()) {
+LinePorts::LinePorts(Line& line, const All& ports, Notice notice)
+    : line_(line), ports_(ports), notice_(std::move(notice)), reported_(line.size()) {
   line.bus().observe(*this);
 }
 
@@ -54,9 +54,10 @@ void LinePorts::resume() {
   for (const auto& port : ports_) {
     port->resume();
   }
-  if (server_ != nullptr) {
-    server_->resume();
-  }
+}
+
+bool LinePorts::hold_line() const {
+  return std::any_of(ports_.begin(), ports_.end(), [](const auto& port) { return port->holds_line(); });
 }
 
 void LinePorts::report_mismatches() {

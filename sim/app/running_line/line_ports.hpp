@@ -1,4 +1,4 @@
-// Connects the ports and the Modbus TCP server of a line to the master's end of the line.
+// Connects the ports of a line to the master's end of the line.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "sim/files_and_ports/ports/port.hpp"
-#include "sim/front_ends/modbus_tcp/modbus_tcp_server.hpp"
 #include "sim/virtual_line/line/line.hpp"
 
 namespace ex9000::sim {
@@ -24,9 +23,9 @@ class LinePorts final : private BusObserver {
   using Notice = std::function<void(const std::string&)>;
 
   /// Observes the bus of `line`: this object and all arguments must live as long as that bus is used.
-  /// `server` may be null. `notice` receives a one-line message for each module that cannot receive because
+  /// `notice` receives a one-line message for each module that cannot receive because
   /// of its rate or format, and for bytes that a port drops.
-  LinePorts(Line& line, const All& ports, ModbusTcpServer* server, Notice notice);
+  LinePorts(Line& line, const All& ports, Notice notice);
 
   /// Stores a byte that the master's end of the line has received. Call this for each such byte.
   void hear(std::uint8_t byte) { heard_.push_back(byte); }
@@ -45,12 +44,12 @@ class LinePorts final : private BusObserver {
   /// line. Reports a mismatch only once, unless the mismatch ends and begins again.
   void report_mismatches();
 
-  /// Lets the ports and the server continue if they have stopped because `received` returned false.
+  /// Lets the ports continue if they have stopped because Arrivals has returned false.
   void resume();
+  /// Whether a port still waits for its first master before line time may begin.
+  [[nodiscard]] bool hold_line() const;
 
   [[nodiscard]] const All& all() const { return ports_; }
-  /// Returns the Modbus TCP server of the line; null if it has none.
-  [[nodiscard]] ModbusTcpServer* server() const { return server_; }
 
  private:
   void report_dropped(const Port& port, std::size_t bytes);
@@ -60,7 +59,6 @@ class LinePorts final : private BusObserver {
 
   Line& line_;
   const All& ports_;
-  ModbusTcpServer* server_;
   Notice notice_;
   using Mismatch = std::pair<SerialMode, SerialMode>;  ///< mode of the line, mode of a module
   std::vector<Mismatch> reported_;                     ///< one for each module; zeros: no mismatch

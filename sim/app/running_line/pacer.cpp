@@ -27,27 +27,49 @@ Pacer::Pacer(boost::asio::io_context& io, Line& line, LinePorts& ports, FrameWat
              LinePorts::Notice notice)
     : timer_(io), line_(line), notice_(std::move(notice)), ports_(ports), frames_(frames), pace_(pace) {}
 
-void Pacer::start() {
+void Pacer::start(std::function<void()> begun) {
+  begun_ = std::move(begun);
   began_ = std::chrono::steady_clock::now();
   first_ = line_.clock().virtual_now();
   ports_.report_mismatches();
-  for (const auto& port : ports_.all()) {
-    port->start([this, &port = *port](const std::uint8_t* bytes, std::size_t size,
-                                      const Port::Positions& damaged, Port::Sender sender) {
-      return receive(port, {bytes, size}, damaged, sender);
-    });
-    port->on_left([this](Port::Sender sender) { line_.master().drop(sender); });
+  held_ = ports_.hold_line();
+  if (held_) {
+    notice_("line time waits until a master has connected");
   }
-  if (ports_.server() != nullptr) {
-    ports_.server()->start([this](std::size_t /*size*/, const std::function<void()>& process) {
-      now(process);
-      return !pause_if_full();
-    });
+  for (const auto& port : ports_.all()) {
+    port->start(*this);
+  }
+  if (!held_) {
+    begin();
+  }
+}
+
+void Pacer::connected() {
+  if (held_ && !ports_.hold_line()) {
+    began_ = std::chrono::steady_clock::now();
+    held_ = false;
+    begin();
+  }
+}
+
+void Pacer::begin() {
+  if (begun_) {
+    begun_();
   }
   follow();
 }
 
+bool Pacer::requests(std::size_t /*size*/, std::function<void()> process) {
+  now(process);
+  return !pause_if_full();
+}
+
+void Pacer::left(Port::Sender sender) { line_.master().drop(sender); }
+
 VirtualTime Pacer::wall() const {
+  if (held_) {
+    return first_;
+  }
   const VirtualTime real = std::chrono::steady_clock::now() - began_;
   return first_ + (pace_.speed == 1 ? real : std::chrono::duration_cast<VirtualTime>(real * pace_.speed));
 }
@@ -110,6 +132,9 @@ bool Pacer::pause_if_full() {
 }
 
 void Pacer::arm_timer() {
+  if (held_) {
+    return;
+  }
   VirtualTime next = std::min(line_.bus().next(), frames_ == nullptr ? kNever : frames_->next());
   if (paused_ && line_.clock().virtual_now() > wall()) {
     next = std::min(next, line_.clock().virtual_now() - kFarthestAhead);
@@ -164,7 +189,7 @@ void Pacer::now(const std::function<void()>& action) {
   follow();
 }
 
-bool Pacer::receive(const Port& port, Bytes bytes, const Port::Positions& damaged, Port::Sender sender) {
+bool Pacer::bytes(const Port& port, Bytes bytes, const Port::Positions& damaged, Port::Sender sender) {
   const VirtualTime travelled = port.is_a_line() ? line_.master().takes(bytes.size) : VirtualTime(0);
   const auto latency = std::chrono::duration_cast<VirtualTime>(pace_.host_latency * pace_.speed);
   const VirtualTime written = wall() - latency - travelled;

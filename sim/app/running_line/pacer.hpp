@@ -38,8 +38,9 @@ struct Pace {
   double speed = 1;
 };
 
-/// Virtual time follows the wall clock from `start` on.
-class Pacer final {
+/// Virtual time follows the wall clock from `start` on, or from the time at which each port that holds the
+/// line (Port::hold_line) has had a master.
+class Pacer final : private Arrivals {
  public:
   /// `frames` may be null. `io` must outlive this object. `line`, `ports` and `frames` must live as long as
   /// `io` runs. `notice` receives messages about long delays of the host, and about two Modbus frames that
@@ -47,8 +48,9 @@ class Pacer final {
   Pacer(boost::asio::io_context& io, Line& line, LinePorts& ports, FrameWatch* frames, Pace pace,
         LinePorts::Notice notice);
 
-  /// Accepts masters, and puts the bytes and the requests from `ports` on the line.
-  void start();
+  /// Accepts masters, and puts the bytes and the requests from `ports` on the line. Calls `begun` when line
+  /// time begins.
+  void start(std::function<void()> begun = nullptr);
   /// Returns the line's present time. The line's clock has the time of the last event, which may be earlier.
   [[nodiscard]] VirtualTime present() const { return std::max(wall(), line_.clock().virtual_now()); }
   /// Advances the line to its present time, then runs `action`, which may use the line.
@@ -68,7 +70,13 @@ class Pacer final {
   bool pause_if_full();
   void report_delay(VirtualTime next);
   void report_joined(Bytes bytes);
-  bool receive(const Port& port, Bytes bytes, const Port::Positions& damaged, Port::Sender sender);
+  void begin();
+  // --- Arrivals ---
+  bool bytes(const Port& port, Bytes bytes, const Port::Positions& damaged, Port::Sender sender) override;
+  bool requests(std::size_t size, std::function<void()> process) override;
+  void left(Port::Sender sender) override;
+  void connected() override;
+
   static std::size_t first_frame_size(Bytes bytes);
   [[nodiscard]] VirtualTime earliest_frame(std::uint8_t address) const;
 
@@ -80,8 +88,10 @@ class Pacer final {
   FrameWatch* frames_;
   Pace pace_;
   std::chrono::steady_clock::time_point began_;
-  VirtualTime first_{0};          ///< the line's time at `began_`
-  bool paused_ = false;           ///< a port or the server waits for `resume`
+  VirtualTime first_{0};  ///< the line's time at `began_`
+  std::function<void()> begun_;
+  bool held_ = false;             ///< line time waits for a master
+  bool paused_ = false;           ///< a port waits for `resume`
   VirtualTime longest_delay_{0};  ///< the longest reported delay of the host, in wall clock time
 };
 

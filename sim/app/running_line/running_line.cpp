@@ -8,6 +8,7 @@
 #include "sim/files_and_ports/ports/pty_port.hpp"
 #include "sim/files_and_ports/ports/serial_port.hpp"
 #include "sim/files_and_ports/ports/tcp_port.hpp"
+#include "sim/front_ends/modbus_tcp/modbus_tcp_server.hpp"
 #include "sim/text/fail.hpp"
 #include "sim/text/system_error.hpp"
 
@@ -32,7 +33,7 @@ RunningLine::RunningLine(boost::asio::io_context& io, const LineSetup& setup, st
                          LogFormat format, bool stepped, const Print& print)
     : io_(io), setup_(setup) {
   for (const ModuleSpec& module : setup.modules) {
-    with_place(module.eeprom_place, [&] {
+    with_place(place_of(module.places, "eeprom"), [&] {
       memories_.push_back(module.eeprom.empty() ? nullptr : std::make_unique<EepromFile>(module.eeprom));
     });
   }
@@ -54,37 +55,33 @@ RunningLine::RunningLine(boost::asio::io_context& io, const LineSetup& setup, st
   record_ = std::make_unique<LineRecord>(*line_, log_name(), format, print);
   record_->give_hints();
   line_->configure_faults(seed, note_);
-  with_place(place_of(setup.places, "fault"), [&] { begin_programs(*line_, setup); });
+  begin_programs(*line_, setup);
+}
+
+std::unique_ptr<Port> RunningLine::open(const PortSetup& port, bool stepped) {
+  const SerialMode mode = line_->master().mode();
+  switch (port.kind) {
+    case PortSetup::Kind::Pty:
+      return std::make_unique<PtyPort>(io_, port.path, mode.baud, port.access);
+    case PortSetup::Kind::Tcp:
+      return std::make_unique<TcpPort>(io_, port.address,
+                                       stepped ? TcpPort::Linger() : TcpPort::kUsualLinger);
+    case PortSetup::Kind::ModbusTcp:
+      return std::make_unique<ModbusTcpServer>(io_, *line_, port.address, port.timeout, note_);
+    case PortSetup::Kind::Serial:
+      return std::make_unique<SerialPort>(io_, port.place, port.path, mode, port.echo);
+  }
+  return nullptr;
 }
 
 void RunningLine::open_ports(bool stepped) {
-  const SerialMode mode = line_->master().mode();
-  if (setup_.pty) {
-    auto port = with_place(place_of(setup_.places, "pty"), [&] {
-      return std::make_unique<PtyPort>(io_, *setup_.pty, mode.baud, setup_.pty_access);
-    });
-    introduced_.pty = port->pty().link();
-    introduced_.pty_device = port->pty().device();
-    ports_.push_back(std::move(port));
-  }
-  if (setup_.tcp) {
-    const TcpPort::Linger linger = stepped ? TcpPort::Linger() : TcpPort::kUsualLinger;
-    auto port = with_place(place_of(setup_.places, "tcp"),
-                           [&] { return std::make_unique<TcpPort>(io_, *setup_.tcp, linger); });
-    introduced_.tcp = port->address();
-    ports_.push_back(std::move(port));
-  }
-  if (setup_.modbus_tcp) {
-    modbus_tcp_ = with_place(place_of(setup_.places, "modbus-tcp"), [&] {
-      return std::make_unique<ModbusTcpServer>(io_, *line_, *setup_.modbus_tcp,
-                                               setup_.modbus_timeout.value_or(kGatewayTimeout), note_);
-    });
-    introduced_.modbus_tcp = modbus_tcp_->address();
-  }
-  if (setup_.serial) {
-    ports_.push_back(std::make_unique<SerialPort>(io_, place_of(setup_.places, "serial"), *setup_.serial,
-                                                  mode, setup_.echo));
-    introduced_.serial = *setup_.serial;
+  for (const PortSetup& port : setup_.ports) {
+    ports_.push_back(with_place(port.kind == PortSetup::Kind::Serial ? "" : port.place,
+                                [&] { return open(port, stepped); }));
+    if (port.wait) {
+      ports_.back()->hold_line();
+    }
+    introduced_.ports.push_back(ports_.back()->summary());
   }
 }
 
@@ -95,8 +92,8 @@ void RunningLine::renew_memories() {
     if (file != nullptr && file->found() && contents != *file->found() &&
         !file->write(0, {contents.data(), contents.size()})) {
       const std::string why = reason();
-      throw std::runtime_error(setup_.modules[i].eeprom_place + file->path() + ": cannot be written: " + why +
-                               "; name a path that can be written");
+      throw std::runtime_error(place_of(setup_.modules[i].places, "eeprom") + file->path() +
+                               ": cannot be written: " + why + "; name a path that can be written");
     }
   }
 }
@@ -105,22 +102,18 @@ void RunningLine::make_missing_memories(std::list<NewFile>& made) {
   for (std::size_t i = 0; i < line_->size(); ++i) {
     EepromFile* file = memories_[i].get();
     if (file != nullptr && !file->found()) {
-      with_place(setup_.modules[i].eeprom_place, [&] { file->create(line_->module(i).memory().contents()); });
+      with_place(place_of(setup_.modules[i].places, "eeprom"),
+                 [&] { file->create(line_->module(i).memory().contents()); });
       made.emplace_back(file->path(), false);
     }
   }
 }
 
-/// Returns the name of the line. If the line has no name, returns the path or the address of its first port,
-/// in the order pseudo-terminal, TCP, Modbus TCP, serial. If the line has no port either, returns "line".
+/// The name of the line or, if it has none, the address of its first port; "line" if it has no port either.
 std::string RunningLine::log_name() const {
-  for (const std::string& name :
-       {setup_.name, introduced_.pty, introduced_.tcp, introduced_.modbus_tcp, introduced_.serial}) {
-    if (!name.empty()) {
-      return name;
-    }
-  }
-  return "line";
+  return !setup_.name.empty()         ? setup_.name
+         : !introduced_.ports.empty() ? introduced_.ports.front().address
+                                      : "line";
 }
 
 std::string RunningLine::remark(std::size_t index) const {
@@ -139,10 +132,8 @@ std::string RunningLine::remark(std::size_t index) const {
   }
   const bool blank = module.state().statistics.settings_source == SettingsSource::Blank;
   const bool overruled = spec.settings_given && module.state().settings != spec.settings;
-  const bool of_a_bus_file = !setup_.places.empty();
-  const std::string others = of_a_bus_file ? ", not from the bus file" : ", not from the command line";
   return (blank ? file->path() + " is blank: factory settings" : "settings from " + file->path()) +
-         (overruled ? others : "");
+         (overruled ? ", not those given here" : "");
 }
 
 void RunningLine::introduce() {
@@ -167,15 +158,15 @@ void RunningLine::start() {
   }
 }
 
-void RunningLine::start_paced(double speed) {
-  connected_ = std::make_unique<LinePorts>(*line_, ports_, modbus_tcp_.get(), note_);
+void RunningLine::start_paced(double speed, std::function<void()> begun) {
+  connected_ = std::make_unique<LinePorts>(*line_, ports_, note_);
   pacer_ =
       std::make_unique<Pacer>(io_, *line_, *connected_, record_->frames(), pace_of(setup_, speed), note_);
-  pacer_->start();
+  pacer_->start(std::move(begun));
 }
 
 SteppedLine& RunningLine::start_stepped(SteppedLine::Arrived arrived) {
-  connected_ = std::make_unique<LinePorts>(*line_, ports_, modbus_tcp_.get(), note_);
+  connected_ = std::make_unique<LinePorts>(*line_, ports_, note_);
   stepped_ = std::make_unique<SteppedLine>(*line_, *connected_, record_->frames());
   stepped_->start(std::move(arrived));
   return *stepped_;

@@ -14,7 +14,6 @@
 #include "sim/app/setup/setup.hpp"
 #include "sim/files_and_ports/files/eeprom_file.hpp"
 #include "sim/files_and_ports/files/new_file.hpp"
-#include "sim/front_ends/modbus_tcp/modbus_tcp_server.hpp"
 #include "sim/line_monitor/log/banner.hpp"
 #include "sim/virtual_line/line/line.hpp"
 
@@ -45,9 +44,9 @@ class RunningLine {
   /// Connects the memories to their EEPROM files: from now on, all data that a module with such a file stores
   /// is written to the file. Call this after `make_missing_memories`.
   void start();
-  /// Accepts masters. From now on, while `io` runs, the line's time passes at `speed` times the speed of the
-  /// wall clock.
-  void start_paced(double speed);
+  /// Accepts masters. While `io` runs, the line's time passes at `speed` times the speed of the wall clock;
+  /// `begun`: see Pacer::start.
+  void start_paced(double speed, std::function<void()> begun);
   /// Accepts masters. The line's time passes only when the caller advances it. `arrived`: see
   /// SteppedLine::start.
   SteppedLine& start_stepped(SteppedLine::Arrived arrived);
@@ -64,6 +63,7 @@ class RunningLine {
   [[nodiscard]] const LineSummary& introduced() const { return introduced_; }
 
  private:
+  [[nodiscard]] std::unique_ptr<Port> open(const PortSetup& port, bool stepped);
   void open_ports(bool stepped);
   [[nodiscard]] std::string log_name() const;
   [[nodiscard]] std::string remark(std::size_t index) const;
@@ -76,7 +76,6 @@ class RunningLine {
   VirtualTime came_up_{0};  ///< the line's time at which all modules had started up
   LineSummary introduced_;
   LinePorts::All ports_;
-  std::unique_ptr<ModbusTcpServer> modbus_tcp_;  ///< null if `setup` names no Modbus TCP port
   std::unique_ptr<LineRecord> record_;
   const LinePorts::Notice note_ = [this](const std::string& text) { record_->note(text); };
   std::unique_ptr<LinePorts> connected_;  ///< null until `start_paced` or `start_stepped`

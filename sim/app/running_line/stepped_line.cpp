@@ -8,22 +8,20 @@ void SteppedLine::start(Arrived arrived) {
   arrived_ = std::move(arrived);
   ports_.report_mismatches();
   for (const auto& port : ports_.all()) {
-    // Only serial ports report wrong parity, and a line with a serial port cannot run in stepped time.
-    port->start([this, &port = *port](const std::uint8_t* bytes, std::size_t size,
-                                      const Port::Positions& /*damaged*/, Port::Sender /*sender*/) {
-      return receive(size, [this, &port, copy = std::vector<std::uint8_t>(bytes, bytes + size)] {
-        ports_.take_rate(port);
-        line_.master().send(copy.data(), copy.size());
-      });
-    });
-  }
-  if (ports_.server() != nullptr) {
-    ports_.server()->start(
-        [this](std::size_t size, Put process) { return receive(size, std::move(process)); });
+    port->start(*this);
   }
 }
 
-bool SteppedLine::receive(std::size_t size, Put put) {
+/// Only serial ports report damaged bytes, and a line with a serial port cannot run in stepped time.
+bool SteppedLine::bytes(const Port& port, Bytes bytes, const Port::Positions& /*damaged*/,
+                        Port::Sender /*sender*/) {
+  return store(bytes.size, [this, &port, copy = std::vector<std::uint8_t>(bytes.begin(), bytes.end())] {
+    ports_.take_rate(port);
+    line_.master().send(copy.data(), copy.size());
+  });
+}
+
+bool SteppedLine::store(std::size_t size, Put put) {
   arrivals_.push_back(std::move(put));
   waiting_ += size;
   arrived_();
@@ -33,9 +31,6 @@ bool SteppedLine::receive(std::size_t size, Put put) {
 void SteppedLine::read_ports() {
   for (const auto& port : ports_.all()) {
     port->read_waiting();
-  }
-  if (ports_.server() != nullptr) {
-    ports_.server()->read_waiting();
   }
 }
 

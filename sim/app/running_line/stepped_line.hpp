@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <utility>
 #include <vector>
 
 #include "sim/app/running_line/line_ports.hpp"
@@ -13,29 +14,28 @@ namespace ex9000::sim {
 
 /// Stores the bytes that arrive at the line's ports and the requests that arrive at its Modbus TCP server,
 /// until `put_on_line`. No function reads the wall clock or blocks.
-class SteppedLine {
+class SteppedLine final : private Arrivals {
  public:
   using Arrived = std::function<void()>;
 
   /// If at least this many bytes are stored after a port has delivered bytes, the port delivers no more bytes
-  /// of the same master until `put_on_line`. If at least this many bytes are stored after the server has
-  /// delivered bytes, the server delivers no more bytes of any client until `put_on_line`.
+  /// of the same master, and a gateway no more bytes of any client, until `put_on_line`.
   static constexpr std::size_t kMostBytes = 65'536;
 
   /// `frames` may be null. All arguments must outlive this object.
   SteppedLine(Line& line, LinePorts& ports, FrameWatch* frames)
       : line_(line), ports_(ports), frames_(frames) {}
 
-  /// Accepts masters. `arrived` is called whenever bytes have arrived at a port or at the server.
+  /// Accepts masters. `arrived` is called whenever bytes have arrived at a port.
   void start(Arrived arrived);
 
   /// Returns the number of bytes that have arrived since the last `put_on_line`.
   [[nodiscard]] std::size_t waiting() const { return waiting_; }
-  /// Reads what is available at the ports and at the server, within the limit of `kMostBytes`.
+  /// Reads what is available at the ports, within the limit of `kMostBytes`.
   void read_ports();
   /// Adds the stored bytes to the end of the master's queue; the master sends them without a gap. Adds the
-  /// stored requests of the server to the line's queue. If a port or the server has stopped at `kMostBytes`,
-  /// lets it deliver bytes again.
+  /// stored requests of a gateway to the line's queue. Lets ports that have stopped at `kMostBytes` deliver
+  /// again.
   void put_on_line();
 
   [[nodiscard]] VirtualTime now() const { return line_.clock().virtual_now(); }
@@ -53,8 +53,12 @@ class SteppedLine {
   /// them to the line's queue.
   using Put = std::function<void()>;
 
-  bool receive(std::size_t size, Put put);
-  /// Returns whether a port or the server waits for `resume`.
+  bool store(std::size_t size, Put put);
+  // --- Arrivals ---
+  bool bytes(const Port& port, Bytes bytes, const Port::Positions& damaged, Port::Sender sender) override;
+  bool requests(std::size_t size, Put process) override { return store(size, std::move(process)); }
+
+  /// Returns whether a port waits for `resume`.
   [[nodiscard]] bool full() const { return waiting_ >= kMostBytes; }
 
   Line& line_;

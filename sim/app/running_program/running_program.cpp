@@ -1,10 +1,7 @@
 #include "sim/app/running_program/running_program.hpp"
 
 #include <algorithm>
-#include <boost/asio/dispatch.hpp>
-#include <boost/asio/post.hpp>
 #include <chrono>
-#include <thread>
 #include <utility>
 
 #include "sim/app/setup/paths_in_use.hpp"
@@ -12,54 +9,21 @@
 
 namespace ex9000::sim {
 
-namespace {
-
-/// Returns the number of threads for the lines. Lines that do not follow the wall clock run on the main
-/// thread, which advances their time.
-std::size_t threads_of(const Setup& setup) {
-  if (!setup.speed.paced()) {
-    return 1;
-  }
-  const std::size_t processors =
-      std::clamp<std::size_t>(std::thread::hardware_concurrency(), 1, kMostThreads);
-  return std::min(setup.threads.value_or(processors), setup.lines.size());
-}
-
-}  // namespace
-
 RunningProgram::RunningProgram(boost::asio::io_context& io, Setup setup, Print print, Print greet,
-                               Terminal* terminal, const std::string& models)
-    : io_(io),
-      setup_(std::move(setup)),
-      print_(std::move(print)),
-      greet_(std::move(greet)),
-      threads_(io, threads_of(setup_)),
-      end_(io),
-      next_look_(io) {
-  if (setup_.watch) {
-    watch_ = std::make_unique<Watch>(terminal, print_);
-    print_ = [this](const std::string& line) { watch_->print(line); };
-  }
+                               const std::string& models)
+    : io_(io), setup_(std::move(setup)), print_(std::move(print)), greet_(std::move(greet)), end_(io) {
   for (const LineSetup& line : setup_.lines) {
     // If a simulated line has a name, each of its lines in the text log begins with this name. JSON has a
     // key for the name.
     const bool as_it_is = line.name.empty() || for_machines();
     const std::string lead = as_it_is ? "" : line.name + ": ";
     lines_.push_back(std::make_unique<RunningLine>(
-        threads_.io(lines_.size()), line, setup_.seed + lines_.size(), setup_.log.value_or(LogFormat::Text),
-        setup_.speed.stepped(), [this, lead](const std::string& text) { print_line(lead + text); }));
+        io_, line, setup_.seed + lines_.size(), setup_.log.value_or(LogFormat::Text), setup_.speed.stepped(),
+        [this, lead](const std::string& text) { print_(lead + text); }));
   }
   open_control();
   open_panel(models);
-  watch_lines();
   open_capture();
-}
-
-RunningProgram::~RunningProgram() { threads_.end(); }
-
-void RunningProgram::print_line(const std::string& line) {
-  const std::lock_guard<std::mutex> lock(printing_);
-  print_(line);
 }
 
 void RunningProgram::open_control() {
@@ -67,7 +31,7 @@ void RunningProgram::open_control() {
   for (const auto& running : lines_) {
     const LineSummary& introduced = running->introduced();
     lines.push_back({introduced.name, running->line(), [&line = *running] { return line.sent(); },
-                     !introduced.serial.empty()});
+                     introduced.port("serial") != nullptr});
   }
   control_.emplace(std::move(lines));
   if (!setup_.control) {
@@ -88,48 +52,16 @@ void RunningProgram::open_panel(const std::string& models) {
   panel_ = std::make_unique<Panel>(
       [this](const std::string& command) { return carry_out(command); },
       [this](std::size_t line, RequestQueue::Request request) { ask(line, std::move(request)); },
-      [this](const std::function<void()>& action) { threads_.pause_for(action); }, setup_.speed.factor);
+      setup_.speed.factor);
   for (std::size_t i = 0; i < lines_.size(); ++i) {
     RunningLine& running = *lines_[i];
     panel_->add_line(running.introduced(), running.line(), [&running] { return running.pacer().present(); });
     running.record().tell(
-        [this, i](const Frame& frame) {
-          boost::asio::dispatch(io_, [this, i, frame] { panel_->hear(i, frame); });
-        },
-        [this, i](VirtualTime now, const std::string& text) {
-          boost::asio::dispatch(io_, [this, i, now, text] { panel_->note(i, now, text); });
-        });
+        [this, i](const Frame& frame) { panel_->hear(i, frame); },
+        [this, i](VirtualTime now, const std::string& text) { panel_->note(i, now, text); });
   }
   with_place(place_of(setup_.places, "panel"), [this, &models] {
     panel_server_ = std::make_unique<PanelServer>(io_, setup_.panel->port, models, *panel_);
-  });
-}
-
-void RunningProgram::watch_lines() {
-  if (!watch_) {
-    return;
-  }
-  for (const auto& line : lines_) {
-    RunningLine& running = *line;
-    watch_->add_line(running.introduced().name, running.line(), [this, &running] {
-      return setup_.speed.paced() ? running.pacer().present() : running.line().clock().virtual_now();
-    });
-  }
-}
-
-/// Updates the view of the modules now and, if the lines follow the wall clock, every 50 ms. Otherwise the
-/// code that advances the time of the lines updates the view.
-void RunningProgram::keep_watching() {
-  constexpr auto kBetweenLooks = std::chrono::milliseconds(50);
-  threads_.pause_for([this] { watch_->look(); });
-  if (!setup_.speed.paced()) {
-    return;
-  }
-  next_look_.expires_after(kBetweenLooks);
-  next_look_.async_wait([this](const boost::system::error_code& error) {
-    if (!error) {
-      keep_watching();
-    }
   });
 }
 
@@ -152,38 +84,24 @@ Control::Reply RunningProgram::carry_out(const std::string& command) {
   if (stepper_) {
     return control_->carry_out(command);
   }
-  Control::Reply reply;
-  threads_.pause_for([&] {
-    for (const auto& running : lines_) {
-      running->pacer().reach_present();
-    }
-    reply = control_->carry_out(command);
-    for (const auto& running : lines_) {
-      running->pacer().follow();
-    }
-  });
+  for (const auto& running : lines_) {
+    running->pacer().reach_present();
+  }
+  const Control::Reply reply = control_->carry_out(command);
+  for (const auto& running : lines_) {
+    running->pacer().follow();
+  }
   return reply;
 }
 
-/// Adds a request to the queue of a line. The line's thread receives the reply, and the main thread calls
-/// `request.done` with the reply.
 void RunningProgram::ask(std::size_t line, RequestQueue::Request request) {
-  request.done = [this, done = std::move(request.done)](const RequestQueue::Reply& reply) {
-    boost::asio::post(io_, [done, reply] { done(reply); });
-  };
   RunningLine& running = *lines_[line];
-  threads_.pause_for(
-      [&] { running.pacer().now([&] { running.line().requests().ask(std::move(request)); }); });
+  running.pacer().now([&] { running.line().requests().ask(std::move(request)); });
 }
 
 void RunningProgram::answer(const std::string& command, const ControlSocket::Answer& answer) {
   if (stepper_ && Stepper::is_advance(command)) {
-    stepper_->advance(command, [this, answer](const Control::Reply& reply) {
-      if (watch_) {
-        watch_->look();
-      }
-      answer(reply);
-    });
+    stepper_->advance(command, answer);
   } else {
     answer(carry_out(command));
   }
@@ -222,8 +140,7 @@ void RunningProgram::start() {
   for (const auto& running : lines_) {
     running->renew_memories();
   }
-  threads_.start();
-  threads_.pause_for([this] { begin(); });
+  begin();
   if (setup_.speed.stepped()) {
     start_stepped();
   }
@@ -233,10 +150,11 @@ void RunningProgram::start() {
   if (panel_server_) {
     panel_server_->start();
   }
-  if (watch_) {
-    keep_watching();
-  }
-  if (setup_.speed.paced() && ends()) {
+}
+
+/// The run ends when its time has passed on the line that has begun last.
+void RunningProgram::line_begun() {
+  if (--lines_to_begin_ == 0 && ends()) {
     end_by_the_clock();
   }
 }
@@ -246,6 +164,7 @@ void RunningProgram::start() {
 /// and an existing capture file keeps its content.
 void RunningProgram::begin() {
   make_files_and_greet();
+  lines_to_begin_ = lines_.size();
   for (const auto& running : lines_) {
     if (setup_.log) {
       running->record().print_frames();
@@ -255,7 +174,7 @@ void RunningProgram::begin() {
     }
     running->start();
     if (setup_.speed.paced()) {
-      running->start_paced(setup_.speed.factor);
+      running->start_paced(setup_.speed.factor, [this] { line_begun(); });
     }
   }
 }
@@ -275,11 +194,9 @@ void RunningProgram::end_by_the_clock() {
     if (error) {
       return;
     }
-    threads_.pause_for([this] {
-      for (const auto& running : lines_) {
-        running->run_until(*setup_.lasts);
-      }
-    });
+    for (const auto& running : lines_) {
+      running->run_until(*setup_.lasts);
+    }
     io_.stop();
   });
 }
@@ -304,21 +221,13 @@ void RunningProgram::run_unpaced() {
     for (const auto& running : lines_) {
       running->run_until(now);
     }
-    if (watch_) {
-      watch_->look();
-    }
     io_.poll();
   }
 }
 
 void RunningProgram::finish() {
-  threads_.end();
-  threads_.rethrow();
   for (const auto& running : lines_) {
     running->record().finish();
-  }
-  if (watch_) {
-    watch_->look();
   }
 }
 

@@ -1,17 +1,15 @@
-// One run of the program: its lines, its control socket, its panel, its terminal view and its capture.
+// One run of the program: its lines, its control socket, its panel and its capture.
 #pragma once
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <list>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "sim/app/running_line/running_line.hpp"
-#include "sim/app/running_program/line_threads.hpp"
 #include "sim/app/running_program/stepper.hpp"
 #include "sim/app/running_program/stop_signals.hpp"
 #include "sim/app/setup/setup.hpp"
@@ -20,7 +18,6 @@
 #include "sim/front_ends/control_socket/control_socket.hpp"
 #include "sim/front_ends/panel/panel.hpp"
 #include "sim/front_ends/panel/panel_server.hpp"
-#include "sim/front_ends/terminal_view/watch.hpp"
 #include "sim/line_monitor/capture/capture.hpp"
 #include "sim/line_monitor/log/banner.hpp"
 
@@ -33,13 +30,10 @@ class RunningProgram {
   /// Opens everything that `setup` names, except EEPROM files that do not exist. Throws std::invalid_argument
   /// or std::runtime_error with a one-line message. After an exception, everything is closed again, no new
   /// file remains, and the content of existing files is unchanged. `print` receives the log, the notes and
-  /// the greeting; if the log is JSON, `greet` receives the greeting instead. If `setup.watch` is true and
-  /// `terminal` is not null, `terminal` receives everything that `print` would receive; otherwise `terminal`
-  /// is not used. See Watch. `models` is the content of the panel's /models.json. `io` and `terminal` must
-  /// outlive this object.
-  RunningProgram(boost::asio::io_context& io, Setup setup, Print print, Print greet, Terminal* terminal,
+  /// the greeting; if the log is JSON, `greet` receives the greeting instead. `models` is the content of the
+  /// panel's /models.json. `io` must outlive this object.
+  RunningProgram(boost::asio::io_context& io, Setup setup, Print print, Print greet,
                  const std::string& models);
-  ~RunningProgram();
   RunningProgram(const RunningProgram&) = delete;
   RunningProgram& operator=(const RunningProgram&) = delete;
 
@@ -51,24 +45,21 @@ class RunningProgram {
   /// Only for Speed::Kind::Max: processes all events in the duration of `setup`. Ends early if `io` is
   /// stopped.
   void run_unpaced();
-  /// Ends the threads and records the frames that are still in progress. Call this when `io` has stopped or
-  /// `run_unpaced` has returned. Throws the first exception of a handler on one of the threads, and
-  /// std::runtime_error with a one-line message if a record cannot be written.
+  /// Records the frames that are still in progress. Call this when `io` has stopped or `run_unpaced` has
+  /// returned. Throws std::runtime_error with a one-line message if a record cannot be written.
   void finish();
 
  private:
   [[nodiscard]] bool for_machines() const { return setup_.log == LogFormat::Json; }
   void keep_a_capture();
-  void print_line(const std::string& line);
   void open_control();
   [[nodiscard]] bool ends() const;
+  void line_begun();
   void end_by_the_clock();
   void begin();
   void make_files_and_greet();
   void open_panel(const std::string& models);
   void open_capture();
-  void watch_lines();
-  void keep_watching();
   Control::Reply carry_out(const std::string& command);
   void ask(std::size_t line, RequestQueue::Request request);
   void answer(const std::string& command, const ControlSocket::Answer& answer);
@@ -78,12 +69,9 @@ class RunningProgram {
   const Setup setup_;
   Print print_;
   Print greet_;
-  std::mutex printing_;
-  LineThreads threads_;
-  std::unique_ptr<Watch> watch_;
   std::vector<std::unique_ptr<RunningLine>> lines_;
   boost::asio::steady_timer end_;
-  boost::asio::steady_timer next_look_;
+  std::size_t lines_to_begin_ = 0;
   std::optional<Control> control_;
   StopSignals stop_signals_;
   std::unique_ptr<Stepper> stepper_;  ///< null until `start`, and always null if time is not stepped

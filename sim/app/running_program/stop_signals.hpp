@@ -1,7 +1,6 @@
 // The signals that ask the program to end.
 #pragma once
 
-#include <atomic>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/signal_set.hpp>
 
@@ -20,14 +19,13 @@ class StopSignals {
   StopSignals(const StopSignals&) = delete;
   StopSignals& operator=(const StopSignals&) = delete;
 
-  /// Returns whether one of these signals has arrived since construction. Does not block. Several threads may
-  /// call this at the same time.
+  /// Returns whether one of these signals has arrived since construction. Does not block.
   bool arrived();
 
  private:
   boost::asio::io_context io_;
   boost::asio::signal_set signals_;
-  std::atomic<bool> arrived_ = false;
+  bool arrived_ = false;
 };
 
 }  // namespace ex9000::sim

@@ -22,12 +22,19 @@ void begin_programs(Line& line, const LineSetup& setup) {
     }
   }
   const VirtualTime now = line.clock().virtual_now();
-  for (Fault fault : setup.faults) {
+  const auto add = [&](Fault fault) {
     if (fault.schedule.when == Schedule::When::At) {
       fault.schedule.time = std::max(fault.schedule.time, now);
     }
     line.faults().add(fault);
+  };
+  for (std::size_t i = 0; i < setup.modules.size(); ++i) {
+    for (Fault fault : setup.modules[i].faults) {
+      fault.module = i;
+      add(fault);
+    }
   }
+  std::for_each(setup.faults.begin(), setup.faults.end(), add);
 }
 
 }  // namespace ex9000::sim

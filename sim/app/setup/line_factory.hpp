@@ -16,8 +16,7 @@ std::unique_ptr<Line> make_line(const LineSetup& setup, Master::Receive receive)
 SerialMode first_mode(const LineSetup& setup, const Line& line);
 
 /// Starts the input programs and adds the faults. Call this after the line has started up and after
-/// `Line::configure_faults`. Throws std::invalid_argument with a one-line message if a fault names a module
-/// that the line does not have. A fault whose time has already passed takes effect immediately.
+/// `Line::configure_faults`. A fault whose time has already passed takes effect immediately.
 void begin_programs(Line& line, const LineSetup& setup);
 
 }  // namespace ex9000::sim

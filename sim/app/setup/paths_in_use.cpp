@@ -34,8 +34,9 @@ std::vector<InUse> in_use_by(const Setup& setup) {
   add("the bus file", setup.file);
   add("the control socket", setup.control);
   for (const LineSetup& line : setup.lines) {
-    add("the pseudo-terminal", line.pty);
-    add("the serial port", line.serial);
+    for (const PortSetup& port : line.ports) {
+      add(port.kind == PortSetup::Kind::Pty ? "the pseudo-terminal" : "the serial port", port.path);
+    }
     for (const ModuleSpec& module : line.modules) {
       add("a module's EEPROM file", module.eeprom);
     }

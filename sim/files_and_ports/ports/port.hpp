@@ -5,43 +5,70 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <string>
 #include <vector>
+
+#include "firmware/bytes.hpp"
 
 namespace ex9000::sim {
 
-/// None of the functions blocks. Only one thread at a time uses a port: the thread that runs the io_context
-/// of the line, or the main thread during a pause (see LineThreads).
-class Port {
+class Port;
+
+/// Takes what arrives at the ports of a line.
+class Arrivals {
  public:
   /// Positions of bytes, in ascending order.
   using Positions = std::vector<std::size_t>;
   /// Identifies a master that can leave while its bytes wait; null for any other master. A pointer that is
   /// never dereferenced.
   using Sender = const void*;
-  using Left = std::function<void(Sender sender)>;
-  /// Receives bytes that have arrived, the positions of those with wrong parity or a framing error, and their
-  /// sender.
-  /// Returns false if the port must wait for `resume` before it delivers more bytes of the master that has
-  /// sent these bytes.
-  using Received = std::function<bool(const std::uint8_t* bytes, std::size_t size, const Positions& damaged,
-                                      Sender sender)>;
+
+  Arrivals() = default;
+  Arrivals(const Arrivals&) = delete;
+  Arrivals& operator=(const Arrivals&) = delete;
+  virtual ~Arrivals() = default;
+
+  /// Takes bytes for the line. `damaged`: those with wrong parity or a framing error. Returns false if the
+  /// port must wait for `resume` before it delivers more bytes of this sender.
+  virtual bool bytes(const Port& port, Bytes bytes, const Positions& damaged, Sender sender) = 0;
+  /// Takes `size` bytes that a gateway turns into requests, or 0 if a client of it accepts replies again.
+  /// Calls `process` exactly once, now or later, when the line has reached its present time. Returns false
+  /// if the gateway must wait for `resume`.
+  virtual bool requests(std::size_t size, std::function<void()> process) = 0;
+  /// A master has left, so no more of its bytes need to be sent. Only TCP reports this: the bytes of a
+  /// program that has closed a pseudo-terminal are sent, as by a serial port.
+  virtual void left(Sender /*sender*/) {}
+  /// The first master has connected to a port that line time waits for.
+  virtual void connected() {}
+};
+
+/// What a user needs to reach a port.
+struct PortSummary {
+  std::string kind;     ///< as in --port: pty, tcp, modbus-tcp or serial
+  std::string address;  ///< the path or HOST:PORT
+  std::string does;     ///< for people, for example `pseudo-terminal plc.tty (/dev/pts/5)`
+};
+
+/// None of the functions blocks.
+class Port {
+ public:
+  using Positions = Arrivals::Positions;
+  using Sender = Arrivals::Sender;
 
   Port() = default;
   Port(const Port&) = delete;
   Port& operator=(const Port&) = delete;
   virtual ~Port() = default;
 
-  /// Starts to deliver bytes: calls `received` while the io_context runs. Call this once.
-  virtual void start(Received received) = 0;
-  /// Sets a function to call when a master has left, so that no more of its bytes need to be sent. Only TCP
-  /// reports this: the bytes of a program that has closed a pseudo-terminal are sent, as by a serial port.
-  virtual void on_left(const Left& /*left*/) {}
-  /// Continues to deliver bytes after `received` has returned false.
+  [[nodiscard]] virtual PortSummary summary() const = 0;
+  /// Accepts masters, and delivers to `arrivals` while the io_context runs and during `read_waiting`. Call
+  /// this once.
+  virtual void start(Arrivals& arrivals) = 0;
+  /// Continues to deliver after `arrivals` has returned false.
   virtual void resume() = 0;
-  /// Before this function returns, it passes all bytes that have arrived to `received`, except the bytes of
-  /// masters that must wait for `resume`. The io_context does not have to run. Call this only after `start`.
-  /// Only stepped time uses this function. For a serial port it does nothing, because stepped time cannot use
-  /// serial ports.
+  /// Delivers, before it returns, all that has arrived, except from masters that must wait for `resume`. The
+  /// io_context does not have to run. Call this only after `start`. Only stepped time uses this function. For
+  /// a serial port it does nothing, because stepped time cannot use serial ports.
   virtual void read_waiting() {}
 
   /// Sends bytes from the line to each master that has the port open; if there is none, the bytes are lost.
@@ -59,6 +86,22 @@ class Port {
   /// Returns whether the port is connected to a real line. If it is, the transmission time of the bytes has
   /// already passed when they arrive.
   [[nodiscard]] virtual bool is_a_line() const { return false; }
+
+  /// Makes line time wait until a master has connected to this port.
+  void hold_line() { holds_line_ = true; }
+  [[nodiscard]] bool holds_line() const { return holds_line_; }
+
+ protected:
+  /// Call this when a master has connected, before its first bytes.
+  void let_line_go(Arrivals& arrivals) {
+    if (holds_line_) {
+      holds_line_ = false;
+      arrivals.connected();
+    }
+  }
+
+ private:
+  bool holds_line_ = false;
 };
 
 }  // namespace ex9000::sim

@@ -107,9 +107,9 @@ bool Pty::visited() const {
   return poll(&master, 1, 0) == 0 || (master.revents & POLLHUP) == 0;
 }
 
-void Pty::take_visit() {
+bool Pty::take_visit() {
   if (visited()) {
-    return;
+    return true;
   }
   if (unread_) {
     unread_ = false;
@@ -121,6 +121,7 @@ void Pty::take_visit() {
   // even if a master opens the slave at this moment.
   const int off = 0;
   ioctl(master_fd(), TIOCSSOFTCAR, &off);
+  return false;
 }
 
 std::size_t Pty::write(const std::vector<std::uint8_t>& bytes) {

@@ -36,11 +36,11 @@ class Pty {
   [[nodiscard]] const std::string& link() const { return link_; }
   /// Returns the path of the slave, for example /dev/pts/5.
   [[nodiscard]] const std::string& device() const { return device_; }
-  /// Call this when a master has opened or closed the slave. If no master has the slave open any more, clears
-  /// CLOCAL, so that the next master can set it, and discards the bytes that no master has read, like a
-  /// serial port: the next master must not receive a reply to the previous master. Does not discard them if
-  /// the next master has opened the slave before this call.
-  void take_visit();
+  /// Call this when a master has opened or closed the slave. Returns whether a master has it open. If no
+  /// master has the slave open any more, clears CLOCAL, so that the next master can set it, and discards the
+  /// bytes that no master has read, like a serial port: the next master must not receive a reply to the
+  /// previous master. Does not discard them if the next master has opened the slave before this call.
+  bool take_visit();
   /// Writes the bytes for the master, without blocking. The pseudo-terminal stores a limited number of bytes
   /// that no master has read, for example about 20 KiB on Linux 6.18; further bytes are lost. Returns the
   /// number of lost bytes. Writes nothing and returns 0 if no master has the slave open, because the bytes

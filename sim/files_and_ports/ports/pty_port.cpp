@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "sim/text/fail.hpp"
+#include "sim/text/words.hpp"
 
 namespace ex9000::sim {
 
@@ -18,7 +19,9 @@ PtyPort::PtyPort(boost::asio::io_context& io, const std::string& link, std::uint
 
 int PtyPort::watch() {
   const auto visited = [this] {
-    pty_.take_visit();
+    if (pty_.take_visit() && arrivals_ != nullptr) {
+      let_line_go(*arrivals_);
+    }
     read();
   };
   return with_place(pty_.link() + ": ", [&] { return visits_.watch(pty_.device(), visited); });
@@ -30,8 +33,12 @@ PtyPort::~PtyPort() {
   descriptor_.release();
 }
 
-void PtyPort::start(Received received) {
-  received_ = std::move(received);
+PortSummary PtyPort::summary() const {
+  return {"pty", pty_.link(), "pseudo-terminal " + shell_word(pty_.link()) + " (" + pty_.device() + ")"};
+}
+
+void PtyPort::start(Arrivals& arrivals) {
+  arrivals_ = &arrivals;
   read();
 }
 
@@ -41,7 +48,7 @@ void PtyPort::resume() {
 }
 
 void PtyPort::read() {
-  if (!received_ || reading_ || paused_) {
+  if (arrivals_ == nullptr || reading_ || paused_) {
     return;
   }
   reading_ = true;
@@ -59,13 +66,13 @@ void PtyPort::read_waiting() {
   }
 }
 
-/// Reads bytes and passes them to `received_`. Returns the number of bytes. If there are none, returns 0 if a
+/// Reads bytes and delivers them. Returns the number of bytes. If there are none, returns 0 if a
 /// master has the pseudo-terminal open, otherwise a negative number.
 ssize_t PtyPort::take() {
   visits_.take();  // a new master must be detected before the program replies to its bytes
   const ssize_t size = ::read(pty_.master_fd(), bytes_.data(), bytes_.size());
   if (size > 0) {
-    paused_ = !received_(bytes_.data(), static_cast<std::size_t>(size), {}, nullptr);
+    paused_ = !arrivals_->bytes(*this, {bytes_.data(), static_cast<std::size_t>(size)}, {}, nullptr);
     return size;
   }
   return size < 0 && errno == EAGAIN ? 0 : -1;

@@ -22,16 +22,15 @@ class PtyPort final : public Port {
           const std::optional<PtyAccess>& access = std::nullopt);
   ~PtyPort() override;
 
-  void start(Received received) override;
+  [[nodiscard]] PortSummary summary() const override;
+  void start(Arrivals& arrivals) override;
   void resume() override;
   void read_waiting() override;
   std::size_t send(const std::vector<std::uint8_t>& bytes) override { return pty_.write(bytes); }
   [[nodiscard]] std::optional<std::uint32_t> baud() const override { return pty_.baud(); }
 
-  [[nodiscard]] const Pty& pty() const { return pty_; }
-
  private:
-  /// Reads bytes whenever they arrive, until no master has the slave open or `received` returns false.
+  /// Reads bytes whenever they arrive, until no master has the slave open or the port must wait for `resume`.
   void read();
   [[nodiscard]] ssize_t take();
   int watch();
@@ -40,7 +39,7 @@ class PtyPort final : public Port {
   Visits& visits_;
   int watch_;
   boost::asio::posix::stream_descriptor descriptor_;
-  Received received_;
+  Arrivals* arrivals_ = nullptr;  ///< null until `start`
   bool reading_ = false;
   bool paused_ = false;
   std::array<std::uint8_t, 4096> bytes_{};  ///< a member, so that it is filled with zeros only once

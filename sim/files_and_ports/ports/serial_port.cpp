@@ -82,7 +82,8 @@ int open_port(const std::string& device, hal::SerialMode mode) {
 
 SerialPort::SerialPort(boost::asio::io_context& io, const std::string& place, const std::string& device,
                        hal::SerialMode mode, bool echo)
-    : where_(place + device),
+    : device_(device),
+      where_(place + device),
       descriptor_(io, with_place(where_ + ": ", [&] { return open_port(device, mode); })) {
   if (echo) {
     echo_.emplace(mode);
@@ -92,8 +93,10 @@ SerialPort::SerialPort(boost::asio::io_context& io, const std::string& place, co
   }
 }
 
-void SerialPort::start(Received received) {
-  received_ = std::move(received);
+PortSummary SerialPort::summary() const { return {"serial", device_, "serial port " + device_}; }
+
+void SerialPort::start(Arrivals& arrivals) {
+  arrivals_ = &arrivals;
   read();
 }
 
@@ -138,7 +141,7 @@ void SerialPort::take(std::size_t size) {
   for (std::size_t& position : damaged) {
     position -= echo;
   }
-  paused_ = echo < taken && !received_(buffer_.data() + echo, taken - echo, damaged, nullptr);
+  paused_ = echo < taken && !arrivals_->bytes(*this, {buffer_.data() + echo, taken - echo}, damaged, nullptr);
 }
 
 std::size_t SerialPort::send(const std::vector<std::uint8_t>& bytes) {

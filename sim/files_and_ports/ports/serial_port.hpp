@@ -24,8 +24,9 @@ class SerialPort final : public Port {
   SerialPort(boost::asio::io_context& io, const std::string& place, const std::string& device,
              hal::SerialMode mode, bool echo);
 
+  [[nodiscard]] PortSummary summary() const override;
   /// If the port disappears, `run` of the io_context throws std::runtime_error.
-  void start(Received received) override;
+  void start(Arrivals& arrivals) override;
   void resume() override;
   std::size_t send(const std::vector<std::uint8_t>& bytes) override;
   void sent() override;
@@ -36,9 +37,10 @@ class SerialPort final : public Port {
   void take(std::size_t size);
   void write_out();
 
+  std::string device_;
   std::string where_;  ///< place and device, for messages
   boost::asio::posix::stream_descriptor descriptor_;
-  Received received_;
+  Arrivals* arrivals_ = nullptr;  ///< null until `start`
   std::array<std::uint8_t, 4096> buffer_{};
   bool paused_ = false;
   std::vector<std::uint8_t> held_back_;

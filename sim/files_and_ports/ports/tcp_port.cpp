@@ -56,8 +56,13 @@ TcpPort::~TcpPort() {
   }
 }
 
-void TcpPort::start(Received received) {
-  received_ = std::move(received);
+PortSummary TcpPort::summary() const {
+  return {"tcp", listener_.address(),
+          "TCP " + listener_.address() + ", raw bytes: Modbus RTU (not Modbus TCP) and ASCII"};
+}
+
+void TcpPort::start(Arrivals& arrivals) {
+  arrivals_ = &arrivals;
   listener_.start([this](tcp::socket socket) { admit(std::move(socket)); });
 }
 
@@ -73,6 +78,7 @@ void TcpPort::admit(tcp::socket socket) {
     forget(ClientPointer(*oldest));
   }
   clients_.push_back(std::make_shared<Client>(io_, std::move(socket)));
+  let_line_go(*arrivals_);
   read(clients_.back());
 }
 
@@ -86,13 +92,13 @@ void TcpPort::read_waiting() {
   }
 }
 
-/// Reads the available bytes, up to the size of `client.bytes`, and passes them to `received_`. Returns the
+/// Reads the available bytes, up to the size of `client.bytes`, and delivers them. Returns the
 /// error if no bytes are available.
 boost::system::error_code TcpPort::take(Client& client) {
   boost::system::error_code error;
   const std::size_t size = client.socket.read_some(boost::asio::buffer(client.bytes), error);
   if (!error) {
-    client.paused = !received_(client.bytes.data(), size, {}, &client);
+    client.paused = !arrivals_->bytes(*this, {client.bytes.data(), size}, {}, &client);
   }
   return error;
 }
@@ -171,7 +177,7 @@ void TcpPort::let_linger(const ClientPointer& client) {
 
 void TcpPort::forget(const ClientPointer& client) {
   client->close();
-  left_(client.get());
+  arrivals_->left(client.get());
   clients_.remove(client);
 }
 
@@ -184,7 +190,7 @@ std::size_t TcpPort::send(const std::vector<std::uint8_t>& bytes) {
     dropped = std::max(dropped, gone ? 0 : bytes.size() - written);
     if (gone) {
       client->close();
-      left_(client.get());
+      arrivals_->left(client.get());
     }
     return gone;
   });

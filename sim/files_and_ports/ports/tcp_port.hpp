@@ -21,7 +21,7 @@ class TcpPort final : public Port {
  public:
   /// A client that has closed its sending side can still receive replies. The port keeps such a client for
   /// this time, or for up to twice this time if it must wait for `resume`; nullopt: forever. After this time,
-  /// or after a reset of the connection, the client has left: see `on_left`.
+  /// or after a reset of the connection, the client has left: see Arrivals::left.
   using Linger = std::optional<std::chrono::milliseconds>;
   static constexpr std::chrono::milliseconds kUsualLinger{1000};
 
@@ -29,13 +29,11 @@ class TcpPort final : public Port {
   TcpPort(boost::asio::io_context& io, const TcpAddress& address, Linger linger);
   ~TcpPort() override;
 
-  void start(Received received) override;
-  void on_left(const Left& left) override { left_ = left; }
+  [[nodiscard]] PortSummary summary() const override;
+  void start(Arrivals& arrivals) override;
   void resume() override;
   void read_waiting() override;
   std::size_t send(const std::vector<std::uint8_t>& bytes) override;
-  /// Returns the HOST:PORT on which the port listens.
-  [[nodiscard]] std::string address() const { return listener_.address(); }
 
  private:
   struct Client;
@@ -54,8 +52,7 @@ class TcpPort final : public Port {
   boost::asio::io_context& io_;
   TcpListener listener_;
   Linger linger_;
-  Received received_;
-  Left left_ = [](Sender /*sender*/) {};
+  Arrivals* arrivals_ = nullptr;  ///< null until `start`
   std::list<ClientPointer> clients_;
 };
 

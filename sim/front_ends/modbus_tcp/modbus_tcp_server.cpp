@@ -62,8 +62,13 @@ ModbusTcpServer::~ModbusTcpServer() {
   }
 }
 
-void ModbusTcpServer::start(Received received) {
-  received_ = std::move(received);
+PortSummary ModbusTcpServer::summary() const {
+  return {"modbus-tcp", listener_.address(),
+          "Modbus TCP " + listener_.address() + ", a gateway to the modules that speak Modbus RTU"};
+}
+
+void ModbusTcpServer::start(Arrivals& arrivals) {
+  arrivals_ = &arrivals;
   listener_.start([this](tcp::socket socket) { admit(std::move(socket)); });
 }
 
@@ -72,6 +77,7 @@ void ModbusTcpServer::admit(tcp::socket socket) {
     boost::system::error_code ignored;
     socket.set_option(tcp::socket::send_buffer_size(kMostUnsent), ignored);
     clients_.push_back(std::make_shared<Client>(*this, std::move(socket)));
+    let_line_go(*arrivals_);
     read(clients_.back());
   } else {
     notice_("the Modbus TCP gateway refuses a client: " + std::to_string(kMostClients) +
@@ -136,12 +142,11 @@ boost::system::error_code ModbusTcpServer::take(const ClientPointer& client) {
   return error;
 }
 
-/// Calls `received_` with a new function, `process`. When `process` is called, it runs `action`, unless the
-/// client has been removed.
+/// When the line is ready, runs `action`, unless the client has been removed meanwhile.
 void ModbusTcpServer::deliver(const ClientPointer& client, std::size_t size,
                               const std::function<void()>& action) {
   ++client->arriving;
-  paused_ = !received_(size, [this, client, action] {
+  paused_ = !arrivals_->requests(size, [this, client, action] {
     --client->arriving;
     if (client->socket.is_open()) {
       action();
@@ -193,7 +198,7 @@ void ModbusTcpServer::go_on(const ClientPointer& client) {
       notice_(
           "the Modbus TCP gateway closes a connection: a client has sent a header whose protocol is not 0 or "
           "whose "
-          "length is not 2 to 254; if it sends Modbus RTU or ASCII over TCP, use --tcp");
+          "length is not 2 to 254; if it sends Modbus RTU or ASCII over TCP, use --port tcp:...");
     }
     forget(client);
   }

@@ -222,11 +222,8 @@ class Panel::Viewer final : public PanelViewer {
         modules.back()["line"] = lines.size();
       }
       Message ports = Message::array();
-      for (const std::string& port :
-           {watched.summary.pty, watched.summary.tcp, watched.summary.modbus_tcp, watched.summary.serial}) {
-        if (!port.empty()) {
-          ports.push_back(port);
-        }
+      for (const PortSummary& port : watched.summary.ports) {
+        ports.push_back(port.address);
       }
       lines.push_back({{"name", watched.summary.name},
                        {"instant", watched.summary.instant},
@@ -288,10 +285,9 @@ class Panel::Viewer final : public PanelViewer {
   std::chrono::steady_clock::time_point last_sent_at_;
 };
 
-Panel::Panel(CarryOut carry_out, Ask ask, Pause pause, double speed, WallClock wall_clock)
+Panel::Panel(CarryOut carry_out, Ask ask, double speed, WallClock wall_clock)
     : carry_out_(std::move(carry_out)),
       ask_(std::move(ask)),
-      pause_(std::move(pause)),
       speed_(speed),
       wall_clock_(std::move(wall_clock)),
       run_(random_id()) {}
@@ -323,11 +319,9 @@ void Panel::note(std::size_t line, VirtualTime now, const std::string& text) {
 
 void Panel::look() {
   ++looks_;
-  pause_([this] {
-    for (Watched& watched : lines_) {
-      watched.capture(looks_);
-    }
-  });
+  for (Watched& watched : lines_) {
+    watched.capture(looks_);
+  }
 }
 
 std::unique_ptr<PanelViewer> Panel::viewer() { return std::make_unique<Viewer>(*this); }

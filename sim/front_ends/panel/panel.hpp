@@ -45,19 +45,14 @@ class Panel {
  public:
   using CarryOut = std::function<Control::Reply(const std::string& command)>;
 
-  /// Sends a request on the line at position `line`, from 0. Calls `request.done` only on the thread that
-  /// uses this Panel.
+  /// Sends a request on the line at position `line`, from 0.
   using Ask = std::function<void(std::size_t line, RequestQueue::Request request)>;
-
-  /// Calls `action` while no line runs.
-  using Pause = std::function<void(const std::function<void()>& action)>;
 
   using WallClock = std::function<std::chrono::steady_clock::time_point()>;
 
   /// `speed` is the ratio of the lines' time to the wall clock. `wall_clock` is the clock for the messages
   /// that pages get even if nothing has changed.
-  Panel(CarryOut carry_out, Ask ask, Pause pause, double speed,
-        WallClock wall_clock = std::chrono::steady_clock::now);
+  Panel(CarryOut carry_out, Ask ask, double speed, WallClock wall_clock = std::chrono::steady_clock::now);
   ~Panel();
   Panel(const Panel&) = delete;
   Panel& operator=(const Panel&) = delete;
@@ -81,7 +76,6 @@ class Panel {
 
   CarryOut carry_out_;
   Ask ask_;
-  Pause pause_;
   const double speed_;
   WallClock wall_clock_;
   const std::string run_;  ///< distinguishes this run of the program from other runs

@@ -54,7 +54,6 @@ void Capture::write(std::size_t line, const Frame& frame) {
   packet.data = pdu.header();
   packet.data.insert(packet.data.end(), frame.bytes.begin(), frame.bytes.end());
   packet.comment = known ? errors(frame) : line_error(frame);  // as in the logs
-  const std::lock_guard<std::mutex> lock(writing_);
   file_.append(pcapng::enhanced_packet(packet));
 }
 

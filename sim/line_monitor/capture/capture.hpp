@@ -3,7 +3,6 @@
 
 #include <chrono>
 #include <cstdint>
-#include <mutex>
 #include <string>
 #include <utility>
 #include <vector>
@@ -34,7 +33,6 @@ class Capture {
   /// Adds a line with `modules` modules, which are stations 1 to `modules`. `began` is the timestamp for time
   /// 0 of the line, since 1970-01-01 00:00:00 UTC. Returns the line's number for `write`.
   std::size_t add_line(const std::string& name, std::size_t modules, std::chrono::nanoseconds began);
-  /// Writes a frame of a line. Several threads may call this at the same time, but not during `add_line`.
   void write(std::size_t line, const Frame& frame);
 
  private:
@@ -43,7 +41,6 @@ class Capture {
     std::chrono::nanoseconds began;
   };
 
-  std::mutex writing_;
   CaptureFile file_;
   std::vector<CapturedLine> lines_;
 };

@@ -6,23 +6,11 @@
 
 #include "firmware/model/model.hpp"
 #include "sim/text/values.hpp"
+#include "sim/text/words.hpp"
 
 namespace ex9000::sim {
 
 namespace {
-
-/// Returns the path as one word for the shell. Adds quotes if a character of the path is not in `plain`.
-std::string quoted(const std::string& path) {
-  const std::string plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./-+:@%";
-  if (path.find_first_not_of(plain) == std::string::npos) {
-    return path;
-  }
-  std::string text = "'";
-  for (const char character : path) {
-    text += character == '\'' ? std::string("'\\''") : std::string(1, character);
-  }
-  return text + "'";
-}
 
 /// The options that set a line format. A pseudo-terminal ignores the format, but a real bus does not.
 struct FormatOptions {
@@ -65,35 +53,20 @@ std::string terminal(const ModuleSummary& module, const std::string& link) {
 /// Returns commands that a user can paste to use the module; empty if masters can reach the module neither
 /// through a pseudo-terminal nor through the gateway.
 std::string commands(const LineSummary& line, const ModuleSummary& module) {
-  if (!line.pty.empty() && module.speaks_ascii) {
-    return terminal(module, quoted(line.pty));
+  if (const PortSummary* pty = line.port("pty")) {
+    const std::string link = shell_word(pty->address);
+    return module.speaks_ascii ? terminal(module, link)
+                               : mbpoll(module,
+                                        "-m rtu -b " + std::to_string(module.mode.baud) +
+                                            options_of(module.mode.format).mbpoll,
+                                        link);
   }
-  if (!line.pty.empty()) {
-    const std::string baud = std::to_string(module.mode.baud);
-    return mbpoll(module, "-m rtu -b " + baud + options_of(module.mode.format).mbpoll, quoted(line.pty));
-  }
-  if (line.modbus_tcp.empty() || module.speaks_ascii) {
+  const PortSummary* gateway = line.port("modbus-tcp");
+  if (gateway == nullptr || module.speaks_ascii) {
     return "";
   }
-  const auto colon = line.modbus_tcp.rfind(':');
-  return mbpoll(module, "-m tcp -p " + line.modbus_tcp.substr(colon + 1), line.modbus_tcp.substr(0, colon));
-}
-
-std::string ports(const LineSummary& line) {
-  std::string text;
-  if (!line.pty.empty()) {
-    text += "  pseudo-terminal " + quoted(line.pty) + " (" + line.pty_device + ")\n";
-  }
-  if (!line.tcp.empty()) {
-    text += "  TCP " + line.tcp + ", raw bytes: Modbus RTU (not Modbus TCP) and ASCII\n";
-  }
-  if (!line.modbus_tcp.empty()) {
-    text += "  Modbus TCP " + line.modbus_tcp + ", a gateway to the modules that speak Modbus RTU\n";
-  }
-  if (!line.serial.empty()) {
-    text += "  serial port " + line.serial + "\n";
-  }
-  return text;
+  const auto colon = gateway->address.rfind(':');
+  return mbpoll(module, "-m tcp -p " + gateway->address.substr(colon + 1), gateway->address.substr(0, colon));
 }
 
 std::string shared_addresses(const std::vector<ModuleSummary>& modules) {
@@ -114,11 +87,11 @@ std::string shared_addresses(const std::vector<ModuleSummary>& modules) {
 
 /// A gateway without a module that it can reach.
 std::string useless_gateway(const LineSummary& line) {
-  const bool useless = !line.modbus_tcp.empty() &&
+  const bool useless = line.port("modbus-tcp") != nullptr &&
                        std::all_of(line.modules.begin(), line.modules.end(),
                                    [](const ModuleSummary& module) { return module.speaks_ascii; });
-  return useless ? "all modules speak ASCII, so each request over Modbus TCP gets exception 0A; use --tcp "
-                   "for ASCII, "
+  return useless ? "all modules speak ASCII, so each request over Modbus TCP gets exception 0A; use --port "
+                   "tcp:... for ASCII, "
                    "or -M models with the protocol modbus\n"
                  : "";
 }
@@ -126,7 +99,10 @@ std::string useless_gateway(const LineSummary& line) {
 std::string introduction(const LineSummary& line) {
   std::string text = (line.name.empty() ? "line" : line.name) + " at " +
                      mode_text(line.mode.baud, line.mode.format) +
-                     (line.instant ? ", bytes take no time" : "") + ":\n" + ports(line);
+                     (line.instant ? ", bytes take no time" : "") + ":\n";
+  for (const PortSummary& port : line.ports) {
+    text += "  " + port.does + "\n";
+  }
   for (const ModuleSummary& module : line.modules) {
     text += "  " + module.designation + " at " + hex_byte_text(module.address) + ", " +
             (module.speaks_ascii ? "ASCII" : "Modbus RTU") + ", " +
@@ -139,6 +115,12 @@ std::string introduction(const LineSummary& line) {
 
 }  // namespace
 
+const PortSummary* LineSummary::port(const std::string& kind) const {
+  const auto found =
+      std::find_if(ports.begin(), ports.end(), [&](const PortSummary& port) { return port.kind == kind; });
+  return found == ports.end() ? nullptr : &*found;
+}
+
 std::string greeting(const BannerContent& all) {
   std::string text = all.panel.empty() ? "" : "panel: " + all.panel + "\n";
   text += "ex9000-sim " + std::string(kFirmwareVersion);
@@ -147,7 +129,7 @@ std::string greeting(const BannerContent& all) {
     text += introduction(line);
   }
   if (!all.control.empty()) {
-    text += "  control socket " + quoted(all.control) + "\n";
+    text += "  control socket " + shell_word(all.control) + "\n";
   }
   return text + "press Ctrl-C to end";
 }

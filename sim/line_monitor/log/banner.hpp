@@ -7,6 +7,8 @@
 
 #include "hal/serial_mode.hpp"
 
+#include "sim/files_and_ports/ports/port.hpp"
+
 namespace ex9000::sim {
 
 /// A module after it has started up.
@@ -25,11 +27,10 @@ struct LineSummary {
   hal::SerialMode mode;
   bool instant = false;
   std::vector<ModuleSummary> modules;
-  std::string pty;         ///< path of the link to the pseudo-terminal; empty: none
-  std::string pty_device;  ///< the device to which the link points
-  std::string tcp;         ///< HOST:PORT of the TCP port; empty: none
-  std::string modbus_tcp;  ///< HOST:PORT of the gateway; empty: none
-  std::string serial;      ///< path of the serial port; empty: none
+  std::vector<PortSummary> ports;
+
+  /// The first port of this kind; null if the line has none.
+  [[nodiscard]] const PortSummary* port(const std::string& kind) const;
 };
 
 struct BannerContent {

@@ -6,6 +6,8 @@
 
 #include "firmware/model/model.hpp"
 #include "firmware/settings/settings.hpp"
+#include "sim/text/places.hpp"
+#include "sim/virtual_line/bus_faults/fault.hpp"
 #include "sim/virtual_line/line/input_program.hpp"
 
 namespace ex9000::sim {
@@ -16,8 +18,9 @@ struct ModuleSpec {
   bool settings_given = false;  ///< at least one setting was given explicitly
   bool init_asserted = false;
   std::string eeprom;  ///< path of the EEPROM file; empty: settings are lost when the simulator ends
-  std::string eeprom_place = "eeprom=";  ///< prefix of messages about the EEPROM file
-  std::vector<InputProgram> inputs;      ///< programs that change inputs
+  std::vector<InputProgram> inputs;
+  std::vector<Fault> faults;
+  Places places;
 };
 
 }  // namespace ex9000::sim

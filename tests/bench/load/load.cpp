@@ -84,12 +84,12 @@ std::vector<std::string> line_of(unsigned modules) {
     std::snprintf(hex.data(), hex.size(), "%02X", address);
     arguments.push_back(std::string("EX9042D-M@") + hex.data());
   }
-  arguments.insert(arguments.end(), {"--line", "instant"});
+  arguments.insert(arguments.end(), {"--timing", "instant"});
   return arguments;
 }
 
 std::vector<std::string> over_tcp(std::vector<std::string> arguments) {
-  arguments.insert(arguments.end(), {"--tcp", "0"});
+  arguments.insert(arguments.end(), {"--port", "tcp:0"});
   return arguments;
 }
 
@@ -166,7 +166,7 @@ std::string bus_file() {
   std::ostringstream file;
   file << "{\"lines\": [";
   for (unsigned line = 0; line < kLines; ++line) {
-    file << (line == 0 ? "" : ",\n") << R"({"tcp": "127.0.0.1:0", "line": "instant", "modules": [)";
+    file << (line == 0 ? "" : ",\n") << R"({"port": "tcp:127.0.0.1:0", "timing": "instant", "modules": [)";
     for (unsigned module = 1; module <= kModules; ++module) {
       std::array<char, 8> address{};
       std::snprintf(address.data(), address.size(), "%02X", module);
@@ -200,14 +200,12 @@ double memory_of(int pid) {
   return 0;
 }
 
-/// Measures eight lines in one process; each line has its own master. `threads`: the value of the option
-/// --threads. If it is "1", also judges the memory of a module. Returns the processor time that the process
-/// uses for a transaction, in microseconds. Throws std::runtime_error if the simulator does not start, or if
-/// the system does not report the processor time of the simulator.
-double load(milliseconds time, const std::string& threads) {
+/// Measures eight lines in one process, each with its own master, and judges the memory of a module. Throws
+/// std::runtime_error if the simulator does not start, or if the system does not report its processor time.
+void load(milliseconds time) {
   const Directory directory;
   ex9000::system::write_file(directory / "bus.json", bus_file());
-  ChildProcess simulator({simulator_path(), "bus.json", "--threads", threads}, directory.path());
+  ChildProcess simulator({simulator_path(), "bus.json"}, directory.path());
   if (!simulator.wait_for("press Ctrl-C to end")) {
     throw std::runtime_error("the simulator has not started");
   }
@@ -232,14 +230,11 @@ double load(milliseconds time, const std::string& threads) {
   }
   const double used = processor_seconds(simulator.pid()) - before;
   const double microseconds = 1e6 * used / all;
-  std::printf("  --threads %s: %6.0f transactions/s, %.0f %% of a processor, %.1f us for each transaction\n",
-              threads.c_str(), all / seconds, 100 * used / seconds, microseconds);
-  if (threads == "1") {
-    const SimulatorProcess small(over_tcp(line_of(1)));
-    judge("memory, KiB for each module",
-          (memory_of(simulator.pid()) - memory_of(small.pid())) / (kLines * kModules - 1), 16, 16);
-  }
-  return microseconds;
+  std::printf("  %6.0f transactions/s, %.0f %% of a processor, %.1f us for each transaction\n", all / seconds,
+              100 * used / seconds, microseconds);
+  const SimulatorProcess small(over_tcp(line_of(1)));
+  judge("memory, KiB for each module",
+        (memory_of(simulator.pid()) - memory_of(small.pid())) / (kLines * kModules - 1), 16, 16);
 }
 
 }  // namespace
@@ -265,12 +260,7 @@ int main(int argc, char** argv) {
       compare_modules(time, !alone);
     }
     std::printf("%u lines of %u modules in one process, with a master on each line:\n", kLines, kModules);
-    const double one = load(time * kRounds, "1");
-    const double two = load(time * kRounds, "2");
-    // The masters and the simulator use the same processors, so the rates do not show what a second processor
-    // adds. Two threads that use two whole processors reach at least 1.7 times the rate of one thread if a
-    // transaction requires at most 2 / 1.7 times the processor time that it requires with one thread.
-    print("processor time for each transaction, two threads / one thread", two / one, 2 / 1.7);
+    load(time * kRounds);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "load: %s\n", error.what());
     return 1;

@@ -214,8 +214,9 @@ TEST(ModuleSpec, ANameThatTheModelCannotStoreIsRefused) {
 
 TEST(ModuleSpec, TheMessageAboutAnUnknownKeyListsTheKnownKeys) {
   for (const char* text : {"EX9042D,adress=01", "EX9042D,,baud=9600", "EX9042D,Baud=9600", "EX9042D,x"}) {
-    expect_error(
-        text, "=: unknown key; expected one of protocol, baud, format, checksum, edge, name, init, eeprom");
+    expect_error(text,
+                 "=: unknown key; expected one of address, protocol, baud, format, checksum, edge, name, "
+                 "init, eeprom");
   }
 }
 

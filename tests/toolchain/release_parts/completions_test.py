@@ -35,22 +35,22 @@ class Bash(unittest.TestCase):
             return subprocess.run(command, capture_output=True, text=True, check=True).stdout.split()
 
     def test_options_of_the_program_and_of_a_subcommand_are_completed(self) -> None:
-        self.assertEqual(self.complete("--c"), ["--control", "--capture"])
+        self.assertEqual(self.complete("--c"), ["--capture", "--control"])
         self.assertEqual(self.complete("describe", "EX9042D-M", "--f"), ["--format"])
 
     def test_models_subcommands_and_bus_files_are_completed(self) -> None:
         models = [line.split()[0] for line in printed("--models").splitlines()]
-        self.assertEqual(self.complete(""), ["play", "describe", *models])
+        self.assertEqual(self.complete(""), ["play", "describe", "help", *models])
         self.assertEqual(self.complete("describe", "EX9042"), ["EX9042D", "EX9042D-M"])
         self.assertEqual(self.complete("bus"), ["bus.json"])
         self.assertEqual(self.complete("play", "b"), ["bus.json"])
 
     def test_values_of_options_are_completed(self) -> None:
-        self.assertEqual(self.complete("EX9042D", "--line", ""), ["paced", "instant"])
+        self.assertEqual(self.complete("EX9042D", "--timing", ""), ["paced", "instant"])
         self.assertEqual(self.complete("EX9042D", "--log", "j"), ["json"])
         self.assertEqual(self.complete("EX9042D", "--log", "EX9052"), ["EX9052D", "EX9052D-M"])
         self.assertEqual(self.complete("EX9042D", "--capture", "b"), ["bus.json"])
-        self.assertEqual(self.complete("EX9042D", "--baud", ""), [])
+        self.assertIn("19200", self.complete("EX9042D", "--baud", ""))
         self.assertIn("home-assistant", self.complete("describe", "EX9042D-M", "--format", ""))
 
     @unittest.skipUnless(shutil.which("shellcheck"), "shellcheck is not installed")
@@ -64,7 +64,7 @@ class Zsh(unittest.TestCase):
     def test_the_script_names_the_program_and_an_option(self) -> None:
         script = written("zsh-completion", str(PROGRAM))
         self.assertTrue(script.startswith("#compdef ex9000-sim\n"))
-        self.assertIn("--tcp[", script)
+        self.assertIn("--port[", script)
 
     @unittest.skipUnless(shutil.which("zsh"), "zsh is not installed")
     def test_zsh_finds_no_syntax_error(self) -> None:

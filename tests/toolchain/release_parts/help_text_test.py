@@ -25,13 +25,8 @@ Options:
   --log [on|off]              a value that may be missing
 
 Subcommands:
-play
-  plays
-  Positionals:
-    FILE TEXT REQUIRED          the file
-
-show
-  shows
+  play                        plays
+  show                        shows
 
 
 

@@ -83,7 +83,7 @@ class Stores {
 class SteppedSimulator {
  public:
   explicit SteppedSimulator(const std::string& module)
-      : process_({module, "--control", "control", "--line", "instant", "--speed", "step"}),
+      : process_({module, "--control", "control", "--timing", "instant", "--speed", "step"}),
         terminal_(process_.tty(), 9600),
         control_(process_.directory() + "/control") {}
 

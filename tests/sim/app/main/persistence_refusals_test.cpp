@@ -28,7 +28,7 @@ void expect_refused(const Arguments& modules, const std::string& file, const Dir
   const Finished finished = run(command, directory.path());
   EXPECT_EQ(finished.status, status) << finished.error;
   EXPECT_EQ(finished.output, "");
-  EXPECT_TRUE(has(finished.error, "eeprom=" + file + ": ")) << finished.error;
+  EXPECT_TRUE(has(finished.error, "eeprom=: " + file + ": ")) << finished.error;
   EXPECT_EQ(std::count(finished.error.begin(), finished.error.end(), '\n'), 1) << finished.error;
   EXPECT_EQ(directory.contents(), before) << finished.error;
 }
@@ -110,7 +110,7 @@ TEST(BadFile, TwoNamesOfOneMissingFileAreRefusedAndNoFileIsCreated) {
                  directory);
   const Finished finished =
       run({simulator_path(), "EX9042D,eeprom=image", "EX9052D@02,eeprom=./image"}, directory.path());
-  EXPECT_TRUE(has(finished.error, "eeprom=./image: two modules cannot share a file")) << finished.error;
+  EXPECT_TRUE(has(finished.error, "eeprom=: ./image: is already used")) << finished.error;
 }
 
 TEST(BadFile, NoFileIsCreatedIfAnotherArgumentIsRefused) {
@@ -118,10 +118,10 @@ TEST(BadFile, NoFileIsCreatedIfAnotherArgumentIsRefused) {
   write_file(directory / "taken", "precious");
   const auto before = directory.contents();
   const std::pair<Arguments, int> cases[] = {{{"--control", "taken"}, 2},
-                                             {{"--pty", "taken"}, 2},
-                                             {{"--pty", "missing/tty"}, 2},
-                                             {{"--tcp", "256.0.0.1:5020"}, 2},
-                                             {{"--serial", "missing"}, 1}};
+                                             {{"--port", "pty:taken"}, 2},
+                                             {{"--port", "pty:missing/tty"}, 2},
+                                             {{"--port", "tcp:256.0.0.1:5020"}, 2},
+                                             {{"--port", "serial:missing"}, 1}};
   for (const auto& [wrong, status] : cases) {
     Arguments command{"timeout", "60", simulator_path(), "EX9042D,eeprom=image"};
     command.insert(command.end(), wrong.begin(), wrong.end());

@@ -83,7 +83,7 @@ TEST(Persistence, TheFileOverridesThePresetsAndTheGreetingReportsIt) {
   EXPECT_EQ(simulator.ask("$0AM"), "!0AFILED");
   EXPECT_EQ(simulator.ask("$0A2"), "!0A400600");
   EXPECT_TRUE(has(simulator.greeting(), "EX9042D at 0A")) << simulator.greeting();
-  EXPECT_TRUE(has(simulator.greeting(), directory / "image" + ", not from the command line"))
+  EXPECT_TRUE(has(simulator.greeting(), directory / "image" + ", not those given here"))
       << simulator.greeting();
   EXPECT_EQ(bytes_of_file(directory / "image"), image);
 }
@@ -91,11 +91,11 @@ TEST(Persistence, TheFileOverridesThePresetsAndTheGreetingReportsIt) {
 TEST(Persistence, TheGreetingSaysThatTheFileOverridesTheBusFile) {
   const Directory directory;
   Simulator({"EX9042D@0A,name=FILED" + image_in(directory)});
-  write_file(directory / "bus.json", R"({"lines": [{"tcp": 0, "modules": [
+  write_file(directory / "bus.json", R"({"lines": [{"port": "tcp:0", "modules": [
     {"model": "EX9042D", "address": "0B", "eeprom": "image"}]}]})");
   const Finished finished = run({simulator_path(), "bus.json", "--log", "--for", "100ms"}, directory.path());
   EXPECT_EQ(finished.status, 0) << finished.error;
-  EXPECT_TRUE(has(finished.output, "settings from image, not from the bus file")) << finished.output;
+  EXPECT_TRUE(has(finished.output, "settings from image, not those given here")) << finished.output;
 }
 
 TEST(Persistence, TheGreetingMentionsNoOverrideIfNoPresetDiffers) {
@@ -237,7 +237,7 @@ TEST(Persistence, ABlankImageGivesFactorySettingsDespitePresetsAndTheGreetingRep
     EXPECT_EQ(simulator.ask("$01M"), "!019042D");
     EXPECT_EQ(simulator.tell("1 led"), "on");
     EXPECT_TRUE(has(simulator.greeting(),
-                    directory / "image" + " is blank: factory settings, not from the command line\n"))
+                    directory / "image" + " is blank: factory settings, not those given here\n"))
         << simulator.greeting();
     EXPECT_FALSE(has(simulator.greeting(), "settings from")) << simulator.greeting();
     EXPECT_EQ(simulator.ask("~01OPUMP"), "!01");

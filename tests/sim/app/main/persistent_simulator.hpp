@@ -46,7 +46,7 @@ class Simulator {
 
  private:
   static Arguments arguments(Arguments words) {
-    words.insert(words.end(), {"--control", "control", "--line", "instant", "--log"});
+    words.insert(words.end(), {"--control", "control", "--timing", "instant", "--log"});
     return words;
   }
 

@@ -12,7 +12,7 @@
 #include "sim/app/play/play.hpp"
 #include "sim/app/play/player.hpp"
 #include "sim/app/play/transcript.hpp"
-#include "sim/app/setup_from_bus_file/bus_file.hpp"
+#include "sim/app/setup/bus_file.hpp"
 #include "sim/files_and_ports/files/eeprom_file.hpp"
 #include "sim/notation/module_notation.hpp"
 #include "sim/virtual_line/bus/module.hpp"
@@ -255,7 +255,7 @@ TEST(Play, RefusesAnInvalidEepromFileBeforeOverwritingTheCapture) {
       play({directory / "a.txt", with_eeprom(path), writing}, nullptr, record);
       FAIL() << "the steps were played";
     } catch (const std::invalid_argument& error) {
-      EXPECT_EQ(std::string(error.what()).rfind("eeprom=" + path + ": ", 0), 0U) << error.what();
+      EXPECT_EQ(std::string(error.what()).rfind("eeprom=: " + path + ": ", 0), 0U) << error.what();
     }
   }
   EXPECT_EQ(bytes_of_file(directory / "capture"), "precious");
@@ -272,7 +272,7 @@ TEST(Play, RefusesACaptureThatWouldOverwriteAnotherFileOfTheRun) {
   sim::Setup setup = with_eeprom(directory / "eeprom");
   setup.file = directory / "bus.json";
   setup.control = directory / "ctl";
-  setup.lines[0].pty = directory / "tty";
+  setup.lines[0].ports.push_back(sim::parse_port("pty:" + (directory / "tty")));
   for (const auto& [capture, what] : std::vector<std::pair<std::string, std::string>>{
            {directory / "a.txt", "the file of steps " + (directory / "a.txt")},
            {directory / "link", "the file of steps " + (directory / "a.txt")},
@@ -289,7 +289,7 @@ TEST(Play, RefusesACaptureThatWouldOverwriteAnotherFileOfTheRun) {
       FAIL() << capture;
     } catch (const std::invalid_argument& error) {
       const std::string text = error.what();
-      EXPECT_EQ(text.rfind("--capture " + capture + ": is ", 0), 0U) << text;
+      EXPECT_EQ(text.rfind("--capture: " + capture + ": is ", 0), 0U) << text;
       EXPECT_NE(text.find(what), std::string::npos) << text;
       EXPECT_NE(text.find("which the capture would overwrite; name another path"), std::string::npos) << text;
     }

@@ -69,7 +69,8 @@ TEST_F(Hints, AReadAtAddress0AndAReservedAddress) {
 TEST_F(Hints, BytesOfModbusTcp) {
   const auto line = line_of({"EX9042D-M@01"});
   const std::string expected =
-      "these bytes look like Modbus TCP; use --modbus-tcp, or set the master to Modbus RTU over TCP";
+      "these bytes look like Modbus TCP; use --port modbus-tcp:PORT, or set the master to Modbus RTU over "
+      "TCP";
   const FrameBytes request{0x00, 0x01, 0x00, 0x00, 0x00, 0x06, 0x01, 0x01, 0x00, 0x00, 0x00, 0x0D};
   EXPECT_EQ(hint(*line, request), expected);
   FrameBytes two = request;

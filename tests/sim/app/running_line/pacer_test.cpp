@@ -25,17 +25,22 @@ using FrameBytes = std::vector<std::uint8_t>;
 const FrameBytes kInputs2 = with_crc({0x02, 0x02, 0x00, 0x00, 0x00, 0x08});
 const FrameBytes kAllFirstOn = with_crc({0x00, 0x05, 0x00, 0x00, 0xFF, 0x00});
 
-/// A port that gives its `Received` function to the test, so that the test can deliver bytes immediately.
-/// Discards the bytes from the line.
+/// A port at which the test can deliver bytes immediately. Discards the bytes from the line.
 class ImmediatePort final : public Port {
  public:
-  explicit ImmediatePort(Received& received) : received_(received) {}
-  void start(Received received) override { received_ = std::move(received); }
+  [[nodiscard]] PortSummary summary() const override { return {}; }
+  void start(Arrivals& arrivals) override { arrivals_ = &arrivals; }
   void resume() override {}
   std::size_t send(const std::vector<std::uint8_t>& /*bytes*/) override { return 0; }
 
+  bool deliver(const FrameBytes& bytes) {
+    return arrivals_->bytes(*this, {bytes.data(), bytes.size()}, {}, nullptr);
+  }
+  /// A master connects.
+  void connect() { let_line_go(*arrivals_); }
+
  private:
-  Received& received_;
+  Arrivals* arrivals_ = nullptr;
 };
 
 /// Virtual time passes at 0.05 times the speed of the wall clock. At 115200 baud, T3.5 is 1.75 ms of virtual
@@ -44,14 +49,19 @@ constexpr Pace kSlow{VirtualTime(0), VirtualTime(0), true, 0.05};
 
 class PacedLine : public testing::Test {
  protected:
-  PacedLine() {
-    ports_.push_back(std::make_unique<ImmediatePort>(received_));
+  explicit PacedLine(bool holds = false) {
+    auto port = std::make_unique<ImmediatePort>();
+    port_ = port.get();
+    ports_.push_back(std::move(port));
     pacer_.emplace(io_, line_, connected_, nullptr, kSlow, [](const std::string& /*text*/) {});
     line_.bus().observe(recorder_);
     line_.come_up();
     line_.master().set_baud(115200);
     recorder_.clear();
-    pacer_->start();
+    if (holds) {
+      port_->hold_line();
+    }
+    pacer_->start([this] { begun_ = true; });
   }
 
   /// Runs until nothing is pending: see Line::pending.
@@ -60,7 +70,7 @@ class PacedLine : public testing::Test {
       ASSERT_GT(io_.run_one(), 0U);
     }
   }
-  void send(const FrameBytes& bytes) { ASSERT_TRUE(received_(bytes.data(), bytes.size(), {}, nullptr)); }
+  void send(const FrameBytes& bytes) { ASSERT_TRUE(port_->deliver(bytes)); }
   /// Sends a request and runs until a reply of `answer` characters has ended.
   void ask(const FrameBytes& bytes, std::size_t answer) {
     recorder_.clear();
@@ -80,17 +90,35 @@ class PacedLine : public testing::Test {
     return (line_.module(0).outputs() & 1U) != 0 && (line_.module(3).outputs() & 1U) != 0;
   }
 
-  Port::Received received_;
+  ImmediatePort* port_ = nullptr;
+  bool begun_ = false;
   boost::asio::io_context io_;
   LinePorts::All ports_;
   Line line_{{parse_module_spec("EX9042D-M@01,baud=115200"), parse_module_spec("EX9052D-M@02,baud=115200"),
               parse_module_spec("EX9042D@03,baud=115200"), parse_module_spec("EX9043D-M@04,baud=115200")},
              kPaced,
              [this](std::uint8_t byte, ByteStatus /*status*/) { connected_.hear(byte); }};
-  LinePorts connected_{line_, ports_, nullptr, [](const std::string& /*text*/) {}};
+  LinePorts connected_{line_, ports_, [](const std::string& /*text*/) {}};
   BusRecorder recorder_;
   std::optional<Pacer> pacer_;
 };
+
+class HeldLine : public PacedLine {
+ protected:
+  HeldLine() : PacedLine(true) {}
+};
+
+TEST_F(HeldLine, LineTimeBeginsWhenAMasterHasConnected) {
+  const VirtualTime up = pacer_->present();
+  EXPECT_FALSE(begun_);
+  io_.poll();
+  io_.restart();
+  EXPECT_EQ(pacer_->present(), up);
+  port_->connect();
+  EXPECT_TRUE(begun_);
+  ask({'$', '0', '3', 'M', '\r'}, 9);
+  EXPECT_GT(pacer_->present(), up);
+}
 
 const FrameBytes kName3{'$', '0', '3', 'M', '\r'};
 

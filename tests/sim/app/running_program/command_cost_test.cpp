@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "sim/app/running_program/running_program.hpp"
-#include "sim/app/setup_from_bus_file/bus_file.hpp"
+#include "sim/app/setup/bus_file.hpp"
 #include "tests/support/directory.hpp"
 
 namespace {
@@ -43,7 +43,7 @@ class Program {
  public:
   explicit Program(std::size_t lines)
       : running_(
-            io_, setup(lines), [](const std::string& /*line*/) {}, nullptr, nullptr, "") {
+            io_, setup(lines), [](const std::string& /*line*/) {}, nullptr, "") {
     running_.start();
     client_.connect(directory_ / "control");
     client_.non_blocking(true);
@@ -72,11 +72,9 @@ class Program {
     std::string text = R"({"control": ")" + directory_ / "control" + R"(", "lines": [)";
     for (std::size_t line = 0; line < lines; ++line) {
       text += (line == 0 ? "" : ", ") + std::string(R"({"name": "line)") + std::to_string(line) +
-              R"(", "tcp": "0", "modules": [{"model": "EX9052D"}]})";
+              R"(", "port": "tcp:0", "modules": [{"model": "EX9052D"}]})";
     }
-    Setup setup = parse_bus_file("bus.json", text + "]}");
-    setup.threads = 1;
-    return setup;
+    return parse_bus_file("bus.json", text + "]}");
   }
 
   system::Directory directory_;

@@ -52,7 +52,7 @@ hal::doubles::VirtualTime longest_delay(const std::string& log) {
 
 TEST(LateHost, ALateHostIsReportedWithItsDelay) {
   // With a changing input, the next event is always due soon.
-  SimulatorProcess simulator({"EX9052D@01", "--tcp", "0", "--input", "1 0 square 10ms"});
+  SimulatorProcess simulator({"EX9052D@01,input=0 square 10ms", "--port", "tcp:0"});
   SocketClient client(simulator.tcp_port());
   client.send("$01M\r");
   ASSERT_EQ(client.receive_text(8), "!019052\r");  // the line runs
@@ -67,7 +67,7 @@ TEST(LateHost, ALateHostIsReportedWithItsDelay) {
 }
 
 TEST(LateHost, TwoRequestsThatAreReadInOnePieceAreReported) {
-  SimulatorProcess simulator({"EX9042D-M@01,protocol=modbus", "--tcp", "0", "--log"});
+  SimulatorProcess simulator({"EX9042D-M@01,protocol=modbus", "--port", "tcp:0", "--log"});
   SocketClient client(simulator.tcp_port());
   client.send(text_of(request(1)));
   EXPECT_EQ(client.receive_text(6).substr(0, 3), std::string("\x01\x01\x01", 3));

@@ -71,14 +71,14 @@ class Lines {
 };
 
 constexpr const char* kHallAndYard = R"({"lines": [
-  {"name": "hall", "pty": "hall.tty", "tcp": 0, "line": "instant",
+  {"name": "hall", "port": ["pty:hall.tty", "tcp:0"], "timing": "instant",
    "modules": [{"model": "EX9042D", "address": "01"}, {"model": "EX9055D", "address": "02"}]},
-  {"name": "yard", "pty": "yard.tty", "tcp": 0, "line": "instant",
+  {"name": "yard", "port": ["pty:yard.tty", "tcp:0"], "timing": "instant",
    "modules": [{"model": "EX9052D", "address": "01"}]}]})";
 
 /// By default, Debian permits 128 inotify instances for each user.
-TEST(Lines, ThePseudoTerminalsOfAThreadShareOneInotifyInstance) {
-  Lines lines(kHallAndYard, {"--threads", "1"});
+TEST(Lines, ThePseudoTerminalsShareOneInotifyInstance) {
+  Lines lines(kHallAndYard);
   int instances = 0;
   for (const auto& file : fs::directory_iterator("/proc/" + std::to_string(lines.process().pid()) + "/fd")) {
     std::error_code closed_meanwhile;
@@ -129,8 +129,8 @@ TEST(Lines, ALineDoesNotReceiveTheBytesOfAnotherLine) {
 
 TEST(Lines, EachLineHasItsOwnBaudRateAndItsNameInTheLog) {
   Lines lines(R"({"lines": [
-    {"name": "hall", "pty": "hall.tty", "modules": [{"model": "EX9042D", "baud": 9600}]},
-    {"pty": "yard.tty", "modules": [{"model": "EX9052D", "baud": 115200}]}], "log": true})");
+    {"name": "hall", "port": "pty:hall.tty", "modules": [{"model": "EX9042D", "baud": 9600}]},
+    {"port": "pty:yard.tty", "modules": [{"model": "EX9052D", "baud": 115200}]}], "log": true})");
   EXPECT_TRUE(has(lines.process().output(), "hall at 9600 baud 8N1:\n")) << lines.process().output();
   EXPECT_TRUE(has(lines.process().output(), "line2 at 115200 baud 8N1:\n")) << lines.process().output();
   Terminal yard(lines / "yard.tty", 115200);
@@ -189,14 +189,14 @@ TEST(Lines, FaultsAffectOnlyTheirOwnLine) {
   EXPECT_EQ(ask(hall, "$02M"), "!029055");
 }
 
-TEST(Lines, TheRepliesAndTheLogAreCorrectIfTheThreadLimitIsOneTwoOrEight) {
+TEST(Lines, TheRepliesAndTheLogAreCorrectIfAllLinesAreBusy) {
   constexpr int kRequests = 50;
-  for (const char* threads : {"1", "2", "8"}) {
+  {
     Lines lines(R"({"lines": [
-      {"tcp": 0, "line": "instant", "modules": [{"model": "EX9042D"}, {"model": "EX9052D", "address": "02"}]},
-      {"tcp": 0, "line": "instant", "modules": [{"model": "EX9042D"}]},
-      {"tcp": 0, "line": "instant", "modules": [{"model": "EX9042D"}]}]})",
-                {"--threads", threads, "--log", "--capture", "lines.pcapng"});
+      {"port": "tcp:0", "timing": "instant", "modules": [{"model": "EX9042D"}, {"model": "EX9052D", "address": "02"}]},
+      {"port": "tcp:0", "timing": "instant", "modules": [{"model": "EX9042D"}]},
+      {"port": "tcp:0", "timing": "instant", "modules": [{"model": "EX9042D"}]}]})",
+                {"--log", "--capture", "lines.pcapng"});
     std::vector<std::string> wrong(3);
     std::vector<std::thread> masters;
     for (int line = 0; line < 3; ++line) {
@@ -216,21 +216,23 @@ TEST(Lines, TheRepliesAndTheLogAreCorrectIfTheThreadLimitIsOneTwoOrEight) {
     for (std::thread& master : masters) {
       master.join();
     }
-    EXPECT_EQ(wrong, std::vector<std::string>(3)) << threads;
+    EXPECT_EQ(wrong, std::vector<std::string>(3));
     EXPECT_TRUE(lines.process().wait_for("  < 01 EX9042D  !019042D\\r", 3 * kRequests));
     std::istringstream log(lines.process().output());
     for (std::string line; std::getline(log, line);) {
       EXPECT_TRUE(!has(line, "  < 01 EX9042D") || line.rfind("line", 0) == 0) << line;
     }
-    EXPECT_EQ(lines.process().end(SIGTERM), 0) << threads;
+    EXPECT_EQ(lines.process().end(SIGTERM), 0);
   }
 }
 
 TEST(Lines, TheLinesOfTheExampleBusFileStartAndAModuleReplies) {
   std::string example = run({simulator_path(), "--example"}).output;
-  const std::string port = "127.0.0.1:5020";
-  ASSERT_TRUE(has(example, port));
-  example.replace(example.find(port), port.size(), "127.0.0.1:0");  // another program may use the port 5020
+  for (const std::string port : {"tcp:5020", "modbus-tcp:5021"}) {
+    ASSERT_TRUE(has(example, port));
+    example.replace(example.find(port) + port.size() - 4, 4, "0");  // another program may use the port
+  }
+  example.replace(example.find("panel: on"), 9, "panel: 0");
   Lines lines(example);
   EXPECT_EQ(lines.control().ask("list"),
             "ok 4 modules: 1 EX9042D-M at 01 on hall, 2 EX9052D-M at 02 on hall, 3 EX9068D-M at 0A on yard, "
@@ -244,15 +246,15 @@ TEST(Lines, TheLinesOfTheExampleBusFileStartAndAModuleReplies) {
 }
 
 TEST(Lines, NoFilesAreCreatedIfOneLineFails) {
-  const std::pair<const char*, int> cases[] = {{R"("pty": "taken")", 2},
-                                               {R"("pty": "missing/tty")", 2},
-                                               {R"("tcp": "192.0.2.1:5020")", 1},
-                                               {R"("serial": "missing")", 1}};
+  const std::pair<const char*, int> cases[] = {{R"("port": "pty:taken")", 2},
+                                               {R"("port": "pty:missing/tty")", 2},
+                                               {R"("port": "tcp:192.0.2.1:5020")", 1},
+                                               {R"("port": "serial:missing")", 1}};
   for (const auto& [wrong, status] : cases) {
     const Directory directory;
     write_file(directory / "taken", "precious");
     const BusFile file(R"({"control": "control", "lines": [
-      {"pty": "a.tty", "modules": [{"model": "EX9042D", "eeprom": "first"}]},
+      {"port": "pty:a.tty", "modules": [{"model": "EX9042D", "eeprom": "first"}]},
       {)" + std::string(wrong) +
                        R"(, "modules": [{"model": "EX9042D", "eeprom": "second"}]}]})");
     const auto before = directory.contents();
@@ -266,14 +268,13 @@ TEST(Lines, NoFilesAreCreatedIfOneLineFails) {
 TEST(Lines, APortErrorNamesItsPlaceInTheBusFile) {
   const BusFile file(
       "{\"lines\": [\n"
-      "{\"tcp\": 0, \"modules\": [{\"model\": \"EX9042D\"}]},\n"
-      "{\"pty\": \"no/such/folder\", \"modules\": [{\"model\": \"EX9042D\"}]}]}");
+      "{\"port\": \"tcp:0\", \"modules\": [{\"model\": \"EX9042D\"}]},\n"
+      "{\"port\": \"pty:no/such/folder\", \"modules\": [{\"model\": \"EX9042D\"}]}]}");
   const Finished finished = run({simulator_path(), file.path()});
   EXPECT_EQ(finished.status, 2);
-  EXPECT_EQ(finished.error,
-            "ex9000-sim: " + file.path() +
-                ":3: lines[1].pty: no/such/folder: No such file or directory; name a path that can "
-                "be written\n");
+  EXPECT_EQ(finished.error, "ex9000-sim: " + file.path() +
+                                ":3: port: no/such/folder: No such file or directory; name a path that can "
+                                "be written\n");
 }
 
 TEST(Lines, AnErrorOfAnUnnamedPseudoTerminalNamesItsLine) {
@@ -283,7 +284,7 @@ TEST(Lines, AnErrorOfAnUnnamedPseudoTerminalNamesItsLine) {
   const Finished finished = run({simulator_path(), file.path()}, directory.path());
   EXPECT_EQ(finished.status, 2);
   EXPECT_EQ(finished.error, "ex9000-sim: " + file.path() +
-                                ":2: lines[0]: line1.tty: exists and is not a link to a pseudo-terminal; "
+                                ":2: port: line1.tty: exists and is not a link to a pseudo-terminal; "
                                 "remove it or name another path\n");
 }
 
@@ -292,14 +293,13 @@ TEST(Lines, AnEepromErrorNamesItsPlaceInTheBusFile) {
   write_file(directory / "short", "short");
   write_file(directory / "steps.txt", "> $01M\n< !019042D\n");
   const BusFile file(
-      "{\"lines\": [{\"tcp\": 0, \"modules\": [{\"model\": \"EX9042D\",\n\"eeprom\": \"short\"}]}]}");
+      "{\"lines\": [{\"port\": \"tcp:0\", \"modules\": [{\"model\": \"EX9042D\",\n\"eeprom\": "
+      "\"short\"}]}]}");
   for (const std::vector<std::string>& command : {std::vector<std::string>{simulator_path(), file.path()},
                                                   {simulator_path(), "play", "steps.txt", file.path()}}) {
     const Finished finished = run(command, directory.path());
     EXPECT_EQ(finished.status, 2);
-    EXPECT_EQ(finished.error.rfind(
-                  "ex9000-sim: " + file.path() + ":2: lines[0].modules[0].eeprom: short: has 5 bytes, ", 0),
-              0U)
+    EXPECT_EQ(finished.error.rfind("ex9000-sim: " + file.path() + ":2: eeprom: short: has 5 bytes, ", 0), 0U)
         << finished.error;
   }
 }
@@ -313,13 +313,13 @@ TEST(Lines, ErrorsInSettingsForAllLinesNameTheBusFileOrTheOption) {
   for (const auto& [key, wrong] : cases) {
     const Directory directory;
     const BusFile file("{\n\"" + key + "\": \"" + wrong +
-                       "\", \"lines\": [{\"tcp\": 0, \"modules\": [{\"model\": \"EX9042D\"}]}]}");
+                       "\", \"lines\": [{\"port\": \"tcp:0\", \"modules\": [{\"model\": \"EX9042D\"}]}]}");
     const Finished finished = run({simulator_path(), file.path()}, directory.path());
     EXPECT_EQ(finished.status, key == "panel" ? 1 : 2);  // the port is in use
     EXPECT_EQ(finished.error.rfind("ex9000-sim: " + file.path() + ":2: " + key + ": " + wrong + ": ", 0), 0U)
         << finished.error;
     const Finished asked = run({simulator_path(), file.path(), "--" + key, wrong}, directory.path());
-    EXPECT_EQ(asked.error.rfind("ex9000-sim: --" + key + " " + wrong + ": ", 0), 0U) << asked.error;
+    EXPECT_EQ(asked.error.rfind("ex9000-sim: --" + key + ": " + wrong + ": ", 0), 0U) << asked.error;
     EXPECT_TRUE(fs::is_empty(directory.path()));
   }
 }
@@ -330,11 +330,9 @@ TEST(Lines, AnErrorInABusFileNamesTheFileTheLineNumberAndTheKey) {
   const Finished finished = run({simulator_path(), file.path()}, directory.path());
   EXPECT_EQ(finished.status, 2);
   EXPECT_EQ(finished.output, "");
-  EXPECT_EQ(
-      finished.error.rfind("ex9000-sim: " + file.path() +
-                               ":2: lines[0].modules[0].colour: unknown key; expected one of model, address",
-                           0),
-      0U)
+  EXPECT_EQ(finished.error.rfind(
+                "ex9000-sim: " + file.path() + ":2: colour: unknown key; expected one of model, address", 0),
+            0U)
       << finished.error;
   EXPECT_EQ(std::count(finished.error.begin(), finished.error.end(), '\n'), 1);
   EXPECT_TRUE(fs::is_empty(directory.path()));
@@ -343,9 +341,9 @@ TEST(Lines, AnErrorInABusFileNamesTheFileTheLineNumberAndTheKey) {
 // --- one line on the command line ---
 
 TEST(LineOfTheCommandLine, RunsTheFaultsAndInputProgramsOfItsOptions) {
-  SimulatorProcess simulator({"EX9042D@01", "EX9052D@02", "--line", "instant", "--control", "control",
-                              "--input", "2 5 square 2ms", "--fault", "1 late-reply 20ms", "--fault",
-                              "2 gone at 1h"});
+  SimulatorProcess simulator({"EX9042D@01,fault=late-reply 20ms",
+                              "EX9052D@02,input=5 square 2ms,fault=gone at 1h", "--timing", "instant",
+                              "--control", "control"});
   ControlClient control(simulator.directory() + "/control");
   EXPECT_EQ(control.ask("faults"), "ok 2 faults: 1* x1 1 late-reply 20ms; 2 x0 2 gone at 1h");
   Terminal terminal(simulator.tty(), 9600);
@@ -359,7 +357,7 @@ TEST(LineOfTheCommandLine, RunsTheFaultsAndInputProgramsOfItsOptions) {
 /// Sends 30 commands. After each command, asks how many times the fault has occurred so far. Returns these
 /// numbers as text.
 std::string occurrences(const std::string& seed) {
-  SimulatorProcess simulator({"EX9042D@01", "--line", "instant", "--control", "control", "--fault",
+  SimulatorProcess simulator({"EX9042D@01", "--timing", "instant", "--control", "control", "--fault",
                               "lost-reply with probability 0.5", "--seed", seed});
   ControlClient control(simulator.directory() + "/control");
   Terminal terminal(simulator.tty(), 9600);

@@ -45,7 +45,7 @@ TEST(SteppedProgram, TheHostWatchdogExpiresWhenOneCommandAdvancesADay) {
 }
 
 TEST(SteppedProgram, AnAdvanceWaitsForAMasterThatWritesLater) {
-  Stepped stepped({"EX9042D", "--tcp", "0"});
+  Stepped stepped({"EX9042D", "--port", "tcp:0"});
   SocketClient master(stepped.simulator.tcp_port());
   stepped.control.send("advance 1s after 5 quiet\n");
   master.send("$01");
@@ -55,7 +55,7 @@ TEST(SteppedProgram, AnAdvanceWaitsForAMasterThatWritesLater) {
 }
 
 TEST(SteppedProgram, AHalfClosedMasterGetsItsReply) {
-  Stepped stepped({"EX9042D", "--tcp", "0"});
+  Stepped stepped({"EX9042D", "--port", "tcp:0"});
   SocketClient master(stepped.simulator.tcp_port());
   master.send("$01M\r");
   master.close_writing();
@@ -65,7 +65,7 @@ TEST(SteppedProgram, AHalfClosedMasterGetsItsReply) {
 
 TEST(SteppedProgram, AMasterThatResetsItsConnectionDoesNotStopTheProgram) {
   for (int round = 0; round < 5; ++round) {
-    Stepped stepped({"EX9042D", "--tcp", "0"});
+    Stepped stepped({"EX9042D", "--port", "tcp:0"});
     SocketClient crashing(stepped.simulator.tcp_port());
     SocketClient other(stepped.simulator.tcp_port());
     stepped.control.send("advance 60s after 5\n");
@@ -121,7 +121,7 @@ TEST(SteppedProgram, AFullPortIsReported) {
 }
 
 TEST(SteppedProgram, TheControlSocketSetsTheBaudRateOfALineWithATcpPort) {
-  Stepped stepped({"EX9042D@01,baud=19200", "--baud", "9600", "--tcp", "0"});
+  Stepped stepped({"EX9042D@01,baud=19200", "--baud", "9600", "--port", "tcp:0"});
   SocketClient master(stepped.simulator.tcp_port());
   master.send("$01M\r");
   stepped.control.ok("advance 1s after 5");

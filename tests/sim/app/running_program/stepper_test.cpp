@@ -20,7 +20,8 @@ using FrameOfBytes = std::vector<std::uint8_t>;
 /// A port in memory. As in the kernel, the bytes that a master writes wait until the simulator reads them.
 class FakePort final : public Port {
  public:
-  void start(Received received) override { received_ = std::move(received); }
+  [[nodiscard]] PortSummary summary() const override { return {}; }
+  void start(Arrivals& arrivals) override { arrivals_ = &arrivals; }
   void resume() override {
     EXPECT_TRUE(paused_ || receiving_) << "resume was called, but the port does not wait";
     paused_ = false;
@@ -29,7 +30,7 @@ class FakePort final : public Port {
     if (!written_.empty() && !paused_) {
       const std::vector<std::uint8_t> bytes = std::exchange(written_, {});
       receiving_ = true;
-      paused_ = !received_(bytes.data(), bytes.size(), {}, nullptr);
+      paused_ = !arrivals_->bytes(*this, {bytes.data(), bytes.size()}, {}, nullptr);
       receiving_ = false;
     }
   }
@@ -53,7 +54,7 @@ class FakePort final : public Port {
   std::optional<std::uint32_t> rate_;
 
  private:
-  Received received_;
+  Arrivals* arrivals_ = nullptr;
   bool paused_ = false;
   bool receiving_ = false;
   std::vector<std::uint8_t> written_;
@@ -76,7 +77,7 @@ struct StillLine {
     auto its_port = std::make_unique<FakePort>();
     port = its_port.get();
     ports.push_back(std::move(its_port));
-    connected = std::make_unique<LinePorts>(*line, ports, nullptr,
+    connected = std::make_unique<LinePorts>(*line, ports,
                                             [this](const std::string& text) { notices.push_back(text); });
     stepped = std::make_unique<SteppedLine>(*line, *connected, nullptr);
   }

@@ -41,7 +41,7 @@ void expect_refused(const Finished& finished, const std::string& names, const st
 class Tcp : public testing::TestWithParam<const char*> {};
 
 TEST_P(Tcp, WithTcpAndWithoutPtyThereIsNoPseudoTerminal) {
-  SimulatorProcess simulator({"EX9042D@05", "--tcp", "0", "--line", GetParam()});
+  SimulatorProcess simulator({"EX9042D@05", "--port", "tcp:0", "--timing", GetParam()});
   SocketClient client(simulator.tcp_port());
   client.send("$05M\r");
   EXPECT_EQ(client.receive_text(9), "!059042D\r");
@@ -49,7 +49,8 @@ TEST_P(Tcp, WithTcpAndWithoutPtyThereIsNoPseudoTerminal) {
 }
 
 TEST_P(Tcp, ATcpPortAndAPseudoTerminalReachTheSameLine) {
-  SimulatorProcess simulator({"EX9042D@05", "--tcp", ":0", "--pty", "ex9000.tty", "--line", GetParam()});
+  SimulatorProcess simulator(
+      {"EX9042D@05", "--port", "pty:ex9000.tty", "--port", "tcp::0", "--timing", GetParam()});
   SocketClient client(simulator.tcp_port());
   client.send("$05M\r");
   EXPECT_EQ(client.receive_text(9), "!059042D\r");
@@ -63,7 +64,7 @@ TEST_P(Tcp, ATcpPortAndAPseudoTerminalReachTheSameLine) {
 }
 
 TEST_P(Tcp, TwoClientsShareTheLine) {
-  SimulatorProcess simulator({"EX9042D@05", "--tcp", "0", "--line", GetParam()});
+  SimulatorProcess simulator({"EX9042D@05", "--port", "tcp:0", "--timing", GetParam()});
   SocketClient first(simulator.tcp_port());
   auto second = std::make_unique<SocketClient>(simulator.tcp_port());
   second->send("$05M\r");  // the program accepts the first client before this one
@@ -78,7 +79,7 @@ TEST_P(Tcp, TwoClientsShareTheLine) {
 }
 
 TEST_P(Tcp, AHalfClosedClientGetsItsReplyAndIsThenDisconnected) {
-  SimulatorProcess simulator({"EX9042D@05", "--tcp", "0", "--line", GetParam()});
+  SimulatorProcess simulator({"EX9042D@05", "--port", "tcp:0", "--timing", GetParam()});
   SocketClient client(simulator.tcp_port());
   client.send("$05M\r");
   client.close_writing();
@@ -106,7 +107,7 @@ std::string heard_by_asking_again(SocketClient& client, const std::string& reque
 }
 
 TEST_P(Tcp, AClientThatResetsItsConnectionDoesNotAffectOthers) {
-  SimulatorProcess simulator({"EX9042D@05", "--tcp", "0", "--line", GetParam()});
+  SimulatorProcess simulator({"EX9042D@05", "--port", "tcp:0", "--timing", GetParam()});
   SocketClient other(simulator.tcp_port());
   for (int visit = 0; visit < 20; ++visit) {
     SocketClient client(simulator.tcp_port());
@@ -120,7 +121,7 @@ TEST_P(Tcp, AClientThatResetsItsConnectionDoesNotAffectOthers) {
 }
 
 TEST_P(Tcp, AFloodOfInvalidBytesDoesNotBlockTheLine) {
-  SimulatorProcess simulator({"EX9042D@05,baud=115200", "--tcp", "0", "--line", GetParam()});
+  SimulatorProcess simulator({"EX9042D@05,baud=115200", "--port", "tcp:0", "--timing", GetParam()});
   {
     SocketClient flooder(simulator.tcp_port());
     flooder.send(std::vector<std::uint8_t>(20'000, 'x'));
@@ -133,7 +134,7 @@ TEST_P(Tcp, AFloodOfInvalidBytesDoesNotBlockTheLine) {
 INSTANTIATE_TEST_SUITE_P(Lines, Tcp, testing::Values("paced", "instant"));
 
 TEST(TcpPort, ServesManyClientsOneAfterTheOther) {
-  SimulatorProcess simulator({"EX9042D@05", "--tcp", "0", "--line", "instant"});
+  SimulatorProcess simulator({"EX9042D@05", "--port", "tcp:0", "--timing", "instant"});
   for (int visit = 0; visit < 300; ++visit) {
     SocketClient client(simulator.tcp_port());
     client.send("$05M\r");
@@ -142,7 +143,7 @@ TEST(TcpPort, ServesManyClientsOneAfterTheOther) {
 }
 
 TEST(TcpPort, Serves64ClientsAtTheSameTimeAndReusesAFreePlace) {
-  SimulatorProcess simulator({"EX9042D@05", "--tcp", "0", "--line", "instant"});
+  SimulatorProcess simulator({"EX9042D@05", "--port", "tcp:0", "--timing", "instant"});
   std::vector<std::unique_ptr<SocketClient>> clients;
   for (int i = 0; i < 64; ++i) {
     clients.push_back(std::make_unique<SocketClient>(simulator.tcp_port()));
@@ -161,7 +162,7 @@ TEST(TcpPort, Serves64ClientsAtTheSameTimeAndReusesAFreePlace) {
 
 TEST(TcpPort, ListensOnTheGivenAddress) {
   const std::string host = "127.0.0.1";
-  SimulatorProcess simulator({"EX9042D", "--tcp", host + ":0"});
+  SimulatorProcess simulator({"EX9042D", "--port", "tcp:" + host + ":0"});
   EXPECT_NE(simulator.output().find("  TCP " + host + ":"), std::string::npos) << simulator.output();
 }
 
@@ -170,14 +171,14 @@ TEST(TcpPort, ListensOnAnIpv6Address) {
     GTEST_SKIP() << "this machine has no IPv6";
   }
   const std::string host = "[::1]";
-  SimulatorProcess simulator({"EX9042D", "--tcp", host + ":0"});
+  SimulatorProcess simulator({"EX9042D", "--port", "tcp:" + host + ":0"});
   EXPECT_NE(simulator.output().find("  TCP " + host + ":"), std::string::npos) << simulator.output();
 }
 
 // If too many bytes already wait for the line, the program stops reading from the client until the line has
 // room. During this time, the program must not poll the client.
 TEST(TcpPort, AWaitingClientUsesLittleProcessorTime) {
-  SimulatorProcess simulator({"EX9042D@05,baud=1200", "--tcp", "0"});
+  SimulatorProcess simulator({"EX9042D@05,baud=1200", "--port", "tcp:0"});
   SocketClient flooder(simulator.tcp_port());
   flooder.send(std::vector<std::uint8_t>(20'000, 'x'));  // takes almost three minutes at 1200 baud
   const auto ticks = [&simulator] {
@@ -205,27 +206,27 @@ TEST(TcpPort, AWaitingClientUsesLittleProcessorTime) {
 }
 
 TEST(TcpPort, APortInUseIsRefusedAndCanBeReusedAfterItsProcessIsKilled) {
-  SimulatorProcess first({"EX9042D@05", "--tcp", "0"});
+  SimulatorProcess first({"EX9042D@05", "--port", "tcp:0"});
   const std::string address = "127.0.0.1:" + std::to_string(first.tcp_port());
-  expect_refused(run({simulator_path(), "EX9042D", "--tcp", address}, first.directory()), "--tcp " + address,
-                 "the port is in use", kUnavailable);
+  expect_refused(run({simulator_path(), "EX9042D", "--port", "tcp:" + address}, first.directory()),
+                 "--port: " + address, "the port is in use", kUnavailable);
   SocketClient client(first.tcp_port());
   client.send("$05M\r");
   EXPECT_EQ(client.receive_text(9), "!059042D\r");
   first.end(SIGKILL);
-  SimulatorProcess second({"EX9042D@05", "--tcp", address});
+  SimulatorProcess second({"EX9042D@05", "--port", "tcp:" + address});
   SocketClient heir(second.tcp_port());
   heir.send("$05M\r");
   EXPECT_EQ(heir.receive_text(9), "!059042D\r");
 }
 
 TEST(TcpPort, AnAddressOfAnotherHostAndANameOtherThanLocalhostAreRefused) {
-  expect_refused(run({simulator_path(), "EX9042D", "--tcp", "192.0.2.1:5020"}), "--tcp 192.0.2.1:5020",
+  expect_refused(run({simulator_path(), "EX9042D", "--port", "tcp:192.0.2.1:5020"}), "--port: 192.0.2.1:5020",
                  "name", kUnavailable);
-  expect_refused(run({simulator_path(), "EX9042D-M", "--modbus-tcp", "192.0.2.1:502"}),
-                 "--modbus-tcp 192.0.2.1:502", "name", kUnavailable);
-  expect_refused(run({simulator_path(), "EX9042D", "--tcp", "no.such.host.invalid:5020"}),
-                 "--tcp: 'no.such.host.invalid:5020'", "expected a numeric address or localhost");
+  expect_refused(run({simulator_path(), "EX9042D-M", "--port", "modbus-tcp:192.0.2.1:502"}),
+                 "--port: 192.0.2.1:502", "name", kUnavailable);
+  expect_refused(run({simulator_path(), "EX9042D", "--port", "tcp:no.such.host.invalid:5020"}),
+                 "--port: tcp:no.such.host.invalid:5020: ", "expected a numeric address or localhost");
 }
 
 /// A pseudo-terminal that replaces a serial cable. This object holds the far end. The near end is the device
@@ -306,7 +307,7 @@ class Cable {
 
 TEST(SerialPort, ConnectsTheModulesToItsLine) {
   const Cable cable;
-  SimulatorProcess simulator({"EX9042D@05", "EX9052D@06", "--serial", cable.device()});
+  SimulatorProcess simulator({"EX9042D@05", "EX9052D@06", "--port", "serial:" + cable.device()});
   EXPECT_FALSE(fs::is_symlink(simulator.tty()));
   for (int round = 0; round < 3; ++round) {
     cable.write("$05M\r");
@@ -323,7 +324,7 @@ TEST(SerialPort, IsSetToTheBaudRateOfTheLineAndToRawModeWithoutFlowControl) {
   const Cable cable;
   cable.leave_set_for_something_else();
   SimulatorProcess simulator(
-      {"EX9042D@05", "EX9052D@06,baud=19200", "--serial", cable.device(), "--baud", "19200"});
+      {"EX9042D@05", "EX9052D@06,baud=19200", "--port", "serial:" + cable.device(), "--baud", "19200"});
   const termios settings = cable.settings();
   EXPECT_EQ(cfgetospeed(&settings), static_cast<speed_t>(B19200));
   EXPECT_EQ(cfgetispeed(&settings), static_cast<speed_t>(B19200));
@@ -338,7 +339,7 @@ TEST(SerialPort, IsSetToTheBaudRateOfTheLineAndToRawModeWithoutFlowControl) {
 
 TEST(SerialPort, IsSetToTheLineFormat) {
   const Cable cable;
-  SimulatorProcess simulator({"EX9042D@05,format=8N2", "--serial", cable.device()});
+  SimulatorProcess simulator({"EX9042D@05,format=8N2", "--port", "serial:" + cable.device()});
   EXPECT_EQ(cable.settings().c_cflag & static_cast<tcflag_t>(CSIZE | CSTOPB | PARENB),
             static_cast<tcflag_t>(CS8 | CSTOPB));
   cable.write("$05M\r");
@@ -348,15 +349,15 @@ TEST(SerialPort, IsSetToTheLineFormat) {
 // A pseudo-terminal has no parity.
 TEST(SerialPort, APortThatCannotHaveTheLineFormatIsRefused) {
   const Cable cable;
-  expect_refused(run({simulator_path(), "EX9042D", "--serial", cable.device(), "--format", "8E1"}),
-                 "--serial " + cable.device(), "cannot be set to 9600 baud 8E1");
+  expect_refused(run({simulator_path(), "EX9042D", "--port", "serial:" + cable.device(), "--format", "8E1"}),
+                 "--port: " + cable.device(), "cannot be set to 9600 baud 8E1");
 }
 
 // The 250 characters of the reply take more than a quarter of a second, so the program writes the reply in
 // pieces.
 TEST(SerialPort, ALongReplyIsSentCompletely) {
   const Cable cable;
-  SimulatorProcess simulator({"EX9042D-M@05", "--serial", cable.device()});
+  SimulatorProcess simulator({"EX9042D-M@05", "--port", "serial:" + cable.device()});
   std::string echo = std::string("\x05\x08\x00\x00", 4) + std::string(244, 'x');
   const Crc16 crc = crc16({reinterpret_cast<const std::uint8_t*>(echo.data()), echo.size()});
   echo += static_cast<char>(crc.low_byte());
@@ -369,7 +370,7 @@ TEST(SerialPort, ALongReplyIsSentCompletely) {
 // its reply as a new request.
 TEST(SerialPort, TheEchoOfAnAdapterIsIgnoredWithTheEchoOption) {
   const Cable cable;
-  SimulatorProcess simulator({"EX9042D-M@01", "--serial", cable.device(), "--echo"});
+  SimulatorProcess simulator({"EX9042D-M@01", "--port", "serial:" + cable.device() + ",echo"});
   const std::string switch_on("\x01\x05\x00\x00\xFF\x00\x8C\x3A", 8);
   for (int round = 0; round < 5; ++round) {
     cable.write(switch_on);
@@ -385,25 +386,25 @@ TEST(SerialPort, TheEchoOfAnAdapterIsIgnoredWithTheEchoOption) {
 TEST(SerialPort, TheProgramEndsWithAnErrorWhenThePortDisappears) {
   Cable cable;
   const Directory directory;
-  ChildProcess simulator({simulator_path(), "EX9042D", "--serial", cable.device()}, directory.path(),
-                         ChildProcess::Errors::WithOutput);
+  ChildProcess simulator({simulator_path(), "EX9042D", "--port", "serial:" + cable.device()},
+                         directory.path(), ChildProcess::Errors::WithOutput);
   ASSERT_TRUE(simulator.wait_for("press Ctrl-C to end"));
   cable.pull();
   EXPECT_EQ(simulator.wait(), 1);
-  EXPECT_NE(simulator.output().find("--serial " + cable.device()), std::string::npos) << simulator.output();
+  EXPECT_NE(simulator.output().find("--port: " + cable.device()), std::string::npos) << simulator.output();
   EXPECT_NE(simulator.output().find("the port has disappeared"), std::string::npos) << simulator.output();
 }
 
 TEST(SerialPort, AMissingUnsuitableOrUsedPortIsRefused) {
-  expect_refused(run({simulator_path(), "EX9042D", "--serial", "/no/such/port"}), "--serial /no/such/port",
-                 "name", kUnavailable);
-  expect_refused(run({simulator_path(), "EX9042D", "--serial", "/dev/null"}), "--serial /dev/null",
+  expect_refused(run({simulator_path(), "EX9042D", "--port", "serial:/no/such/port"}),
+                 "--port: /no/such/port", "name", kUnavailable);
+  expect_refused(run({simulator_path(), "EX9042D", "--port", "serial:/dev/null"}), "--port: /dev/null",
                  "is not a serial port; name one, for example /dev/ttyUSB0");
   const Cable cable;
   const int holder = open(cable.device().c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC);
   ASSERT_EQ(flock(holder, LOCK_EX | LOCK_NB), 0);
-  expect_refused(run({simulator_path(), "EX9042D", "--serial", cable.device()}), "--serial " + cable.device(),
-                 "is in use by another program", kUnavailable);
+  expect_refused(run({simulator_path(), "EX9042D", "--port", "serial:" + cable.device()}),
+                 "--port: " + cable.device(), "is in use by another program", kUnavailable);
   close(holder);
 }
 

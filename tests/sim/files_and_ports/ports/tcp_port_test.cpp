@@ -1,5 +1,6 @@
 // Tests the clients of a TCP port: the limit of their number, and the linger time.
 #include "sim/files_and_ports/ports/tcp_port.hpp"
+#include "tests/support/stored_arrivals.hpp"
 
 #include <gtest/gtest.h>
 
@@ -25,7 +26,7 @@ constexpr std::size_t kMostMasters = 64;
 bool run_one(boost::asio::io_context& io) { return io.run_one_for(std::chrono::seconds(60)) == 1; }
 
 tcp::socket connected(boost::asio::io_context& io, const TcpPort& port) {
-  const std::string address = port.address();
+  const std::string address = port.summary().address;
   const auto number = static_cast<std::uint16_t>(std::stoul(address.substr(address.rfind(':') + 1)));
   tcp::socket socket(io);
   socket.connect({boost::asio::ip::address_v4::loopback(), number});
@@ -35,23 +36,14 @@ tcp::socket connected(boost::asio::io_context& io, const TcpPort& port) {
 class TcpPortClients : public testing::Test {
  protected:
   explicit TcpPortClients(TcpPort::Linger linger = std::nullopt) : port_(io_, {"127.0.0.1", 0}, linger) {
-    port_.start([this](const std::uint8_t* bytes, std::size_t size, const Port::Positions& /*damaged*/,
-                       Port::Sender sender) {
-      sender_ = sender;
-      received_.insert(received_.end(), bytes, bytes + size);
-      return !pauses_;
-    });
-    port_.on_left([this](Port::Sender sender) { left_.push_back(sender); });
+    port_.start(arrivals_);
   }
 
   tcp::socket connect() { return connected(io_, port_); }
 
   boost::asio::io_context io_;
   TcpPort port_;
-  std::string received_;
-  bool pauses_ = false;
-  Port::Sender sender_ = nullptr;
-  std::vector<Port::Sender> left_;
+  StoredArrivals arrivals_;
 };
 
 class TcpPortLingering : public TcpPortClients {
@@ -69,38 +61,50 @@ TEST_F(TcpPortClients, AtTheMaximumNumberOfClientsANewClientReplacesAHalfClosedC
   }
   tcp::socket next = connect();
   boost::asio::write(next, boost::asio::buffer(std::string_view("$01M\r")));
-  while (received_.size() < 5) {
+  while (arrivals_.text.size() < 5) {
     ASSERT_TRUE(run_one(io_)) << "the next client was not accepted";
   }
-  EXPECT_EQ(received_, "$01M\r");
+  EXPECT_EQ(arrivals_.text, "$01M\r");
 }
 
 TEST_F(TcpPortClients, AClientThatResetsItsConnectionHasLeft) {
   tcp::socket client = connect();
   boost::asio::write(client, boost::asio::buffer(std::string_view("xxx")));
-  while (received_.size() < 3) {
+  while (arrivals_.text.size() < 3) {
     ASSERT_TRUE(run_one(io_));
   }
-  EXPECT_EQ(left_, std::vector<Port::Sender>());
+  EXPECT_EQ(arrivals_.gone, std::vector<Port::Sender>());
   client.set_option(boost::asio::socket_base::linger(true, 0));
   client.close();
-  while (left_.empty()) {
+  while (arrivals_.gone.empty()) {
     ASSERT_TRUE(run_one(io_)) << "the port has not detected the reset";
   }
-  EXPECT_EQ(left_, std::vector<Port::Sender>{sender_});
+  EXPECT_EQ(arrivals_.gone, std::vector<Port::Sender>{arrivals_.sender});
 }
 
 /// The unread bytes hide the end of the stream from a port that waits for `resume`.
 TEST_F(TcpPortLingering, AClientThatHasClosedWhileThePortReadsNothingHasLeftAfterTheLingerTime) {
-  pauses_ = true;
+  arrivals_.pauses = true;
   tcp::socket client = connect();
   boost::asio::write(client, boost::asio::buffer(std::string(20'000, 'x')));
   client.close();
-  while (left_.empty()) {
+  while (arrivals_.gone.empty()) {
     ASSERT_TRUE(run_one(io_)) << "the port has kept the client";
   }
-  EXPECT_EQ(left_, std::vector<Port::Sender>{sender_});
-  EXPECT_LT(received_.size(), 20'000U);
+  EXPECT_EQ(arrivals_.gone, std::vector<Port::Sender>{arrivals_.sender});
+  EXPECT_LT(arrivals_.text.size(), 20'000U);
+}
+
+TEST_F(TcpPortClients, TheFirstClientLetsALineGoThatThePortHolds) {
+  EXPECT_FALSE(port_.holds_line());
+  port_.hold_line();
+  EXPECT_TRUE(port_.holds_line());
+  const tcp::socket client = connect();
+  ASSERT_TRUE(run_one(io_));
+  const tcp::socket another = connect();
+  ASSERT_TRUE(run_one(io_));
+  EXPECT_EQ(arrivals_.connections, 1U);
+  EXPECT_FALSE(port_.holds_line());
 }
 
 /// The linger time expires before the port is destroyed. The destructor can then no longer cancel the handler
@@ -108,7 +112,8 @@ TEST_F(TcpPortLingering, AClientThatHasClosedWhileThePortReadsNothingHasLeftAfte
 TEST(TcpPort, CanBeDestroyedAfterALingerTimeHasExpired) {
   boost::asio::io_context io;
   auto port = std::make_unique<TcpPort>(io, TcpAddress{"127.0.0.1", 0}, std::chrono::milliseconds(0));
-  port->start([](const std::uint8_t*, std::size_t, const Port::Positions&, Port::Sender) { return true; });
+  StoredArrivals arrivals;
+  port->start(arrivals);
   tcp::socket client = connected(io, *port);
   ASSERT_TRUE(run_one(io));  // accepts the client
   client.shutdown(tcp::socket::shutdown_send);

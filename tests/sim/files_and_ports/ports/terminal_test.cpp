@@ -28,7 +28,8 @@ TEST(Dcon, TypedCommandsGetRepliesAndAreLogged) {
 }
 
 TEST(Dcon, ThePseudoTerminalHasTheModeAndTheGroupOfTheOption) {
-  SimulatorProcess simulator({"EX9042D@05", "--pty-access", "664:" + std::to_string(getegid())});
+  SimulatorProcess simulator(
+      {"EX9042D@05", "--port", "pty:ex9000.tty,access=664:" + std::to_string(getegid())});
   struct stat status {};
   ASSERT_EQ(stat(simulator.tty().c_str(), &status), 0);
   EXPECT_EQ(status.st_mode & 07777U, 0664U);

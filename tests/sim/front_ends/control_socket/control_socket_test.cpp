@@ -37,7 +37,7 @@ class Simulator : public SimulatorProcess {
 
  private:
   static std::vector<std::string> arguments(std::vector<std::string> words) {
-    words.insert(words.end(), {"--control", "control", "--line", "instant"});
+    words.insert(words.end(), {"--control", "control", "--timing", "instant"});
     return words;
   }
 };
@@ -58,7 +58,7 @@ void expect_refused(const std::string& path, const Directory& directory, int sta
   const Finished finished = finish({"EX9042D,eeprom=image", "--control", path}, directory.path());
   EXPECT_EQ(finished.status, status) << path;
   EXPECT_EQ(finished.output, "");
-  EXPECT_NE(finished.error.find("--control " + path), std::string::npos) << finished.error;
+  EXPECT_NE(finished.error.find("--control: " + path), std::string::npos) << finished.error;
   EXPECT_EQ(std::count(finished.error.begin(), finished.error.end(), '\n'), 1) << finished.error;
   EXPECT_EQ(directory.contents(), before) << path;
 }
@@ -357,7 +357,7 @@ TEST(ControlSocket, TheSocketOfAKilledProcessIsReplaced) {
   Simulator dead({"EX9055D"});
   EXPECT_EQ(dead.end(SIGKILL), 128 + SIGKILL);
   ASSERT_TRUE(fs::is_socket(dead.socket()));
-  SimulatorProcess heir({"EX9055D", "--pty", dead.tty(), "--control", dead.socket()});
+  SimulatorProcess heir({"EX9055D", "--port", "pty:" + dead.tty(), "--control", dead.socket()});
   EXPECT_EQ(ControlClient(dead.socket()).ask("1 led"), "ok on");
   EXPECT_EQ(heir.end(SIGTERM), 0);
   EXPECT_TRUE(fs::is_empty(dead.directory()));

@@ -31,7 +31,7 @@ Buffer operator+(Buffer first, const Buffer& second) {
 
 TEST(ModbusTcpProgram, AMasterReadsAModuleInRealTime) {
   for (const char* kind : {"paced", "instant"}) {
-    SimulatorProcess simulator({"EX9042D-M@01", "--modbus-tcp", "0", "--line", kind});
+    SimulatorProcess simulator({"EX9042D-M@01", "--port", "modbus-tcp:0", "--timing", kind});
     SocketClient master(simulator.tcp_port());
     for (int i = 0; i < 20; ++i) {
       master.send(kFirst);
@@ -44,7 +44,7 @@ TEST(ModbusTcpProgram, AMasterReadsAModuleInRealTime) {
 }
 
 TEST(ModbusTcpProgram, TheGreetingNamesThePortAndACommandThatReadsAModule) {
-  SimulatorProcess simulator({"EX9042D-M@01", "--modbus-tcp", "0"});
+  SimulatorProcess simulator({"EX9042D-M@01", "--port", "modbus-tcp:0"});
   const std::string port = std::to_string(simulator.tcp_port());
   EXPECT_NE(simulator.output().find("  Modbus TCP 127.0.0.1:" + port), std::string::npos)
       << simulator.output();
@@ -55,14 +55,15 @@ TEST(ModbusTcpProgram, TheGreetingNamesThePortAndACommandThatReadsAModule) {
 
 TEST(ModbusTcpProgram, TheGreetingWarnsIfTheGatewayReachesNoModule) {
   const std::string warning = "all modules speak ASCII, so each request over Modbus TCP gets exception 0A";
-  SimulatorProcess useless({"EX9042D@01", "EX9042D-M@02,protocol=ascii", "--modbus-tcp", "0"});
+  SimulatorProcess useless({"EX9042D@01", "EX9042D-M@02,protocol=ascii", "--port", "modbus-tcp:0"});
   EXPECT_NE(useless.output().find(warning), std::string::npos) << useless.output();
-  SimulatorProcess useful({"EX9042D@01", "EX9042D-M@02", "--modbus-tcp", "0"});
+  SimulatorProcess useful({"EX9042D@01", "EX9042D-M@02", "--port", "modbus-tcp:0"});
   EXPECT_EQ(useful.output().find(warning), std::string::npos) << useful.output();
 }
 
 TEST(ModbusTcpProgram, InSteppedTimeAQuietAdvanceEndsAfterTheRepliesToTheArrivedRequests) {
-  SimulatorProcess simulator({"EX9042D-M@01", "--modbus-tcp", "0", "--speed", "step", "--control", "ctl"});
+  SimulatorProcess simulator(
+      {"EX9042D-M@01", "--port", "modbus-tcp:0", "--speed", "step", "--control", "ctl"});
   ControlClient control(simulator.directory() + "/ctl");
   SocketClient master(simulator.tcp_port());
   master.send(kFirst);
@@ -74,7 +75,7 @@ TEST(ModbusTcpProgram, InSteppedTimeAQuietAdvanceEndsAfterTheRepliesToTheArrived
 }
 
 TEST(ModbusTcpProgram, TheBytesOfARawClientThatHasLeftDoNotOccupyTheLine) {
-  SimulatorProcess simulator({"EX9042D-M@01", "--tcp", "0", "--modbus-tcp", "0"});
+  SimulatorProcess simulator({"EX9042D-M@01", "--port", "tcp:0", "--port", "modbus-tcp:0"});
   SocketClient master(simulator.tcp_port(1));
   {
     SocketClient raw(simulator.tcp_port(0));
@@ -90,7 +91,7 @@ TEST(ModbusTcpProgram, TheBytesOfARawClientThatHasLeftDoNotOccupyTheLine) {
 
 TEST(ModbusTcpProgram, TheTimeoutOfTheGatewayCanBeSet) {
   SimulatorProcess simulator(
-      {"EX9042D-M@01", "--modbus-tcp", "0", "--modbus-timeout", "2s", "--speed", "step", "--control", "ctl"});
+      {"EX9042D-M@01", "--port", "modbus-tcp:0,timeout=2s", "--speed", "step", "--control", "ctl"});
   ControlClient control(simulator.directory() + "/ctl");
   SocketClient master(simulator.tcp_port());
   master.send(kToNobody);
@@ -99,7 +100,8 @@ TEST(ModbusTcpProgram, TheTimeoutOfTheGatewayCanBeSet) {
 }
 
 TEST(ModbusTcpProgram, InSteppedTimeAnAdvanceCountsBytesThatArriveWhileRequestsWait) {
-  SimulatorProcess simulator({"EX9042D-M@01", "--modbus-tcp", "0", "--speed", "step", "--control", "ctl"});
+  SimulatorProcess simulator(
+      {"EX9042D-M@01", "--port", "modbus-tcp:0", "--speed", "step", "--control", "ctl"});
   ControlClient control(simulator.directory() + "/ctl");
   SocketClient master(simulator.tcp_port());
   constexpr std::size_t kMany = 1000;
@@ -123,7 +125,7 @@ TEST(ModbusTcpProgram, InSteppedTimeTheSameCommandsGiveTheSameLog) {
   std::vector<std::string> runs;
   for (int run = 0; run < 2; ++run) {
     SimulatorProcess simulator(
-        {"EX9042D-M@01", "--modbus-tcp", "0", "--speed", "step", "--control", "ctl", "--log"});
+        {"EX9042D-M@01", "--port", "modbus-tcp:0", "--speed", "step", "--control", "ctl", "--log"});
     ControlClient control(simulator.directory() + "/ctl");
     SocketClient master(simulator.tcp_port());
     for (int i = 0; i < 3; ++i) {
@@ -143,8 +145,8 @@ TEST(ModbusTcpProgram, EachLineOfABusFileCanHaveAGateway) {
   Directory directory;
   const std::string file = directory.path() + "/bus.json";
   write_file(file, R"({"lines": [
-    {"name": "a", "modbus-tcp": 0, "modules": [{"model": "EX9042D-M", "address": "01"}]},
-    {"name": "b", "modbus-tcp": "localhost:0", "modules": [{"model": "EX9042D-M", "address": "09"}]}]})");
+    {"name": "a", "port": "modbus-tcp:0", "modules": [{"model": "EX9042D-M", "address": "01"}]},
+    {"name": "b", "port": "modbus-tcp:localhost:0", "modules": [{"model": "EX9042D-M", "address": "09"}]}]})");
   SimulatorProcess simulator({file});
   SocketClient first(simulator.tcp_port(0));
   SocketClient second(simulator.tcp_port(1));

@@ -13,6 +13,7 @@
 
 #include "sim/front_ends/modbus_tcp/mbap.hpp"
 #include "sim/notation/module_notation.hpp"
+#include "tests/support/stored_arrivals.hpp"
 
 namespace ex9000::sim {
 namespace {
@@ -32,17 +33,13 @@ class ModbusTcpServerTest : public testing::Test {
  protected:
   ModbusTcpServerTest() {
     line_.come_up();
-    server_.start([this](std::size_t size, std::function<void()> process) {
-      arrived_ += size;
-      arrivals_.push_back(std::move(process));
-      return !full_;
-    });
+    server_.start(arrivals_);
   }
 
   /// Connects a client. `buffer` limits the bytes that the system stores for the client in each direction; 0:
   /// the usual limit.
   tcp::socket connect(int buffer = 0) {
-    const std::string address = server_.address();
+    const std::string address = server_.summary().address;
     const auto number = static_cast<std::uint16_t>(std::stoul(address.substr(address.rfind(':') + 1)));
     tcp::socket socket(io_, tcp::v4());
     if (buffer != 0) {
@@ -59,15 +56,16 @@ class ModbusTcpServerTest : public testing::Test {
   /// Lets the server read until `bytes` bytes have arrived in total. Throws std::runtime_error if the server
   /// does nothing for 60 s, because only a server that hangs takes so long.
   void wait_for_arrival(std::size_t bytes) {
-    while (arrived_ < bytes) {
+    while (arrivals_.requested < bytes) {
       if (io_.run_one_for(std::chrono::seconds(60)) == 0) {
-        throw std::runtime_error("the server has read only " + std::to_string(arrived_) + " bytes");
+        throw std::runtime_error("the server has read only " + std::to_string(arrivals_.requested) +
+                                 " bytes");
       }
     }
   }
-  /// Calls every `process` function in `arrivals_`, and then runs the line for `time`.
+  /// Calls every `process` function that has arrived, and then runs the line for `time`.
   void pass(VirtualTime time = std::chrono::seconds(1)) {
-    for (const auto& process : std::exchange(arrivals_, {})) {
+    for (const auto& process : std::exchange(arrivals_.processes, {})) {
       process();
     }
     line_.bus().run_for(time);
@@ -91,9 +89,7 @@ class ModbusTcpServerTest : public testing::Test {
   Line line_{
       {parse_module_spec("EX9042D-M@01")}, kInstant, [](std::uint8_t /*byte*/, ByteStatus /*status*/) {}};
   boost::asio::io_context io_;
-  std::size_t arrived_ = 0;
-  bool full_ = false;
-  std::vector<std::function<void()>> arrivals_;
+  StoredArrivals arrivals_;
   std::vector<std::string> notes_;
   ModbusTcpServer server_{io_, line_, {"127.0.0.1", 0}, kGatewayTimeout, [this](const std::string& text) {
                             notes_.push_back(text);
@@ -141,7 +137,7 @@ TEST_F(ModbusTcpServerTest, AWrongHeaderEndsTheConnectionAfterTheRepliesToEarlie
 TEST_F(ModbusTcpServerTest, LengthsOutOfRangeEndTheConnection) {
   for (const unsigned length : {0U, 1U, 255U, 256U, 0xFFFFU}) {
     tcp::socket client = connect();
-    const std::size_t before = arrived_;
+    const std::size_t before = arrivals_.requested;
     send(client, {0x00, 0x01, 0x00, 0x00, static_cast<std::uint8_t>(length >> 8U),
                   static_cast<std::uint8_t>(length), 0x01});
     wait_for_arrival(before + 7);
@@ -205,13 +201,13 @@ TEST_F(ModbusTcpServerTest, AClientBeyondTheLimitIsDisconnected) {
 
 TEST_F(ModbusTcpServerTest, TheServerDoesNotReadWhileTheLineAcceptsNoMoreBytes) {
   tcp::socket client = connect();
-  full_ = true;
+  arrivals_.pauses = true;
   send(client, request(1));
   wait_for_arrival(12);
   send(client, request(2));
   io_.poll();
-  EXPECT_EQ(arrived_, 12U);
-  full_ = false;
+  EXPECT_EQ(arrivals_.requested, 12U);
+  arrivals_.pauses = false;
   server_.resume();
   wait_for_arrival(24);
   pass();
@@ -226,13 +222,13 @@ TEST_F(ModbusTcpServerTest, WhileTheLineAcceptsNoMoreBytesTheServerDoesNotReadFr
   send(second, request(2));
   wait_for_arrival(24);  // both clients are connected, and the server waits for their next bytes
   io_.poll();
-  full_ = true;
+  arrivals_.pauses = true;
   send(first, request(3));
   wait_for_arrival(36);
   send(second, request(4));
   io_.poll();
-  EXPECT_EQ(arrived_, 36U);
-  full_ = false;
+  EXPECT_EQ(arrivals_.requested, 36U);
+  arrivals_.pauses = false;
   server_.resume();
   wait_for_arrival(48);
 }
@@ -240,7 +236,7 @@ TEST_F(ModbusTcpServerTest, WhileTheLineAcceptsNoMoreBytesTheServerDoesNotReadFr
 TEST_F(ModbusTcpServerTest, WaitingBytesAreReadWithoutTheIoContext) {
   tcp::socket client = connect();
   send(client, request(1));
-  while (arrived_ < 12) {  // TCP may deliver the bytes later
+  while (arrivals_.requested < 12) {  // TCP may deliver the bytes later
     server_.read_waiting();
   }
   pass();
@@ -254,11 +250,11 @@ TEST_F(ModbusTcpServerTest, AClientThatReadsLateGetsAllReplies) {
   tcp::socket client = connect(8192);
   client.non_blocking(true);
   std::size_t sent = 0;
-  std::size_t arrived_before = 0;
+  std::size_t requested_before = 0;
   boost::system::error_code error;
   do {
     ASSERT_LT(sent, kFarTooMuch) << "the server continues to read although the client does not read";
-    arrived_before = arrived_;
+    requested_before = arrivals_.requested;
     Buffer requests;
     for (std::size_t i = sent / kRequest; i < sent / kRequest + 300; ++i) {
       const Buffer one = mbap_bytes({static_cast<std::uint16_t>(i), kNoUnit, kReadOutputs});
@@ -269,7 +265,7 @@ TEST_F(ModbusTcpServerTest, AClientThatReadsLateGetsAllReplies) {
         client.write_some(boost::asio::buffer(requests.data() + skipped, requests.size() - skipped), error);
     io_.poll();
     pass(VirtualTime(0));
-  } while (!error || arrived_ != arrived_before);
+  } while (!error || arrivals_.requested != requested_before);
   client.set_option(boost::asio::socket_base::receive_buffer_size(1'000'000));
   MbapReader replies;
   for (std::size_t received = 0; received < sent / kRequest;) {

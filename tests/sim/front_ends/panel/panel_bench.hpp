@@ -23,10 +23,10 @@ class PanelBench : public ModuleBench {
                [this](std::size_t /*line*/, RequestQueue::Request request) {
                  line().requests().ask(std::move(request));
                },
-               [](const std::function<void()>& action) { action(); }, 1, [this] { return wall_clock_; }) {
+               1, [this] { return wall_clock_; }) {
     LineSummary introduced;
     introduced.name = "hall";
-    introduced.tcp = "127.0.0.1:5020";
+    introduced.ports.push_back({"tcp", "127.0.0.1:5020", ""});
     panel_.add_line(introduced, line(), [this] { return now(); });
     frames_.add_receiver([this](const Frame& frame) { panel_.hear(0, frame); });
     line().bus().observe(frames_);

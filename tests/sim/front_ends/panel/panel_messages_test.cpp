@@ -129,8 +129,7 @@ class TwoLines {
   std::vector<std::unique_ptr<Line>> lines_ = make_lines();
   Control control_{{{"hall", *lines_[0]}, {"yard", *lines_[1]}}};
   Panel panel_{[this](const std::string& command) { return control_.carry_out(command); },
-               [](std::size_t /*line*/, const RequestQueue::Request& /*request*/) {},
-               [](const std::function<void()>& action) { action(); }, 1,
+               [](std::size_t /*line*/, const RequestQueue::Request& /*request*/) {}, 1,
                [] { return std::chrono::steady_clock::time_point(); }};
   std::unique_ptr<PanelViewer> viewer_;
   Message hello_;
@@ -324,7 +323,7 @@ TEST(PanelMessages, AnErrorOfAnUndoCommandDoesNotEndTheProcess) {
         }
         return {"ok", false};
       },
-      nullptr, [](const std::function<void()>& action) { action(); }, 1);
+      nullptr, 1);
   auto leaves = panel.viewer();
   auto stays = panel.viewer();
   for (PanelViewer* page : {leaves.get(), stays.get()}) {

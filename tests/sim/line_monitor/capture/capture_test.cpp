@@ -62,8 +62,8 @@ class Captured {
 
  private:
   static std::vector<std::string> with_capture(std::vector<std::string> arguments) {
-    arguments.insert(arguments.end(),
-                     {"--tcp", "0", "--capture", "line.pcapng", "--speed", "step", "--control", "control"});
+    arguments.insert(arguments.end(), {"--port", "tcp:0", "--capture", "line.pcapng", "--speed", "step",
+                                       "--control", "control"});
     return arguments;
   }
 
@@ -222,8 +222,8 @@ TEST(Capture, NoiseGetsAComment) {
 TEST(Capture, EachBusLineOfABusFileIsAnInterface) {
   const Directory directory;
   write_file(directory / "bus.json", R"({"capture": "bus.pcapng", "log": "json", "lines": [
-    {"name": "hall", "pty": "hall.tty", "modules": [{"model": "EX9042D", "address": "01"}]},
-    {"name": "yard", "pty": "yard.tty", "modules": [{"model": "EX9052D", "address": "02"}]}]})");
+    {"name": "hall", "port": "pty:hall.tty", "modules": [{"model": "EX9042D", "address": "01"}]},
+    {"name": "yard", "port": "pty:yard.tty", "modules": [{"model": "EX9052D", "address": "02"}]}]})");
   ChildProcess simulator({simulator_path(), "bus.json"}, directory.path(), ChildProcess::Errors::WithOutput);
   ASSERT_TRUE(simulator.wait_for("press Ctrl-C to end"));
   Terminal yard(directory / "yard.tty", 9600);
@@ -282,7 +282,7 @@ TEST(Capture, TheFramesAndTheLogAreTheSameAtThreeSpeeds) {
   const Directory directory;
   // A foreign frame begins every second. The end of the run cuts off the last one.
   write_file(directory / "bus.json", R"({"log": "json", "lines": [{"name": "hall",
-    "faults": ["foreign-traffic 0101000000083DCC every 1s", "gone at 5.2s for 1s"],
+    "fault": ["foreign-traffic 0101000000083DCC every 1s", "gone at 5.2s for 1s"],
     "modules": [{"model": "EX9042D-M"}]}]})");
   std::vector<std::string> logs;
   std::vector<std::vector<Packet>> captures;
@@ -361,7 +361,7 @@ TEST(Capture, TimestampsAreWithinTheRunAndDifferByTheLineTimeBetweenTheFrames) {
     return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
   };
   const double before = wall();
-  SimulatorProcess simulator({"EX9042D-M@01", "--tcp", "0", "--capture", "line.pcapng"});
+  SimulatorProcess simulator({"EX9042D-M@01", "--port", "tcp:0", "--capture", "line.pcapng"});
   SocketClient client(simulator.tcp_port());
   client.send(with_crc({1, 1, 0, 0, 0, 1}));
   EXPECT_EQ(client.receive(6).size(), 6U);
@@ -401,7 +401,7 @@ TEST(Capture, AWriteErrorEndsTheRunWithAOneLineErrorAndStatus1) {
   const Directory directory;
   const Finished finished = run({simulator_path(), "EX9042D", "--capture", "/dev/full"}, directory.path());
   EXPECT_EQ(finished.status, 1);
-  EXPECT_EQ(finished.error, "ex9000-sim: --capture /dev/full: cannot be written: No space left on device\n");
+  EXPECT_EQ(finished.error, "ex9000-sim: --capture: /dev/full: cannot be written: No space left on device\n");
 }
 
 TEST(Capture, AWriteErrorLeavesNoCreatedFilesBehind) {
@@ -426,7 +426,7 @@ TEST(Capture, AWriteErrorLeavesNoCreatedFilesBehind) {
 TEST(Capture, DoesNotOverwriteTheBusFileTheControlSocketThePseudoTerminalOrTheEepromFile) {
   const Directory directory;
   const std::string bus = R"({"capture": "link", "control": "ctl", "lines": [
-    {"pty": "tty", "modules": [{"model": "EX9042D", "eeprom": "n.bin"}]}]})";
+    {"port": "pty:tty", "modules": [{"model": "EX9042D", "eeprom": "n.bin"}]}]})";
   write_file(directory / "bus.json", bus);
   const std::vector<std::pair<std::string, std::string>> cases{{"bus.json", "the bus file bus.json"},
                                                                {"ctl", "the control socket ctl"},

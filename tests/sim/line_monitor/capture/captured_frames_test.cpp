@@ -27,7 +27,7 @@ sim::Frame frame_of(std::size_t station, const Bytes& bytes) {
 
 TEST(Capture, EachLineIsAnInterfaceWithItsOwnRequests) {
   const Directory directory;
-  sim::Capture capture(directory / "lines.pcapng", "--capture ");
+  sim::Capture capture(directory / "lines.pcapng", "--capture: ");
   capture.begin();
   const std::size_t pumps = capture.add_line("pumps", 1, std::chrono::seconds(1));
   const std::size_t doors = capture.add_line("doors", 1, std::chrono::seconds(2));
@@ -71,7 +71,7 @@ Packet of_a_spoiled(const Bytes& request, OneHit hit) {
   const Directory directory;
   sim::Line line({sim::parse_module_spec("EX9042D-M@01")}, sim::kPaced, [](std::uint8_t, ByteStatus) {});
   line.come_up();
-  sim::Capture capture(directory / "line.pcapng", "--capture ");
+  sim::Capture capture(directory / "line.pcapng", "--capture: ");
   sim::FrameWatch frames([&line] { return line.master().mode(); });
   line.bus().observe(frames);
   line.bus().disturb(hit);

@@ -1,4 +1,4 @@
-// Tests a line on which bytes take almost no time: `--line instant`.
+// Tests a line on which bytes take almost no time: `--timing instant`.
 #include <gtest/gtest.h>
 
 #include <string>

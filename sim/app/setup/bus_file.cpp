@@ -1,0 +1,197 @@
+#include "sim/app/setup/bus_file.hpp"
+
+#include <yaml-cpp/yaml.h>
+
+#include <algorithm>
+#include <map>
+#include <sstream>
+#include <vector>
+
+#include "sim/files_and_ports/files/regular_file.hpp"
+#include "sim/notation/module_notation.hpp"
+#include "sim/notation/module_settings.hpp"
+#include "sim/text/fail.hpp"
+#include "sim/text/words.hpp"
+
+namespace ex9000::sim {
+
+namespace {
+
+using YAML::Node;
+
+class Reader {
+ public:
+  explicit Reader(const std::string& path) : path_(path) {}
+
+  [[nodiscard]] Setup bus(const Node& root) const {
+    Setup setup;
+    setup.file = path_;
+    read(root, kRunSettings, setup, "lines",
+         [&](const Node& line) { setup.lines.push_back(read_line(line)); });
+    if (setup.lines.empty()) {
+      refuse(root, "lines: a bus file requires at least one line; 'ex9000-sim --example' prints an example");
+    }
+    return setup;
+  }
+
+ private:
+  [[nodiscard]] LineSetup read_line(const Node& node) const {
+    LineSetup line;
+    line.places["port"] = place(node) + "port: ";  // for a pseudo-terminal that the file does not name
+    read(node, kLineSettings, line, "modules",
+         [&](const Node& module) { line.modules.push_back(read_module(module)); });
+    if (line.modules.empty()) {
+      refuse(node, "modules: a line requires at least one module, for example EX9042D-M@01");
+    }
+    return line;
+  }
+
+  [[nodiscard]] ModuleSpec read_module(const Node& node) const {
+    if (node.IsScalar()) {
+      return with_place(place(node), [&] { return parse_module_spec(text_of(node)); });
+    }
+    ModuleSpec module;
+    const auto take_model = [&](const Node& model) {
+      module =
+          with_place(place(model) + "model: ", [&] { return factory_fresh(model_called(text_of(model))); });
+    };
+    read(node, kModuleSettings, module, "model", take_model);
+    if (module.model == nullptr) {
+      refuse(node, "model: is missing; expected a model's name, for example EX9042D-M");
+    }
+    with_place(place(node), [&] { check(module); });
+    return module;
+  }
+
+  /// Reads the settings of `object`, in the order of `settings`, because some depend on those before. Before
+  /// them, calls `take_part` with each element of the list `part`, or with its only value.
+  template <class Settings, class Object, class TakePart>
+  void read(const Node& node, const Settings& settings, Object& object, const std::string& part,
+            TakePart take_part) const {
+    std::map<std::string, Member> members = members_of(node);
+    const auto parts = members.find(part);
+    if (parts != members.end()) {
+      each_of(parts->second.value, take_part);
+      members.erase(parts);
+    }
+    for (const auto& setting : settings) {
+      const auto member = members.find(std::string(setting.name));
+      if (member == members.end()) {
+        continue;
+      }
+      const Node& values = member->second.value;
+      const auto take = [&](const Node& value) {
+        const bool is_element = values.IsSequence() && setting.form == Form::List;
+        const std::string where = place(is_element ? value : member->second.key) + member->first + ": ";
+        take_setting(setting, object, where,
+                     with_place(where, [&] { return value_of(value, setting.form); }));
+      };
+      if (setting.form == Form::List) {
+        each_of(values, take);
+      } else {
+        take(values);
+      }
+      members.erase(member);
+    }
+    if (!members.empty()) {
+      refuse(members.begin()->second.key,
+             members.begin()->first + ": unknown key; expected one of " + part + ", " + names_of(settings));
+    }
+  }
+
+  struct Member {
+    Node key;
+    Node value;
+  };
+
+  [[nodiscard]] std::map<std::string, Member> members_of(const Node& node) const {
+    if (!node.IsMap()) {
+      refuse(node, "expected keys with values, for example 'name: hall'");
+    }
+    std::map<std::string, Member> members;
+    for (const auto& member : node) {
+      const std::string key = with_place(place(member.first), [&] { return text_of(member.first); });
+      if (!members.emplace(key, Member{member.first, member.second}).second) {
+        refuse(member.first, key + ": is given twice; leave out one of them");
+      }
+    }
+    return members;
+  }
+
+  template <class Take>
+  static void each_of(const Node& node, Take take) {
+    if (node.IsSequence()) {
+      for (const Node& element : node) {
+        take(element);
+      }
+    } else {
+      take(node);
+    }
+  }
+
+  /// Rejects NUL, because the operating system would end a path there.
+  [[nodiscard]] static std::string text_of(const Node& node) {
+    if (!node.IsScalar()) {
+      fail(node.IsNull() ? "has no value; write one, or leave the key out" : "expected a single value");
+    }
+    if (node.Scalar().find('\0') != std::string::npos) {
+      fail("contains NUL; leave out \\0");
+    }
+    return node.Scalar();
+  }
+
+  [[nodiscard]] static std::string value_of(const Node& node, Form form) {
+    const std::string text = text_of(node);
+    const bool switches = form == Form::Flag || form == Form::Optional;
+    return switches && text == "true" ? "on" : switches && text == "false" ? "off" : text;
+  }
+
+  /// `FILE:LINE: `
+  [[nodiscard]] std::string place(const Node& node) const {
+    const YAML::Mark mark = node.Mark();
+    return path_ + ":" + (mark.is_null() ? "" : std::to_string(mark.line + 1) + ":") + " ";
+  }
+
+  [[noreturn]] void refuse(const Node& node, const std::string& what) const { fail(place(node) + what); }
+
+  const std::string& path_;
+};
+
+}  // namespace
+
+bool is_bus_file(const std::string& argument) {
+  const auto comma = argument.find(',');
+  const bool has_settings = comma != std::string::npos && argument.find('=', comma) != std::string::npos &&
+                            argument.find('/') > comma;
+  const auto ends_with = [&argument](const std::string& ending) {
+    return argument.size() > ending.size() &&
+           argument.compare(argument.size() - ending.size(), ending.size(), ending) == 0;
+  };
+  return !has_settings && (ends_with(".yaml") || ends_with(".yml") || ends_with(".json"));
+}
+
+Setup parse_bus_file(const std::string& path, const std::string& text) {
+  std::vector<Node> documents;
+  try {
+    documents = YAML::LoadAll(text);
+  } catch (const YAML::Exception& error) {
+    fail(path + ":" + std::to_string(error.mark.line + 1) + ": " + error.msg);
+  }
+  if (documents.size() != 1) {
+    fail(path + ": has " + std::to_string(documents.size()) +
+         " documents; expected one; 'ex9000-sim --example' prints a bus file");
+  }
+  return Reader(path).bus(documents.front());
+}
+
+Setup read_bus_file(const std::string& path) {
+  const std::ifstream file = open_text_file(path);
+  if (!file.is_open()) {
+    fail(path + ": is not a file that can be read; 'ex9000-sim --example' prints a bus file");
+  }
+  std::ostringstream text;
+  text << file.rdbuf();
+  return parse_bus_file(path, text.str());
+}
+
+}  // namespace ex9000::sim

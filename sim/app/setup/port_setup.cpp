@@ -1,0 +1,138 @@
+#include "sim/app/setup/port_setup.hpp"
+
+#include <iomanip>
+#include <set>
+#include <sstream>
+#include <string_view>
+
+#include "sim/text/durations.hpp"
+#include "sim/text/fail.hpp"
+#include "sim/text/words.hpp"
+
+namespace ex9000::sim {
+
+namespace {
+
+using Kind = PortSetup::Kind;
+
+void take_path(PortSetup& port, const std::string& where) {
+  if (where.empty()) {
+    fail("the path is missing");
+  }
+  port.path = where;
+}
+void take_address(PortSetup& port, const std::string& where) {
+  port.address = parse_listening_address(where);
+}
+
+struct KindRow {
+  std::string_view name;
+  std::string_view where;
+  std::string_view does;
+  Kind kind;
+  void (*take)(PortSetup& port, const std::string& where);
+};
+
+constexpr KindRow kKinds[] = {
+    {"pty", "LINK", "a pseudo-terminal, with a link to it at this path", Kind::Pty, take_path},
+    {"tcp", "[HOST:]PORT", "the bytes of the line over TCP: Modbus RTU and DCON", Kind::Tcp, take_address},
+    {"modbus-tcp", "[HOST:]PORT", "a Modbus TCP gateway to the modules that speak Modbus", Kind::ModbusTcp,
+     take_address},
+    {"serial", "DEVICE", "a real line at this serial port", Kind::Serial, take_path},
+};
+
+struct OptionRow {
+  std::string_view name;
+  std::string_view value;  ///< empty: the option has no value
+  std::string_view does;
+  bool (*fits)(Kind kind);
+  void (*take)(PortSetup& port, const std::string& value);
+};
+
+constexpr OptionRow kOptions[] = {
+    {"access", "MODE[:GROUP]", "who may open the pseudo-terminal, for example 660:dialout",
+     [](Kind kind) { return kind == Kind::Pty; },
+     [](PortSetup& port, const std::string& value) { port.access = parse_pty_access(value); }},
+    {"timeout", "TIME",
+     "how long the gateway waits for a reply, besides the line's own time (default: 200ms)",
+     [](Kind kind) { return kind == Kind::ModbusTcp; },
+     [](PortSetup& port, const std::string& value) { port.timeout = parse_time(value); }},
+    {"echo", "", "the adapter of the serial port receives what it sends",
+     [](Kind kind) { return kind == Kind::Serial; },
+     [](PortSetup& port, const std::string& /*value*/) { port.echo = true; }},
+    {"wait", "", "line time begins when a master has connected",
+     [](Kind kind) { return kind != Kind::Serial; },
+     [](PortSetup& port, const std::string& /*value*/) { port.wait = true; }},
+};
+
+void take_option(PortSetup& port, const std::string& text) {
+  const auto equals = text.find('=');
+  const std::string name = text.substr(0, equals);
+  for (const OptionRow& row : kOptions) {
+    if (row.name == name && row.fits(port.kind)) {
+      if (row.value.empty() != (equals == std::string::npos)) {
+        fail("expected " + name + (row.value.empty() ? "" : "=" + std::string(row.value)));
+      }
+      row.take(port, equals == std::string::npos ? "" : text.substr(equals + 1));
+      return;
+    }
+  }
+  Words known;
+  for (const OptionRow& row : kOptions) {
+    if (row.fits(port.kind)) {
+      known.push_back(std::string(row.name) + (row.value.empty() ? "" : "=" + std::string(row.value)));
+    }
+  }
+  fail("unknown option; expected " + joined(known, " or "));
+}
+
+}  // namespace
+
+PortSetup parse_port(const std::string& text) {
+  const auto colon = text.find(':');
+  const std::string name = text.substr(0, colon);
+  for (const KindRow& row : kKinds) {
+    if (row.name != name || colon == std::string::npos) {
+      continue;
+    }
+    PortSetup port;
+    port.kind = row.kind;
+    port.text = text.substr(0, text.find(','));
+    with_place(port.text + ": ", [&] { row.take(port, port.text.substr(colon + 1)); });
+    std::istringstream options(text.substr(port.text.size()));
+    std::string option;
+    std::getline(options, option, ',');
+    std::set<std::string> given;
+    while (std::getline(options, option, ',')) {
+      with_place(option + ": ", [&] {
+        if (!given.insert(option.substr(0, option.find('='))).second) {
+          fail("is given twice; leave out one of them");
+        }
+        take_option(port, option);
+      });
+    }
+    return port;
+  }
+  Words shapes;
+  for (const KindRow& row : kKinds) {
+    shapes.push_back(std::string(row.name) + ":" + std::string(row.where));
+  }
+  fail("'" + text + "': expected " + joined(shapes, ", "));
+}
+
+std::string port_help() {
+  constexpr int kColumn = 24;
+  std::ostringstream text;
+  const auto line = [&text](const std::string& shape, std::string_view does) {
+    text << "  " << std::left << std::setw(kColumn) << shape << does << "\n";
+  };
+  for (const KindRow& row : kKinds) {
+    line(std::string(row.name) + ":" + std::string(row.where), row.does);
+  }
+  for (const OptionRow& row : kOptions) {
+    line("," + std::string(row.name) + (row.value.empty() ? "" : "=" + std::string(row.value)), row.does);
+  }
+  return text.str();
+}
+
+}  // namespace ex9000::sim
