@@ -14,8 +14,8 @@
 
 #include "sim/files_and_ports/ports/listening.hpp"
 #include "sim/front_ends/panel/loopback.hpp"
-#include "sim/front_ends/panel/page_files.hpp"
 #include "sim/front_ends/panel/panel.hpp"
+#include "sim/text/embedded_files.hpp"
 #include "sim/text/fail.hpp"
 
 namespace ex9000::sim {
@@ -55,6 +55,23 @@ constexpr std::string_view kTooManyRequestsResponse =
 std::string_view view_of(beast::string_view text) { return {text.data(), text.size()}; }
 
 using Request = http::request<http::empty_body>;
+
+/// Returns the file for the path of a request; null if there is no such file.
+const EmbeddedFile* page_file(std::string_view target) {
+  for (const EmbeddedFile& file : page_files()) {
+    if (target == "/" + std::string(file.name) || (target == "/" && file.name == "index.html")) {
+      return &file;
+    }
+  }
+  return nullptr;
+}
+
+std::string_view type_of(std::string_view file) {
+  const std::string_view ending = file.substr(file.find('.') + 1);
+  return ending == "html"  ? "text/html; charset=utf-8"
+         : ending == "css" ? "text/css; charset=utf-8"
+                           : "text/javascript; charset=utf-8";
+}
 
 }  // namespace
 
@@ -193,8 +210,8 @@ class PanelServer::Listener::Client : public std::enable_shared_from_this<Client
       accept_page(request);
     } else if (request.target() == "/models.json") {
       answer(http::status::ok, "application/json", listener_->models_);
-    } else if (const PageFile* file = page_file(view_of(request.target()))) {
-      answer(http::status::ok, file->type, file->content);
+    } else if (const EmbeddedFile* file = page_file(view_of(request.target()))) {
+      answer(http::status::ok, type_of(file->name), file->content);
     } else {
       answer(http::status::not_found, "text/plain", "no such page\n");
     }
