@@ -154,7 +154,8 @@ class Program:
         for unit in reached:
             headers = {file.removesuffix(".hpp") for file in unit.files}
             for each in known:
-                if each not in reached and any(file.removesuffix(".cpp") in headers for file in each.sources):
+                if each not in reached and any(HEADER_OF.get(file, file.removesuffix(".cpp")) in headers
+                                               for file in each.sources):
                     reached.append(each)
         return reached
 
@@ -167,6 +168,10 @@ PROCESS = set(
 )
 # The sources in PROCESS that only the whole program links.
 WHOLE = {"main", "panel_server", "program", "running_program"}
+# The generated source with the templates of the exports, and the header that declares its function. The preset
+# host-debug must have been built.
+TEMPLATES = "build/host-debug/sim/export_templates.cpp"
+HEADER_OF = {TEMPLATES: "sim/text/embedded_files"}
 # Sources that are compiled separately, because they take long to compile and few tests reach them. sim/CMakeLists.txt
 # lists more such sources after ON_THEIR_OWN.
 ALONE = {"line_record", "play_record"}
@@ -198,6 +203,7 @@ def folders():
         units += [Unit(f"{name}-{stem_of(each)}", (f"sim/{folder}/{each}",)) for each in alone]
         libraries = tuple(re.findall(r"ex9000_(\w+)", parts.get("PUBLIC", "")))
         found[name] = Folder(tuple(units), libraries)
+    found["export_templates"] = Folder((Unit("export_templates", (TEMPLATES,)),), ())
     return found
 
 

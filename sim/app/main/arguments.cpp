@@ -6,9 +6,9 @@
 #include <tuple>
 #include <utility>
 
+#include "sim/app/exports/describe.hpp"
 #include "sim/app/main/help.hpp"
 #include "sim/app/main/options.hpp"
-#include "sim/app/model_exports/describe.hpp"
 #include "sim/app/setup/bus_file.hpp"
 #include "sim/notation/module_notation.hpp"
 #include "sim/text/fail.hpp"
@@ -117,21 +117,21 @@ play::Task task_of(const PlayTexts& texts) {
 CLI::App* add_describe(CLI::App& app, DescribeTexts& texts) {
   CLI::App* const describe = app.add_subcommand(
       "describe", "print the commands and registers of one model or of all models, and exit");
+  describe->footer(
+      "\nFormats. Those with MODEL require a model that speaks Modbus; the others describe one model or all "
+      "models:\n" +
+      format_help());
   describe->add_option("MODEL", texts.model,
                        "a name from --models, in upper or lower case, with or without EX");
-  describe
-      ->add_option("--format", texts.format,
-                   "set the format: markdown (default), json and csv describe one model or all models; each "
-                   "other format is for the tool with the same name and requires a model that speaks Modbus")
-      ->type_name(describe_formats());
+  describe->add_option("--format", texts.format, "set the format (default: markdown)")
+      ->type_name(format_names());
   describe
       ->add_option("--address", texts.address,
-                   "name the module's Modbus address in hex, for home-assistant and node-red (default: 01)")
+                   "name the module's Modbus address in hex, for formats that need it (default: 01)")
       ->type_name("HH");
   describe
-      ->add_option(
-          "--tcp", texts.tcp,
-          "name the TCP port of the simulator, for home-assistant and node-red (default: 127.0.0.1:5020)")
+      ->add_option("--tcp", texts.tcp,
+                   "name the TCP port of the simulator, for formats that need it (default: 127.0.0.1:5020)")
       ->type_name("HOST:PORT");
   describe
       ->add_option("--modbus-tcp", texts.modbus_tcp,

@@ -10,10 +10,10 @@
 #include <stdexcept>
 #include <string>
 
+#include "sim/app/exports/description.hpp"
 #include "sim/app/main/arguments.hpp"
 #include "sim/app/main/play_record.hpp"
 #include "sim/app/main/standard_stream.hpp"
-#include "sim/app/model_exports/formats.hpp"
 #include "sim/app/play/play.hpp"
 #include "sim/app/running_program/running_program.hpp"
 #include "sim/app/running_program/stop_signals.hpp"
@@ -44,7 +44,7 @@ void run(const Setup& setup) {
   add_stop_signals(signals);
   signals.async_wait([&io](const boost::system::error_code& /*error*/, int /*signal*/) { io.stop(); });
   const auto greet = [&errors](const std::string& text) { errors.write(text + "\n"); };
-  RunningProgram running(io, setup, print_line, greet, setup.panel ? json_of(all_models()) : "");
+  RunningProgram running(io, setup, print_line, greet, setup.panel ? description(all_models()).dump() : "");
   running.start();
   if (setup.speed.max()) {
     running.run_unpaced();

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "sim/app/exports/describe.hpp"
 #include "sim/app/main/arguments.hpp"
-#include "sim/app/model_exports/formats.hpp"
 #include "sim/app/setup/bus_file.hpp"
 #include "sim/front_ends/control_socket/control.hpp"
 #include "sim/notation/fault_notation.hpp"
@@ -100,12 +100,12 @@ TEST(Arguments, TheListOfModelsHasOneLineForEachModelAndMentionsModbusRtu) {
 }
 
 TEST(Arguments, DescribePrintsAllModelsInMarkdownByDefault) {
-  EXPECT_EQ(printed({"describe"}), markdown_of(all_models()));
-  EXPECT_EQ(printed({"describe", "--format", "markdown"}), markdown_of(all_models()));
+  EXPECT_EQ(printed({"describe"}), describe({}));
+  EXPECT_EQ(printed({"describe", "--format", "markdown"}), describe({}));
 }
 
 TEST(Arguments, DescribeAcceptsAModelNameInAnyCaseWithOrWithoutEx) {
-  const std::string text = markdown_of({find_model("EX9052D-M")});
+  const std::string text = describe({"EX9052D-M"});
   for (const char* name : {"EX9052D-M", "ex9052d-m", "9052D-M", "9052d-m"}) {
     EXPECT_EQ(printed({"describe", name}), text) << name;
   }
@@ -141,8 +141,7 @@ TEST(Arguments, HelpListsEachOptionWithItsValue) {
 
 TEST(Arguments, DescribeHasItsOwnHelp) {
   const std::string text = printed({"describe", "--help"});
-  for (const char* word : {"MODEL", "--format", "markdown|json|csv|home-assistant|node-red|wb-mqtt-serial",
-                           "--address", "--tcp", "127.0.0.1:5020"}) {
+  for (const char* word : {"MODEL", "--format", "csv|esphome|", "--address", "--tcp", "127.0.0.1:5020"}) {
     EXPECT_NE(text.find(word), std::string::npos) << word;
   }
   EXPECT_EQ(text.find("--baud"), std::string::npos);

@@ -1,9 +1,9 @@
 // Tests which models each format describes, and which arguments are rejected.
-#include "sim/app/model_exports/describe.hpp"
+#include "sim/app/exports/describe.hpp"
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
+#include <sstream>
 #include <stdexcept>
 
 #include "firmware/model/model.hpp"
@@ -11,7 +11,11 @@
 namespace ex9000::sim {
 namespace {
 
-std::string described(const char* model, const char* format) {
+constexpr const char* kForAnyModel[] = {"csv", "json", "markdown"};
+constexpr const char* kWithPort[] = {"home-assistant", "node-red"};
+constexpr const char* kForTools[] = {"esphome", "home-assistant", "node-red", "wb-mqtt-serial"};
+
+std::string described(const std::string& model, const char* format) {
   DescribeTexts texts;
   texts.model = model;
   texts.format = format;
@@ -31,24 +35,37 @@ void expect_refused(const DescribeTexts& texts, const std::string& wrong, const 
   }
 }
 
-TEST(Describe, MarkdownJsonAndCsvDescribeOneModelOrAll) {
-  for (const char* format : {"markdown", "json", "csv"}) {
+TEST(Describe, FormatsForAnyModelDescribeOneModelOrAll) {
+  for (const char* format : kForAnyModel) {
     const std::string all = described("", format);
     for (const Model& model : kModels) {
       const std::string name(model.designation);
       EXPECT_NE(all.find(name), std::string::npos) << format << " of " << name;
-      EXPECT_NE(described(name.c_str(), format).find(name), std::string::npos) << format << " of " << name;
+      EXPECT_NE(described(name, format).find(name), std::string::npos) << format << " of " << name;
     }
     EXPECT_EQ(described("EX9042D", format).find("EX9055D"), std::string::npos);
   }
 }
 
-TEST(Describe, HomeAssistantNodeRedAndWbMqttSerialRequireAModelWithModbus) {
-  for (const char* format : {"home-assistant", "node-red", "wb-mqtt-serial"}) {
+TEST(Describe, TheTemplateOfEachFormatCanBeFilledInForEachModelWithModbus) {
+  std::istringstream formats(format_names());
+  for (std::string format; std::getline(formats, format, '|');) {
+    for (const Model& model : kModels) {
+      if (model.speaks_modbus()) {
+        const std::string text = described(std::string(model.designation), format.c_str());
+        EXPECT_EQ(text.find("{{"), std::string::npos) << format;
+        EXPECT_EQ(text.back(), '\n') << format;
+      }
+    }
+  }
+}
+
+TEST(Describe, FormatsForToolsRequireAModelWithModbus) {
+  for (const char* format : kForTools) {
     for (const Model& model : kModels) {
       const std::string name(model.designation);
       if (model.speaks_modbus()) {
-        EXPECT_NE(described(name.c_str(), format).find(name), std::string::npos) << format;
+        EXPECT_NE(described(name, format).find(name), std::string::npos) << format;
       } else {
         expect_refused({name, format, {}, {}},
                        name + " --format " + format + ": the model does not support Modbus", "--models");
@@ -69,7 +86,7 @@ TEST(Describe, AnAddressIsOneOrTwoHexDigitsFrom01ToF7) {
                    "expected one or two hex digits");
   }
   EXPECT_NE(describe({"EX9042D-M", "home-assistant", "f7", {}}).find("slave: 247\n"), std::string::npos);
-  EXPECT_NE(describe({"EX9042D-M", "home-assistant", "a", {}}).find("slave: 10\n"), std::string::npos);
+  EXPECT_NE(describe({"EX9042D-M", "esphome", "a", {}}).find("address: 10\n"), std::string::npos);
 }
 
 TEST(Describe, AnInvalidTcpHostOrPortIsRefused) {
@@ -82,38 +99,37 @@ TEST(Describe, AnInvalidTcpHostOrPortIsRefused) {
   EXPECT_NE(text.find("\"tcpPort\": \"4001\""), std::string::npos);
 }
 
-TEST(Describe, AModbusTcpPortSetsHostPortAndType) {
-  const std::string hub = describe({"EX9042D-M", "home-assistant", {}, {}, "[fe80::1%eth0]:502"});
-  EXPECT_NE(hub.find("  type: tcp\n  host: \"fe80::1%eth0\"\n  port: 502\n"), std::string::npos) << hub;
-  const std::string flow = describe({"EX9042D-M", "node-red", {}, {}, "5020"});
-  EXPECT_NE(flow.find("\"tcpHost\": \"127.0.0.1\""), std::string::npos);
-  EXPECT_NE(flow.find("\"tcpPort\": \"5020\""), std::string::npos);
-  EXPECT_NE(flow.find("\"tcpType\": \"DEFAULT\""), std::string::npos);
-}
-
 TEST(Describe, TcpAndModbusTcpTogetherAreRefused) {
-  for (const char* format : {"home-assistant", "node-red"}) {
+  for (const char* format : kWithPort) {
     expect_refused({"EX9042D-M", format, {}, "127.0.0.1:5020", "127.0.0.1:502"},
                    "--modbus-tcp: cannot be combined with --tcp", "leave out one of them");
   }
 }
 
-TEST(Describe, FormatsOtherThanHomeAssistantAndNodeRedRefuseAddressAndPorts) {
-  for (const char* format : {"markdown", "json", "csv", "wb-mqtt-serial"}) {
-    expect_refused({"EX9042D-M", format, "01", {}}, "--address: --format " + std::string(format),
-                   "leave it out");
-    expect_refused({"EX9042D-M", format, {}, "5020"}, "--tcp: --format " + std::string(format),
-                   "leave it out");
-    expect_refused({"EX9042D-M", format, {}, {}, "5020"}, "--modbus-tcp: --format " + std::string(format),
-                   "leave it out");
+TEST(Describe, FormatsRefuseTheAddressAndThePortsThatTheyDoNotContain) {
+  for (const char* format : {"markdown", "json", "csv", "wb-mqtt-serial", "esphome"}) {
+    const std::string has_no = ": --format " + std::string(format) + " has no such option";
+    if (std::string(format) != "esphome") {
+      expect_refused({"EX9042D-M", format, "01", {}}, "--address" + has_no, "leave it out");
+    }
+    expect_refused({"EX9042D-M", format, {}, "5020"}, "--tcp" + has_no, "leave it out");
+    expect_refused({"EX9042D-M", format, {}, {}, "5020"}, "--modbus-tcp" + has_no, "leave it out");
   }
 }
 
 TEST(Describe, AnUnknownFormatIsRefusedWithAListOfFormats) {
   for (const char* format : {"", "yaml", "Markdown", "json "}) {
-    expect_refused({"EX9042D-M", format, {}, {}}, std::string("--format ") + format, describe_formats());
+    expect_refused({"EX9042D-M", format, {}, {}}, std::string("--format ") + format, format_names());
   }
-  EXPECT_EQ(describe_formats(), "markdown|json|csv|home-assistant|node-red|wb-mqtt-serial");
+  EXPECT_EQ(format_names().find("csv|esphome|"), 0U);
+}
+
+TEST(Describe, TheHelpHasALineForEachFormat) {
+  const std::string help = "\n" + format_help();
+  EXPECT_NE(help.find("\n  json            all data as JSON, for programs\n"), std::string::npos) << help;
+  EXPECT_NE(help.find("ESPHome (MODEL; --address)\n"), std::string::npos) << help;
+  EXPECT_NE(help.find("node-red-contrib-modbus (MODEL; --address, --tcp, --modbus-tcp)\n"),
+            std::string::npos);
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Tests that a simulated module supports the reads and coil writes in the exports for Home Assistant, Node-RED and
-wb-mqtt-serial. Also tests that these exports contain all coil writes of `coils_to_write`, and that the flows for
-Node-RED contain all reads of `ranges_to_read`.
+"""Tests that a simulated module supports the reads and coil writes in the exports for ESPHome, Home Assistant, Node-RED
+and wb-mqtt-serial. Also tests that these exports contain all coil writes of `coils_to_write`, and that the exports for
+ESPHome and Node-RED contain all reads of `ranges_to_read`.
 """
 
 import itertools
@@ -14,8 +14,8 @@ import yaml
 from line import Line
 from program import describe, models_with_modbus
 
-# These dictionaries map the terms of Node-RED and wb-mqtt-serial to the terms of Line: coil, discrete_input, holding
-# and input.
+# These dictionaries map the terms of the tools to the terms of Line: coil, discrete_input, holding and input.
+ESPHOME = {"coil": "coil", "discrete_input": "discrete_input", "holding": "holding", "read": "input"}
 NODE_RED = {"Coil": "coil", "Input": "discrete_input", "HoldingRegister": "holding", "InputRegister": "input"}
 WIREN_BOARD = {"coil": "coil", "discrete": "discrete_input", "holding": "holding", "input": "input"}
 
@@ -38,7 +38,7 @@ CHANNELS = {
 
 
 def coils_to_write(model):
-    """Returns the address and the value of each coil write that all three exports must contain (wire.md section 7).
+    """Returns the address and the value of each coil write that all exports must contain (wire.md section 7).
 
     These writes switch the outputs, and clear latches, counters and the timeout status.
     """
@@ -48,13 +48,15 @@ def coils_to_write(model):
     return switched | {(address, True) for address in cleared}
 
 
-def ranges_to_read(model):
-    """Returns the kind, the first address and the size of each range that a flow for Node-RED must read (wire.md
-    section 7)."""
+def ranges_to_read(model, presets):
+    """Returns the kind, the first address and the size of each range that an export must read (wire.md section 7).
+
+    `presets`: whether the export also reads the safe values and the power-on values.
+    """
     outputs, inputs = CHANNELS[model]
     rows = {("coil", 0x0104, 1), ("coil", 0x010D, 1), ("holding", 0x01E8, 1)}
     if outputs:
-        rows |= {("coil", first, outputs) for first in (0x0000, 0x0080, 0x00A0)}
+        rows |= {("coil", first, outputs) for first in ((0x0000, 0x0080, 0x00A0) if presets else (0x0000,))}
     if inputs:
         rows |= {("discrete_input", 0x0000, inputs), ("input", 0x0000, inputs)}
         rows |= {("coil", first, inputs) for first in (0x0040, 0x0060)}
@@ -121,10 +123,34 @@ class EveryMap(unittest.TestCase):
                         written.add((address, on))
                         if address < CHANNELS[model][0]:
                             self.assertEqual(line.read("coil", address), [int(on)])
-            self.assertEqual(ranges_to_read(model) - read, set())
+            self.assertEqual(read, ranges_to_read(model, presets=True))
             self.assertEqual(written, coils_to_write(model))
 
         self.of_each_model(play)
+
+    def test_esphome_has_every_required_read_and_write_and_each_succeeds(self):
+        def play(line, model):
+            node = yaml.safe_load(describe(model, "--format", "esphome"))
+            self.assertEqual([controller["address"] for controller in node["modbus_controller"]], [1])
+            read, written = set(), set()
+            for switch in node.get("switch", []):
+                self.assertEqual(switch["register_type"], "coil")
+                self.expect_switch(line, ("coil", switch["address"]), switch["address"])
+                written |= {(switch["address"], True), (switch["address"], False)}
+            for item in node.get("switch", []) + node["binary_sensor"] + node["sensor"]:
+                kind = ESPHOME[item["register_type"]]
+                self.assertEqual(len(line.read(kind, item["address"])), 1)
+                read.add((kind, item["address"]))
+            outputs = {output["id"]: output["address"] for output in node["output"]}
+            for button in node["button"]:
+                address = outputs[button["on_press"][0]["output.turn_on"]]
+                line.write_coil(address, True)
+                written.add((address, True))
+            ranges = ranges_to_read(model, presets=False)
+            self.assertEqual(read, {(kind, first + i) for kind, first, size in ranges for i in range(size)})
+            self.assertEqual(written, coils_to_write(model))
+
+        self.of_each_model(play, ["--tcp"])  # the export contains no port
 
     def test_wb_mqtt_serial_reads_its_channels_and_writes_every_required_coil(self):
         def play(line, model):

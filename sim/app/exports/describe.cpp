@@ -1,0 +1,144 @@
+#include "sim/app/exports/describe.hpp"
+
+#include <algorithm>
+#include <string_view>
+#include <vector>
+
+#include "firmware/settings/settings.hpp"
+#include "sim/app/exports/description.hpp"
+#include "sim/app/exports/template.hpp"
+#include "sim/files_and_ports/ports/tcp_address.hpp"
+#include "sim/text/embedded_files.hpp"
+#include "sim/text/fail.hpp"
+#include "sim/text/values.hpp"
+#include "sim/text/words.hpp"
+#include "sim/virtual_line/line/module_spec.hpp"
+
+namespace ex9000::sim {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Format {
+  std::string name;
+  std::string scope;
+  std::string help;
+  std::string_view text;
+};
+
+std::vector<Format> formats() {
+  std::vector<Format> all;
+  for (const EmbeddedFile& file : export_templates()) {
+    constexpr std::string_view kBegin = "{{! ";
+    const std::size_t colon = file.content.find(": ");
+    const std::size_t end = file.content.find(" }}\n");
+    all.push_back({std::string(file.name.substr(0, file.name.find('.'))),
+                   std::string(file.content.substr(kBegin.size(), colon - kBegin.size())),
+                   std::string(file.content.substr(colon + 2, end - colon - 2)), file.content});
+  }
+  return all;
+}
+
+Format format_called(const std::string& name) {
+  for (const Format& format : formats()) {
+    if (name == format.name) {
+      return format;
+    }
+  }
+  fail("--format " + name + ": expected " + format_names());
+}
+
+std::uint8_t parse_modbus_address(const std::string& text) {
+  const std::uint8_t address = with_place("--address ", [&] { return parse_hex_byte(text); });
+  if (!is_modbus_address(address)) {
+    fail("--address " + text + ": expected a Modbus address, hex 01 to F7");
+  }
+  return address;
+}
+
+TcpAddress parse_master_address(const std::string& option, const std::string& text) {
+  TcpAddress tcp = with_place(option + " ", [&] { return parse_tcp_address(text); });
+  const std::string of_hosts = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789.-_:%";
+  if (tcp.port == 0 || tcp.host.find_first_not_of(of_hosts) != std::string::npos) {
+    fail(option + " " + text + ": expected HOST:PORT of a simulator, for example 127.0.0.1:5020");
+  }
+  return tcp;
+}
+
+/// Rejects an option that the format does not have.
+void refuse(const char* option, const std::optional<std::string>& text, const DescribeTexts& texts) {
+  if (text) {
+    fail(std::string(option) + ": --format " + texts.format + " has no such option; leave it out");
+  }
+}
+
+/// Returns what a tool requires to reach a module of this model.
+Json module_of(const Json& model, const Format& format, const DescribeTexts& texts) {
+  const std::uint8_t address = parse_modbus_address(texts.address.value_or("01"));
+  Json module{{"name", model["model"].get<std::string>() + " " + hex_byte_text(address)},
+              {"key", model["model_key"].get<std::string>() + "_" + hex_byte_text(address)},
+              {"address", address}};
+  if (format.scope == "port") {
+    const TcpAddress tcp = texts.modbus_tcp
+                               ? parse_master_address("--modbus-tcp", *texts.modbus_tcp)
+                               : parse_master_address("--tcp", texts.tcp.value_or("127.0.0.1:5020"));
+    module.update({{"host", tcp.host}, {"port", tcp.port}, {"modbus_tcp", texts.modbus_tcp.has_value()}});
+  }
+  return module;
+}
+
+const Model& modbus_model(const DescribeTexts& texts) {
+  if (texts.model.empty()) {
+    fail("--format " + texts.format + ": requires a MODEL, for example 'describe EX9042D-M'");
+  }
+  const Model& model = model_called(texts.model);
+  if (!model.speaks_modbus()) {
+    fail(std::string(model.designation) + " --format " + texts.format +
+         ": the model does not support Modbus; name a model that --models lists with Modbus RTU, or use "
+         "--format json");
+  }
+  return model;
+}
+
+}  // namespace
+
+std::string format_names() { return names_of(formats(), "|"); }
+
+std::string format_help() {
+  std::string lines;
+  for (const Format& format : formats()) {
+    constexpr std::size_t kWidth = 16;
+    const char* const options = format.scope == "port"      ? " (MODEL; --address, --tcp, --modbus-tcp)"
+                                : format.scope == "address" ? " (MODEL; --address)"
+                                : format.scope == "model"   ? " (MODEL)"
+                                                            : "";
+    std::string name = format.name + " ";
+    name.resize(std::max(kWidth, name.size()), ' ');
+    lines += "  " + name + format.help + options + "\n";
+  }
+  return lines;
+}
+
+std::string describe(const DescribeTexts& texts) {
+  const Format format = format_called(texts.format);
+  if (format.scope != "port") {
+    refuse("--tcp", texts.tcp, texts);
+    refuse("--modbus-tcp", texts.modbus_tcp, texts);
+  }
+  if (format.scope == "any" || format.scope == "model") {
+    refuse("--address", texts.address, texts);
+  }
+  if (texts.tcp && texts.modbus_tcp) {
+    fail("--modbus-tcp: cannot be combined with --tcp; leave out one of them");
+  }
+  if (format.scope == "any") {
+    const Models models = texts.model.empty() ? all_models() : Models{&model_called(texts.model)};
+    return filled_in(format.text, description(models));
+  }
+  Json data = description({&modbus_model(texts)});
+  data["module"] = module_of(data["models"][0], format, texts);
+  return filled_in(format.text, data);
+}
+
+}  // namespace ex9000::sim
