@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Checks the form of the exports for ESPHome, Home Assistant and wb-mqtt-serial, and of the tables in CSV.
 
-answers_test.py checks the addresses in them.
+answers_test.py checks the addresses in them, and node_red_test.js checks the flows for Node-RED.
 """
 
 import csv
