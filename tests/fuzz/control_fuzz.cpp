@@ -79,7 +79,8 @@ bool is_switch(const std::string& text) { return text == "on" || text == "off"; 
 std::optional<LineFormat> format_called(const std::string& text) {
   constexpr std::array<const char*, 4> kNames{"8N1", "8N2", "8E1", "8O1"};
   for (std::size_t i = 0; i < kNames.size(); ++i) {
-    if (text == kNames[i]) {
+    const std::string name = kNames[i];
+    if (text == name || text == name.substr(0, 1) + static_cast<char>(name[1] + ('n' - 'N')) + name[2]) {
       return static_cast<LineFormat>(i);
     }
   }
