@@ -5,7 +5,7 @@
 namespace ex9000::hal::doubles {
 
 void SerialLine::send(Bytes bytes) {
-  bytes_ = bytes;
+  bytes_ = wire_.replaced(bytes);
   sent_ = 0;
   driving_ = true;
   wire_.drive(true);

@@ -14,6 +14,9 @@ namespace ex9000::hal::doubles {
 /// A two-wire line to which a UART's driver is connected, for example the virtual bus.
 class Wire {
  public:
+  /// Returns the bytes that the UART sends instead of `bytes`. Called before the driver is turned on. The
+  /// result must stay valid until the driver is turned off.
+  virtual Bytes replaced(Bytes bytes) { return bytes; }
   /// Turns the UART's driver on or off.
   virtual void drive(bool on) = 0;
   /// Begins to send `byte`: its start bit begins now. Call this only while the driver is on.

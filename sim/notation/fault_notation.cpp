@@ -16,146 +16,47 @@ namespace ex9000::sim {
 
 namespace {
 
-/// The duration of a power cut without `for`.
-constexpr VirtualTime kPowerCutLasts = std::chrono::seconds(1);
+using When = Schedule::When;
+using Lasts = FaultKind::Lasts;
 
-std::uint64_t parse_count(const std::string& word) {
-  return parse_whole_number(word, 1, std::numeric_limits<std::uint64_t>::max());
-}
+constexpr VirtualTime kShortestPause = std::chrono::milliseconds(1);
 
-struct Row {
+struct ValueNotation {
   std::string_view name;
-  std::string_view value;  ///< name of the fault's value in the help text; empty: the fault has no value
-  std::string_view usual;  ///< a typical value, a typical schedule, or both; may be empty
-  Trouble trouble;
-  bool of_a_module;
-  void (*take)(Fault& fault, const std::string& word);  ///< parses the value; null if there is none
-  std::string_view does;
+  void (*take)(Fault& fault, const std::string& word);
 };
 
-void take_probability(Fault& fault, const std::string& word) { fault.probability = parse_probability(word); }
-void take_time(Fault& fault, const std::string& word) { fault.time = parse_time(word); }
-/// Requires at least 1 ms, because an echo with a shorter delay could keep an instant line busy all the time.
-void take_silence(Fault& fault, const std::string& word) {
-  fault.time = parse_time(word);
-  if (fault.time < std::chrono::milliseconds(1)) {
-    fail("'" + word + "': expected a duration of at least 1ms");
-  }
-}
-void take_rate(Fault& fault, const std::string& word) { fault.baud = parse_baud_rate(word); }
-void take_bytes(Fault& fault, const std::string& word) { fault.bytes = parse_hex_bytes(word); }
-
-constexpr std::array<Row, 13> kRows{{
-    {"bit-errors", "P", "1e-4", Trouble::BitErrors, false, take_probability,
-     "inverts each bit with this probability"},
-    {"lost-bytes", "P", "0.01", Trouble::LostBytes, false, take_probability,
-     "drops each byte with this probability"},
-    {"inserted-bytes", "P", "0.01", Trouble::InsertedBytes, false, take_probability,
-     "after each byte, adds a random byte with this probability"},
-    {"stray-zeros", "P", "0.01", Trouble::StrayZeros, false, take_probability,
-     "after each byte, adds the byte 00 with this probability"},
-    {"echo", "TIME", "5ms", Trouble::Echo, false, take_silence,
-     "sends received bytes again after a pause of this length"},
-    {"foreign-traffic", "HEX", "0501000000083C48 every 1s", Trouble::ForeignTraffic, false, take_bytes,
-     "makes a foreign sender send these bytes"},
-    {"lost-reply", "", "every 3rd reply", Trouble::LostReply, true, nullptr, "drops the reply"},
-    {"late-reply", "TIME", "50ms", Trouble::LateReply, true, take_time, "delays the reply by this time"},
-    {"late-driver", "TIME", "2ms", Trouble::LateDriver, true, take_time,
-     "keeps the driver enabled for this time after the reply"},
-    {"wrong-rate", "RATE", "19200", Trouble::WrongRate, true, take_rate,
-     "makes the module receive and send at this rate"},
-    {"gone", "", "", Trouble::Gone, true, nullptr, "switches the supply off until the fault ends"},
-    {"power-cut", "", "every 10s", Trouble::PowerCut, true, nullptr, "cuts the supply, for 1s by default"},
-    {"hang", "", "every 10s", Trouble::Hang, true, nullptr,
-     "stops the main loop until the module watchdog resets the module"},
+/// In the order of FaultKind::Value.
+constexpr std::array<ValueNotation, 7> kValues{{
+    {"", nullptr},
+    {"P", [](Fault& fault, const std::string& word) { fault.probability = parse_probability(word); }},
+    {"TIME", [](Fault& fault, const std::string& word) { fault.time = parse_time(word); }},
+    {"TIME",  // a shorter pause could keep an instant line busy all the time
+     [](Fault& fault, const std::string& word) {
+       fault.time = parse_time(word);
+       if (fault.time < kShortestPause) {
+         fail("'" + word + "': expected a duration of at least 1ms");
+       }
+     }},
+    {"RATE", [](Fault& fault, const std::string& word) { fault.rate = parse_baud_rate(word); }},
+    {"HH", [](Fault& fault, const std::string& word) { fault.bytes = {parse_hex_byte(word)}; }},
+    {"HEX", [](Fault& fault, const std::string& word) { fault.bytes = parse_hex_bytes(word); }},
 }};
 
-const Row& row_called(const std::string& name) {
-  const auto* const row =
-      std::find_if(kRows.begin(), kRows.end(), [&](const Row& known) { return known.name == name; });
-  if (row == kRows.end()) {
-    fail("'" + name + "' is not a fault; expected one of " + names_of(kRows));
-  }
-  return *row;
-}
+const ValueNotation& value_of(const FaultKind& kind) { return kValues[static_cast<std::size_t>(kind.value)]; }
 
-/// Returns the number of an ordinal, for example 10 for `10th`; nullopt for 0 and for any other word.
-std::optional<std::uint64_t> ordinal(const std::string& word) {
-  constexpr std::size_t kSuffix = 2;
-  if (word.size() <= kSuffix) {
-    return std::nullopt;
-  }
-  const std::string suffix = word.substr(word.size() - kSuffix);
-  if (suffix != "st" && suffix != "nd" && suffix != "rd" && suffix != "th") {
-    return std::nullopt;
-  }
-  const auto value =
-      whole_number(word.substr(0, word.size() - kSuffix), std::numeric_limits<std::uint64_t>::max());
-  return value == std::uint64_t{0} ? std::nullopt : value;
-}
-
-/// Parses the words of a schedule, from the word at the position `first` on. `words` must outlive this
-/// object.
-class ScheduleReader {
+/// Reads words one after the other. `words` must outlive this object.
+class Reader {
  public:
-  ScheduleReader(const Words& words, std::size_t first) : words_(words), at_(first) {}
+  explicit Reader(const Words& words) : words_(words) {}
 
-  Schedule read() {
-    while (!done()) {
-      const std::string word = next("a schedule");
-      if (word == "for") {
-        if (schedule_.lasts) {
-          fail("'for' is given twice; leave out one of them");
-        }
-        schedule_.lasts = parse_time(next("a duration after 'for'"));
-      } else {
-        if (schedule_.when != Schedule::When::Always) {
-          fail("'" + word + "': the fault already has a schedule; leave out one schedule");
-        }
-        read_when(word);
-      }
+  [[nodiscard]] bool done() const { return at_ == words_.size(); }
+  std::string next(const std::string& wanted) {
+    if (done()) {
+      fail("ends too early; expected " + wanted);
     }
-    return schedule_;
+    return words_[at_++];
   }
-
- private:
-  void read_when(const std::string& word) {
-    if (word == "at") {
-      schedule_.when = Schedule::When::At;
-      schedule_.time = parse_time(next("a time after 'at'"));
-    } else if (word == "every") {
-      read_period(next("'reply', '10th reply' or a duration after 'every'"));
-    } else if (word == "with") {
-      expect("probability");
-      schedule_.when = Schedule::When::Probably;
-      schedule_.probability = parse_probability(next("a number after 'with probability'"));
-    } else if (word == "after") {
-      schedule_.when = Schedule::When::AfterWrites;
-      schedule_.count = parse_count(next("a count after 'after'"));
-      expect(schedule_.count == 1 ? "write" : "writes");
-    } else {
-      fail("'" + word +
-           "' is not a schedule; expected 'at 12.5s', 'every 5s', 'every 10th reply', "
-           "'with probability 0.01', 'after 3 writes' or 'for 2s'");
-    }
-  }
-
-  void read_period(const std::string& word) {
-    if (word == "reply") {
-      schedule_.when = Schedule::When::EveryReply;
-    } else if (const auto count = ordinal(word)) {
-      schedule_.when = Schedule::When::EveryReply;
-      schedule_.count = *count;
-      expect("reply");
-    } else {
-      schedule_.when = Schedule::When::EveryTime;
-      schedule_.time = parse_time(word);
-      if (schedule_.time < std::chrono::milliseconds(1)) {
-        fail("'every " + word + "': expected a period of at least 1ms");
-      }
-    }
-  }
-
   void expect(const std::string& wanted) {
     const std::string word = next("'" + wanted + "'");
     if (word != wanted) {
@@ -163,72 +64,128 @@ class ScheduleReader {
     }
   }
 
-  std::string next(const std::string& wanted) {
-    if (done()) {
-      fail("ends too early; expected " + wanted);
-    }
-    return words_[at_++];
-  }
-
-  [[nodiscard]] bool done() const { return at_ == words_.size(); }
-
+ private:
   const Words& words_;
-  std::size_t at_;
-  Schedule schedule_;
+  std::size_t at_ = 0;
 };
 
-/// Rejects a schedule that requires a duration and has none, a duration that is not shorter than the period,
-/// and a duration that has no effect.
-void check(const Fault& fault) {
-  const Schedule& schedule = fault.schedule;
-  const bool is_periodic = schedule.when == Schedule::When::EveryTime;
-  const bool is_a_moment = fault.trouble == Trouble::ForeignTraffic || fault.trouble == Trouble::Hang;
-  const bool is_a_power_cut = fault.trouble == Trouble::PowerCut;
-  const bool outlasts_a_reply = fault.trouble == Trouble::Gone || fault.trouble == Trouble::WrongRate;
-  const bool requires_end =
-      (is_periodic && !is_a_moment && !is_a_power_cut) || (schedule.of_replies() && outlasts_a_reply);
-  if (requires_end && !schedule.lasts) {
+const FaultKind& read_kind(Reader& reader) {
+  const std::string name = reader.next("one of " + names_of(fault_kinds()));
+  for (const FaultKind& kind : fault_kinds()) {
+    if (kind.name == name) {
+      return kind;
+    }
+  }
+  fail("'" + name + "' is not a fault; expected one of " + names_of(fault_kinds()));
+}
+
+/// Returns the number of an ordinal, for example 10 for `10th`; 0 for any other word.
+std::uint64_t ordinal(const std::string& word) {
+  constexpr std::size_t kSuffix = 2;
+  const std::size_t digits = std::max(word.size(), kSuffix) - kSuffix;
+  const std::string suffix = word.substr(digits);
+  const bool is_suffix = suffix == "st" || suffix == "nd" || suffix == "rd" || suffix == "th";
+  const auto value = whole_number(word.substr(0, digits), std::numeric_limits<std::uint64_t>::max());
+  return is_suffix ? value.value_or(0) : 0;
+}
+
+/// Reads what follows `every`.
+void read_period(Reader& reader, Schedule& schedule) {
+  const std::string word = reader.next("'reply', '10th reply' or a duration after 'every'");
+  schedule.count = word == "reply" ? 1 : ordinal(word);
+  if (schedule.count == 0) {
+    schedule.when = When::EveryTime;
+    schedule.time = parse_time(word);
+    if (schedule.time < kShortestPause) {
+      fail("'every " + word + "': expected a period of at least 1ms");
+    }
+    return;
+  }
+  schedule.when = When::EveryReply;
+  if (word != "reply") {
+    reader.expect("reply");
+  }
+}
+
+void read_when(Reader& reader, const std::string& word, Schedule& schedule) {
+  if (word == "at") {
+    schedule.when = When::At;
+    schedule.time = parse_time(reader.next("a time after 'at'"));
+  } else if (word == "every") {
+    read_period(reader, schedule);
+  } else if (word == "with") {
+    reader.expect("probability");
+    schedule.when = When::Probably;
+    schedule.probability = parse_probability(reader.next("a number after 'with probability'"));
+  } else if (word == "after") {
+    schedule.when = When::AfterWrites;
+    schedule.count = parse_whole_number(reader.next("a count after 'after'"), 1,
+                                        std::numeric_limits<std::uint64_t>::max());
+    reader.expect(schedule.count == 1 ? "write" : "writes");
+  } else {
+    fail("'" + word +
+         "' is not a schedule; expected 'at 12.5s', 'every 5s', 'every 10th reply', "
+         "'with probability 0.01', 'after 3 writes' or 'for 2s'");
+  }
+}
+
+Schedule read_schedule(Reader& reader) {
+  Schedule schedule;
+  while (!reader.done()) {
+    const std::string word = reader.next("a schedule");
+    if (word == "for" && schedule.lasts) {
+      fail("'for' is given twice; leave out one of them");
+    } else if (word == "for") {
+      schedule.lasts = parse_time(reader.next("a duration after 'for'"));
+    } else if (schedule.when != When::Always) {
+      fail("'" + word + "': the fault already has a schedule; leave out one schedule");
+    } else {
+      read_when(reader, word, schedule);
+    }
+  }
+  return schedule;
+}
+
+/// Rejects a schedule that the kind of fault does not have, a schedule that requires a duration and has none,
+/// and a duration that has no effect or is not shorter than the period.
+void check(const FaultKind& kind, const Schedule& schedule) {
+  const bool is_periodic = schedule.when == When::EveryTime;
+  if (kind.is_of_the_line() && schedule.of_replies()) {
+    fail("a fault of the line does not depend on replies; expected a time, for example 'at 5s for 1s'");
+  }
+  if (kind.lasts == Lasts::Moment) {
+    if (schedule.lasts) {
+      fail("'for': this fault has no duration; leave out 'for'");
+    }
+  } else if (!schedule.lasts && (is_periodic || (schedule.of_replies() && kind.lasts == Lasts::Open))) {
     fail("has no end; add 'for TIME'");
-  }
-  if (is_periodic && schedule.lasts && *schedule.lasts >= schedule.time) {
-    fail("the time after 'for' is not shorter than the period; expected a shorter time");
-  }
-  if (is_periodic && !schedule.lasts && is_a_power_cut && schedule.time <= kPowerCutLasts) {
-    fail("the power cut lasts 1s, which is not shorter than the period; add 'for TIME'");
-  }
-  if (schedule.lasts && is_a_moment) {
-    fail("'for': this fault has no duration; leave out 'for'");
+  } else if (is_periodic && *schedule.lasts >= schedule.time) {
+    fail("lasts " + time_text(*schedule.lasts) +
+         ", which is not shorter than the period; expected a shorter time after 'for'");
   }
 }
 
 }  // namespace
 
-bool concerns_a_module(Trouble trouble) {
-  return std::any_of(kRows.begin(), kRows.end(),
-                     [=](const Row& row) { return row.trouble == trouble && row.of_a_module; });
-}
-
-Fault parse_fault(const std::string& text) {
+Fault parse_fault(const std::string& text, std::optional<std::size_t> module) {
   const Words words = words_of(text);
-  if (words.empty()) {
-    fail("the fault is empty; expected one of " + names_of(kRows));
-  }
-  const Row& row = row_called(words[0]);
+  Reader reader(words);
   Fault fault;
+  fault.kind = &read_kind(reader);
+  fault.module = module;
   fault.text = joined(words);
   with_place(fault.text + ": ", [&] {
-    fault.trouble = row.trouble;
-    std::size_t used = 1;
-    if (row.take != nullptr) {
-      if (words.size() == 1) {
-        fail("has no value; add " + std::string(row.value) + " after '" + words[0] + "'");
-      }
-      row.take(fault, words[used++]);
+    const ValueNotation& value = value_of(*fault.kind);
+    if (value.take != nullptr) {
+      value.take(fault, reader.next(std::string(value.name) + " after '" + words[0] + "'"));
     }
-    fault.schedule = ScheduleReader(words, used).read();
-    check(fault);
-    if (fault.trouble == Trouble::PowerCut && !fault.schedule.lasts) {
-      fault.schedule.lasts = kPowerCutLasts;
+    fault.schedule = read_schedule(reader);
+    if (fault.kind->lasts == Lasts::Second) {
+      fault.schedule.lasts = fault.schedule.lasts.value_or(std::chrono::seconds(1));
+    }
+    check(*fault.kind, fault.schedule);
+    if (module && fault.kind->is_of_the_line()) {
+      fail("concerns the line, not a module; add it as a fault of the line");
     }
   });
   return fault;
@@ -236,19 +193,18 @@ Fault parse_fault(const std::string& text) {
 
 std::vector<std::string> usual_faults() {
   std::vector<std::string> faults;
-  faults.reserve(kRows.size());
-  for (const Row& row : kRows) {
-    faults.push_back(std::string(row.name) + (row.usual.empty() ? "" : " ") + std::string(row.usual));
+  for (const FaultKind& kind : fault_kinds()) {
+    faults.push_back(std::string(kind.name) + (kind.usual.empty() ? "" : " ") + std::string(kind.usual));
   }
   return faults;
 }
 
 std::string fault_help() {
   std::ostringstream text;
-  for (const Row& row : kRows) {
-    const std::string shape = std::string(row.name) + (row.value.empty() ? "" : " ") + std::string(row.value);
+  for (const FaultKind& kind : fault_kinds()) {
     constexpr int kColumn = 22;
-    text << "  " << std::left << std::setw(kColumn) << shape << row.does << "\n";
+    text << "  " << std::left << std::setw(kColumn)
+         << std::string(kind.name) + " " + std::string(value_of(kind).name) << kind.does << "\n";
   }
   return text.str();
 }

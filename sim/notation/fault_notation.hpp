@@ -7,6 +7,8 @@
 //   power-cut after 3 writes
 #pragma once
 
+#include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,13 +16,10 @@
 
 namespace ex9000::sim {
 
-/// Returns true if a fault of this kind affects a module, false if it affects the wires.
-bool concerns_a_module(Trouble trouble);
-
-/// Parses `TROUBLE [VALUE] [SCHEDULE]`. The result applies to all modules of the line; the caller may set
-/// `module`. Throws std::invalid_argument with a one-line message that says what is wrong and what would be
-/// right.
-Fault parse_fault(const std::string& text);
+/// Parses `KIND [VALUE] [SCHEDULE]`, a fault of the line and all its modules, or of the module at the
+/// position `module`. Throws std::invalid_argument with a one-line message that says what is wrong and what
+/// would be right.
+Fault parse_fault(const std::string& text, std::optional<std::size_t> module = std::nullopt);
 
 /// Returns a typical fault of each kind, in the notation of the user.
 std::vector<std::string> usual_faults();

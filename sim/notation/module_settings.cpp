@@ -93,10 +93,7 @@ const std::array<Setting<ModuleSpec>, 11> kModuleSettings{{
     {"fault", Form::List, "FAULT",
      "a fault of this module, for example 'lost-reply every 10th reply'; see 'help faults'",
      [](ModuleSpec& spec, const std::string& value) {
-       spec.faults.push_back(parse_fault(value));
-       if (!concerns_a_module(spec.faults.back().trouble)) {
-         fail(value + ": concerns the line, not a module; move it to the line");
-       }
+       spec.faults.push_back(parse_fault(value, 0));  // the line sets the position
      }},
 }};
 

@@ -265,15 +265,15 @@ TEST(Documents, EveryOptionCommandAndFaultHasATableRow) {
   }
   const std::vector<std::string> commands =
       column_of(run({simulator_path(), "help", "control"}).output, "through all lines.\n\n", 20);
-  const std::vector<std::string> troubles =
+  const std::vector<std::string> faults =
       column_of(run({simulator_path(), "help", "faults"}).output, "[for TIME].\n\n", 22);
   EXPECT_GE(commands.size(), 15U);
-  EXPECT_GE(troubles.size(), 13U);
+  EXPECT_GE(faults.size(), 13U);
   for (const std::string& command : commands) {
     EXPECT_TRUE(has_row(command)) << command;
   }
-  for (const std::string& trouble : troubles) {
-    EXPECT_TRUE(has_row(trouble)) << trouble;
+  for (const std::string& fault : faults) {
+    EXPECT_TRUE(has_row(fault)) << fault;
   }
 }
 

@@ -64,8 +64,7 @@ void check_line(const LineSetup& line) {
   require(!line.modbus_tcp || !line.modbus_tcp->host.empty(), "an address of Modbus TCP has a host");
   for (const sim::Fault& fault : line.faults) {
     require(!fault.module || *fault.module < line.modules.size(), "a fault belongs to an existing module");
-    require(!fault.module || sim::concerns_a_module(fault.trouble),
-            "a fault of the line belongs to no module");
+    require(!fault.module || !fault.kind->is_of_the_line(), "a fault of the line belongs to no module");
     require(fault.text.find('\n') == std::string::npos, "the text of a fault is one line");
   }
 }

@@ -56,10 +56,11 @@ inline bool is_rate(const std::string& text) {
   return rates.count(text) != 0;
 }
 
-inline bool is_hex(const std::string& text) {
-  return !text.empty() && text.size() % 2 == 0 &&
-         text.find_first_not_of("0123456789ABCDEFabcdef") == std::string::npos;
+inline bool is_hex_digits(const std::string& text) {
+  return !text.empty() && text.find_first_not_of("0123456789ABCDEFabcdef") == std::string::npos;
 }
+
+inline bool is_hex(const std::string& text) { return is_hex_digits(text) && text.size() % 2 == 0; }
 
 inline bool is_ordinal(const std::string& text) {
   if (text.size() < 3) {
@@ -125,38 +126,37 @@ inline When when(const Words& words, std::size_t at, nanoseconds now) {
 
 enum class Whose { AnyModules, ThisModules };
 
-/// Returns whether `words` are `TROUBLE [VALUE] [WHEN]` and describe a fault that is permitted for `whose`.
+/// Returns whether `words` are `KIND [VALUE] [WHEN]` and describe a fault that is permitted for `whose`.
 /// `now` is the line time. A fault with an earlier time after `at` is not permitted.
 inline bool is_fault(const Words& words, Whose whose, std::chrono::nanoseconds now) {
   using namespace fault;
   if (words.empty()) {
     return false;
   }
-  const std::string& trouble = words[0];
+  const std::string& kind = words[0];
   const std::string value = words.size() > 1 ? words[1] : "";
-  const bool plain =
-      trouble == "lost-reply" || trouble == "gone" || trouble == "power-cut" || trouble == "hang";
-  const bool noise = trouble == "bit-errors" || trouble == "lost-bytes" || trouble == "inserted-bytes" ||
-                     trouble == "stray-zeros";
-  const bool line = noise || trouble == "echo" || trouble == "foreign-traffic";
-  const bool late = trouble == "late-reply" || trouble == "late-driver";
-  const bool has_value = noise                          ? is_probability(value)
-                         : trouble == "echo"            ? time(value) >= std::chrono::milliseconds(1)
-                         : trouble == "foreign-traffic" ? is_hex(value)
-                         : late                         ? time(value).has_value()
-                                                        : trouble == "wrong-rate" && is_rate(value);
+  const bool plain = kind == "lost-reply" || kind == "gone" || kind == "power-cut" || kind == "hang";
+  const bool noise = kind == "bit-errors" || kind == "lost-bytes" || kind == "inserted-bytes";
+  const bool byte = kind == "exception" || kind == "wrong-unit";
+  const bool line = noise || kind == "echo" || kind == "foreign-traffic";
+  const bool late = kind == "late-reply" || kind == "late-driver";
+  const bool has_value = noise                       ? is_probability(value)
+                         : byte                      ? value.size() <= 2 && is_hex_digits(value)
+                         : kind == "echo"            ? time(value) >= std::chrono::milliseconds(1)
+                         : kind == "foreign-traffic" ? is_hex(value)
+                         : late                      ? time(value).has_value()
+                                                     : kind == "wrong-rate" && is_rate(value);
   if ((!plain && !has_value) || (line && whose == Whose::ThisModules)) {
     return false;
   }
   const When schedule = when(words, plain ? 1 : 2, now);
-  const bool moment = trouble == "hang" || trouble == "foreign-traffic";
-  const bool requires_end = schedule.every
-                                ? !moment && trouble != "power-cut"
-                                : schedule.of_replies && (trouble == "gone" || trouble == "wrong-rate");
-  const auto lasts = schedule.lasts           ? schedule.lasts
-                     : trouble == "power-cut" ? std::optional<nanoseconds>(std::chrono::seconds(1))
-                                              : std::nullopt;
-  return schedule.right && (schedule.lasts ? !moment : !requires_end) &&
+  const bool moment = kind == "hang" || kind == "foreign-traffic";
+  const bool requires_end = schedule.every ? !moment && kind != "power-cut"
+                                           : schedule.of_replies && (kind == "gone" || kind == "wrong-rate");
+  const auto lasts = schedule.lasts        ? schedule.lasts
+                     : kind == "power-cut" ? std::optional<nanoseconds>(std::chrono::seconds(1))
+                                           : std::nullopt;
+  return schedule.right && !(line && schedule.of_replies) && (schedule.lasts ? !moment : !requires_end) &&
          !(schedule.every && lasts && *lasts >= *schedule.every);
 }
 

@@ -68,7 +68,7 @@ Json commands(const Models& models) {
 /// is on, and finds the byte that is not 0.
 std::size_t data_byte_of(const Model& model, bool is_output, unsigned channel) {
   const auto on = static_cast<std::uint16_t>(1U << channel);
-  Reply reply;
+  ex9000::Reply reply;
   reply.clear();
   dcon::put_data(model, is_output ? on : std::uint16_t{0}, is_output ? std::uint16_t{0} : on, reply);
   const auto digit =

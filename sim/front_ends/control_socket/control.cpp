@@ -226,12 +226,7 @@ const Verb& verb_called(const std::string& name) {
 }
 
 std::string add_fault(Line& line, std::optional<std::size_t> module, const std::string& text) {
-  Fault fault = parse_fault(text);
-  if (module && !concerns_a_module(fault.trouble)) {
-    fail(text + ": concerns the line, not a module; leave out the module's position");
-  }
-  fault.module = module;
-  return std::to_string(line.faults().add(fault));
+  return std::to_string(line.faults().add(parse_fault(text, module)));
 }
 
 std::string end_fault(Line& line, const Words& words) {

@@ -131,7 +131,7 @@ void SimulatedModule::force_rate(std::uint32_t baud) {
   settle();
 }
 
-void SimulatedModule::end_reply_delays(std::optional<std::size_t> fault) {
+void SimulatedModule::end_reply_delays(std::size_t fault) {
   wire_.end_delays(fault);
   settle();
 }

@@ -69,10 +69,10 @@ class SimulatedModule final : public Station {
   /// Returns the rate and format in which the module receives; a rate of 0: it does not listen.
   [[nodiscard]] SerialMode mode() const { return mcu_ ? wire_.forced(mcu_->line.mode()) : SerialMode{}; }
   /// See ModuleWire::end_delays.
-  void end_reply_delays(std::optional<std::size_t> fault);
-  /// See ModuleWire::Begins, ModuleWire::Ends and ModuleWire::OnTheWires.
-  void watch_replies(ModuleWire::Begins begins, ModuleWire::Ends ends, ModuleWire::OnTheWires on_the_wires) {
-    wire_.watch(std::move(begins), std::move(ends), std::move(on_the_wires));
+  void end_reply_delays(std::size_t fault);
+  /// See ModuleWire::Begins and ModuleWire::Ends.
+  void watch_replies(ModuleWire::Begins begins, ModuleWire::Ends ends) {
+    wire_.watch(std::move(begins), std::move(ends));
   }
   /// Replaces the content of the memory with the `memory_image` of `settings`. The module loads these
   /// settings at its next start.

@@ -1,4 +1,4 @@
-// Passes a module's replies to the wires, and simulates lost replies, late replies and a wrong baud rate.
+// Passes a module's replies to the wires, and simulates lost, late and changed replies and a wrong baud rate.
 #pragma once
 
 #include <cstddef>
@@ -6,6 +6,8 @@
 #include <deque>
 #include <functional>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "hal/doubles/serial_line.hpp"
 #include "hal/doubles/virtual_clock.hpp"
@@ -18,8 +20,9 @@ using hal::doubles::VirtualClock;
 using hal::doubles::VirtualTime;
 using hal::doubles::Wire;
 
-/// The effect of faults on one reply.
-struct ReplyFate {
+/// A reply that the UART is about to send. Faults change it.
+struct Reply {
+  std::vector<std::uint8_t> bytes;  ///< at least one
   bool lost = false;
   VirtualTime late_by{0};
   std::size_t delayed_by = 0;  ///< number of the fault that makes the reply late, from 1; 0: none
@@ -30,16 +33,15 @@ class ModuleWire final : public Wire {
  public:
   ModuleWire(const VirtualClock& clock, Wire& wire) : clock_(clock), wire_(wire) {}
 
-  /// Called when the UART enables the driver. `reply` is the number of the reply, from 1. Returns the effect
-  /// of faults on the reply. The function must not reset the module or switch off its power.
-  using Begins = std::function<ReplyFate(std::uint64_t reply)>;
+  /// Called before the UART enables the driver. The function may change the reply, but must not reset the
+  /// module or switch off its power.
+  using Begins = std::function<void(Reply& reply)>;
   /// Called when the UART disables the driver, even if the reply is lost or is not on the wires yet.
   using Ends = std::function<void()>;
-  /// Called with `on` true before the driver is enabled on the wires for a reply. Called with `on` false in
-  /// three cases: after the driver is disabled on the wires, when `abort` drops the reply, and after Begins
-  /// if the reply is lost. `reply` is the same number as for Begins.
-  using OnTheWires = std::function<void(std::uint64_t reply, bool on)>;
-  void watch(Begins begins, Ends ends, OnTheWires on_the_wires);
+  void watch(Begins begins, Ends ends) {
+    begins_ = std::move(begins);
+    ends_ = std::move(ends);
+  }
   /// Makes the UART run at `baud` regardless of the firmware's setting; 0: the firmware's setting applies.
   void force_rate(std::uint32_t baud) { forced_ = baud; }
   /// Returns `mode`, with the forced rate if there is one and the UART is on.
@@ -49,17 +51,17 @@ class ModuleWire final : public Wire {
   [[nodiscard]] bool sends_late() const { return driving_late_; }
   [[nodiscard]] VirtualTime next() const { return late_.empty() ? kNever : late_.front().when; }
   void run();
-  /// Ends the delay of each waiting reply that `fault` (ReplyFate::delayed_by) makes late. If `fault` is
-  /// nullopt, ends the delay of each waiting reply. If the previous reply also waits, the time between the
-  /// two replies becomes the same as at the UART. If the previous reply does not wait, the reply begins now
-  /// or, if a late reply is on the wires, at the end of that late reply. A reply that has begun on the wires
-  /// keeps its delay.
-  void end_delays(std::optional<std::size_t> fault);
+  /// Ends the delay of each waiting reply that `fault` (Reply::delayed_by) makes late. If the previous reply
+  /// also waits, the time between the two replies becomes the same as at the UART. If the previous reply does
+  /// not wait, the reply begins now or, if a late reply is on the wires, at the end of that late reply. A
+  /// reply that has begun on the wires keeps its delay.
+  void end_delays(std::size_t fault);
   /// Drops all bytes that are not on the wires yet, and disables the driver if a late reply is on the wires.
   /// Call this when the module loses its supply or is reset.
   void abort();
 
   // --- Wire ---
+  Bytes replaced(Bytes bytes) override;
   void drive(bool on) override;
   void put(std::uint8_t byte, SerialMode mode) override;
   [[nodiscard]] VirtualTime takes(std::size_t bytes, SerialMode mode) const override {
@@ -74,8 +76,8 @@ class ModuleWire final : public Wire {
     What what;
     std::uint8_t byte;
     SerialMode mode;
-    std::uint64_t reply;
-    ReplyFate fate;
+    VirtualTime late_by;
+    std::size_t delayed_by;
   };
 
   /// A reply is lost if `late_` has more entries than this when the reply begins, so that endless requests
@@ -93,14 +95,12 @@ class ModuleWire final : public Wire {
 
   const VirtualClock& clock_;
   Wire& wire_;
-  Begins begins_ = [](std::uint64_t /*reply*/) { return ReplyFate(); };
-  Ends ends_ = [] {};
-  OnTheWires on_the_wires_ = [](std::uint64_t /*reply*/, bool /*on*/) {};
-  ReplyFate fate_;
-  /// The delay of the reply that the UART sends. May differ from `fate_.late_by`: the delay is longer if the
+  Begins begins_;
+  Ends ends_;
+  Reply reply_;  ///< the reply that the UART sends, if `begins_` is not null
+  /// The delay of the reply that the UART sends. May differ from `reply_.late_by`: the delay is longer if the
   /// reply must wait for the end of a late one, and `end_delays` may shorten it.
   VirtualTime delay_{0};
-  std::uint64_t reply_ = 0;  ///< number of the reply that the UART sends, or has sent last
   std::uint32_t forced_ = 0;
   std::uint32_t forced_for_reply_ = 0;  ///< the forced rate for the whole reply
   bool drives_ = false;                 ///< the UART has enabled its driver

@@ -3,8 +3,9 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <deque>
 #include <functional>
+#include <limits>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -30,8 +31,8 @@ class Faults final : public Station {
   /// replies and faults without a schedule (Schedule::When::Always) are not reported.
   using Notice = std::function<void(const std::string&)>;
 
-  /// Attaches itself to `bus`. `master` has the line's mode; `notice` may be empty. `master`, `modules` and
-  /// this object must live as long as the bus is used.
+  /// Attaches itself to `bus`. `master` has the line's mode; `notice` may be empty. `modules` and this object
+  /// must live as long as the bus and the master are used.
   Faults(Bus& bus, Master& master, Modules& modules, std::uint64_t seed, Notice notice);
   Faults(const Faults&) = delete;
   Faults& operator=(const Faults&) = delete;
@@ -39,10 +40,10 @@ class Faults final : public Station {
   /// Adds a fault and returns its number, counted from 1. A fault without a schedule begins immediately.
   /// Throws std::invalid_argument if the line does not have the fault's module, or if the scheduled time has
   /// passed.
-  std::size_t add(const Fault& fault);
+  std::size_t add(Fault fault);
   /// Removes a fault and ends its effects, with three exceptions: a hang does not end, a reply that has begun
-  /// may stay lost, late or at the wrong rate, and bytes that the fault has already queued are still sent.
-  /// Returns false if no fault has this number.
+  /// may stay lost, late, changed or at the wrong rate, and bytes that the fault has already queued are still
+  /// sent. Returns false if no fault has this number.
   bool remove(std::size_t number);
   void remove_all();
 
@@ -56,87 +57,61 @@ class Faults final : public Station {
     std::uint64_t occurrences_so_far;
   };
   /// The number of faults that `list` keeps after they have ended by themselves.
-  static constexpr std::size_t kMostEnded = 100;
+  static constexpr std::ptrdiff_t kMostEnded = 100;
   /// Returns the faults in the order of their numbers, with the last kMostEnded faults that have ended by
   /// themselves.
   [[nodiscard]] std::vector<Info> list() const;
 
   /// Returns whether an echo or a foreign station has bytes to send, or an effect has not been applied yet.
-  [[nodiscard]] bool pending() const;
+  [[nodiscard]] bool pending() const { return changed_ || echo_.sending() || stranger_.sending(); }
 
   // --- Station ---
   void run() override;
 
  private:
-  /// One occurrence that is in progress or waits for its reply.
-  struct Occurrence {
-    /// The module whose reply triggered the occurrence. If the fault affects modules, the occurrence affects
-    /// only this module. nullopt: no reply triggered the occurrence.
-    std::optional<std::size_t> reply_of;
-    /// The end in the line's time; kNever while `waits` is true. Otherwise, kNever means that an occurrence
-    /// that a reply triggered ends with this reply, and that any other occurrence does not end by itself.
-    VirtualTime ends = kNever;
-    /// For noise that a reply triggered: the number of this reply, counted from 1 for each module.
-    std::uint64_t reply = 0;
-    bool waits = false;  ///< for noise that a reply triggered: true until this reply is on the wires
-  };
-  /// A fault that was added, with its occurrences.
-  struct Armed {
-    std::size_t number = 0;
+  /// Key of an occurrence that no reply has triggered. It affects everything that the fault affects.
+  static constexpr std::size_t kEverywhere = std::numeric_limits<std::size_t>::max();
+
+  /// A fault that was added, with its occurrences in progress.
+  struct Scheduled {
     Fault fault;
     VirtualTime begins = kNever;  ///< the next scheduled time, in the line's time; kNever: none
-    std::vector<Occurrence> occurrences;
+    /// Where the fault is active (a module whose reply has triggered it, or kEverywhere), and until when.
+    /// kNever: until the end of the reply, or until the fault is removed.
+    std::map<std::size_t, VirtualTime> active = {};
     std::uint64_t counted = 0;  ///< number of replies or writes that the schedule has counted
     std::uint64_t occurrences_so_far = 0;
 
-    /// Returns the number of occurrences in progress. Does not count occurrences that wait for their reply.
-    [[nodiscard]] std::size_t in_progress() const;
-    [[nodiscard]] bool occurs_at(std::size_t module) const;
+    [[nodiscard]] bool is_of(std::size_t module) const { return fault.module.value_or(module) == module; }
+    [[nodiscard]] bool is_active_at(std::size_t place) const {
+      return is_of(place) && (active.count(kEverywhere) != 0 || active.count(place) != 0);
+    }
     /// Returns whether the fault is not in progress and will never occur again.
     [[nodiscard]] bool has_ended() const;
-    [[nodiscard]] Info info() const {
-      return {number, fault.text, fault.module, in_progress(), occurrences_so_far};
-    }
   };
 
-  [[nodiscard]] VirtualTime next() const;
   void change();
-  ReplyFate reply_begins(std::size_t module, std::uint64_t reply);
-  void reply_ends(std::size_t module);
-  void reply_on_the_wires(std::size_t module, std::uint64_t reply, bool on);
+  void reply_begins(std::size_t module, Reply& reply);
   void written(std::size_t module);
-  void begin(Armed& armed, std::optional<std::size_t> reply_of = std::nullopt, std::uint64_t reply = 0);
-  void end_effects(std::optional<std::size_t> removed);
+  void begin(Scheduled& scheduled, std::size_t place);
   template <class Over>
-  void end_occurrences(Armed& armed, Over over);
-  void put_ended_aside();
-  void say(const Armed& armed, const std::string& what) const;
+  void end_where(Over over);
+  void say(const Scheduled& scheduled, const std::string& what) const;
   void take_effect();
-  void prepare(Trouble trouble);
-  [[nodiscard]] const Armed* active(Trouble trouble, std::size_t module) const;
-  [[nodiscard]] bool affected_by(Trouble trouble, std::size_t module) const {
-    return active(trouble, module) != nullptr;
-  }
-  [[nodiscard]] double rate_of(Trouble trouble) const;
-  void set_noise();
-  void set_echo();
+  template <class Effect, class... Affected>
+  void apply_at(std::size_t place, Affected&&... affected) const;
 
   Bus& bus_;
   BusEnd& end_;
-  Master& master_;
   Modules& modules_;
   Notice notice_;
   Chance chance_;
-  std::vector<Armed> armed_;
-  std::deque<Info> ended_;  ///< faults that have ended by themselves; only `list` and `remove` use them
+  Noise noise_;
+  Echo echo_;
+  Master stranger_;  ///< the sender of foreign traffic
+  std::vector<Scheduled> scheduled_;
   std::size_t numbers_ = 0;
   bool changed_ = false;  ///< the next call of `run` must update the effects
-  std::vector<std::size_t> hanging_;
-  std::vector<std::vector<std::uint8_t>> to_say_;
-  // Each of these objects is created when a fault first requires it.
-  std::unique_ptr<Noise> noise_;
-  std::unique_ptr<Echo> echo_;
-  std::unique_ptr<Master> stranger_;
 };
 
 }  // namespace ex9000::sim

@@ -1,7 +1,5 @@
 #include "sim/virtual_line/bus_faults/noise.hpp"
 
-#include <algorithm>
-
 namespace ex9000::sim {
 
 Noise::Noise(Bus& bus, NoiseRates rates, std::uint64_t seed)
@@ -29,9 +27,7 @@ Levels Noise::disturbed(const Sent& sent) {
   const bool zero = chance_.happens(rates_.stray_zero);
   if (zero || chance_.happens(rates_.stray_character)) {
     const std::uint8_t byte = zero ? 0 : static_cast<std::uint8_t>(chance_.number());
-    const auto later = std::find_if(strays_.begin(), strays_.end(),
-                                    [&sent](const Stray& stray) { return sent.ends < stray.at; });
-    strays_.insert(later, {sent.ends, byte, sent.mode});
+    strays_.emplace(sent.ends, std::pair(byte, sent.mode));
     wait_for_next();
   }
   changes_ += levels != sent.levels ? 1U : 0U;
@@ -41,15 +37,15 @@ Levels Noise::disturbed(const Sent& sent) {
 /// Puts the next stray character on the wires. Does not enable a driver, because no device sends this
 /// character.
 void Noise::run() {
-  const Stray stray = strays_.front();
-  strays_.pop_front();
+  const auto [byte, mode] = strays_.begin()->second;
+  strays_.erase(strays_.begin());
   ++changes_;
   straying_ = true;
-  wire_.put(stray.byte, stray.mode);
+  wire_.put(byte, mode);
   straying_ = false;
   wait_for_next();
 }
 
-void Noise::wait_for_next() { wire_.run_at(strays_.empty() ? kNever : strays_.front().at); }
+void Noise::wait_for_next() { wire_.run_at(strays_.empty() ? kNever : strays_.begin()->first); }
 
 }  // namespace ex9000::sim

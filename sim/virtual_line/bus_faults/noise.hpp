@@ -2,7 +2,8 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
+#include <map>
+#include <utility>
 
 #include "sim/virtual_line/bus/bus.hpp"
 #include "sim/virtual_line/bus_faults/chance.hpp"
@@ -41,19 +42,14 @@ class Noise final : public Disturbance, public Station {
   void run() override;
 
  private:
-  struct Stray {
-    VirtualTime at;
-    std::uint8_t byte;
-    SerialMode mode;
-  };
-
   void wait_for_next();
 
   BusEnd& wire_;
   NoiseRates rates_;
   Chance chance_;
   std::uint64_t changes_ = 0;
-  std::deque<Stray> strays_;  ///< stray characters that have not been sent yet, the next one first
+  /// The stray characters that have not been sent yet, each with its time.
+  std::multimap<VirtualTime, std::pair<std::uint8_t, SerialMode>> strays_;
   bool straying_ = false;
 };
 

@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "sim/notation/fault_notation.hpp"
 #include "tests/support/refusal.hpp"
 
 namespace ex9000::sim {
@@ -22,38 +21,27 @@ std::string why_not(const std::string& text) {
 // --- kinds of faults ---
 
 TEST(Fault, EachKindIsParsedWithItsValueIfItHasOne) {
-  EXPECT_EQ(parse_fault("bit-errors 1e-4").trouble, Trouble::BitErrors);
   EXPECT_EQ(parse_fault("bit-errors 1e-4").probability, 1e-4);
-  EXPECT_EQ(parse_fault("lost-bytes 0.01").trouble, Trouble::LostBytes);
   EXPECT_EQ(parse_fault("lost-bytes 0.01").probability, 0.01);
-  EXPECT_EQ(parse_fault("inserted-bytes 1").trouble, Trouble::InsertedBytes);
   EXPECT_EQ(parse_fault("inserted-bytes 1").probability, 1);
-  EXPECT_EQ(parse_fault("stray-zeros .5").trouble, Trouble::StrayZeros);
-  EXPECT_EQ(parse_fault("stray-zeros .5").probability, 0.5);
-  EXPECT_EQ(parse_fault("echo 2ms").trouble, Trouble::Echo);
   EXPECT_EQ(parse_fault("echo 2ms").time, 2ms);
-  EXPECT_EQ(parse_fault("foreign-traffic 05aF00").trouble, Trouble::ForeignTraffic);
   EXPECT_EQ(parse_fault("foreign-traffic 05aF00").bytes, (std::vector<std::uint8_t>{0x05, 0xAF, 0x00}));
-  EXPECT_EQ(parse_fault("lost-reply").trouble, Trouble::LostReply);
-  EXPECT_EQ(parse_fault("late-reply 50ms").trouble, Trouble::LateReply);
   EXPECT_EQ(parse_fault("late-reply 50ms").time, 50ms);
-  EXPECT_EQ(parse_fault("late-driver 300us").trouble, Trouble::LateDriver);
+  EXPECT_EQ(parse_fault("exception 0b").bytes, std::vector<std::uint8_t>{0x0B});
+  EXPECT_EQ(parse_fault("wrong-unit 7").bytes, std::vector<std::uint8_t>{0x07});
   EXPECT_EQ(parse_fault("late-driver 300us").time, 300us);
-  EXPECT_EQ(parse_fault("wrong-rate 19200").trouble, Trouble::WrongRate);
-  EXPECT_EQ(parse_fault("wrong-rate 19200").baud, 19200U);
-  EXPECT_EQ(parse_fault("gone").trouble, Trouble::Gone);
-  EXPECT_EQ(parse_fault("power-cut").trouble, Trouble::PowerCut);
-  EXPECT_EQ(parse_fault("hang").trouble, Trouble::Hang);
+  EXPECT_EQ(parse_fault("wrong-rate 19200").rate, 19200U);
 }
 
 TEST(Fault, EveryKindAffectsEitherTheLineOrAModule) {
-  for (const Trouble trouble : {Trouble::BitErrors, Trouble::LostBytes, Trouble::InsertedBytes,
-                                Trouble::StrayZeros, Trouble::Echo, Trouble::ForeignTraffic}) {
-    EXPECT_FALSE(concerns_a_module(trouble));
+  for (const char* text :
+       {"bit-errors 1", "lost-bytes 1", "inserted-bytes 1", "echo 2ms", "foreign-traffic 00"}) {
+    EXPECT_EQ(refusal([&] { parse_fault(text, 0); }),
+              std::string(text) + ": concerns the line, not a module; add it as a fault of the line");
   }
-  for (const Trouble trouble : {Trouble::LostReply, Trouble::LateReply, Trouble::LateDriver,
-                                Trouble::WrongRate, Trouble::Gone, Trouble::PowerCut, Trouble::Hang}) {
-    EXPECT_TRUE(concerns_a_module(trouble));
+  for (const char* text : {"lost-reply", "late-reply 1s", "exception 02", "wrong-unit 02", "late-driver 1s",
+                           "wrong-rate 1200", "gone", "power-cut", "hang"}) {
+    EXPECT_EQ(parse_fault(text, 3).module, 3U);
   }
 }
 
@@ -64,27 +52,20 @@ TEST(Fault, LostReplyAffectsAllModulesPermanentlyByDefault) {
   EXPECT_FALSE(fault.schedule.lasts);
 }
 
-TEST(Fault, HelpContainsEachKindWithItsValue) {
-  const std::string help = fault_help();
-  for (const char* shape : {"bit-errors P", "lost-bytes P", "inserted-bytes P", "stray-zeros P", "echo TIME",
-                            "foreign-traffic HEX", "lost-reply", "late-reply TIME", "late-driver TIME",
-                            "wrong-rate RATE", "gone", "power-cut", "hang"}) {
-    EXPECT_NE(("\n" + help).find("\n  " + std::string(shape) + " "), std::string::npos) << shape;
+TEST(Fault, HelpAndUsualFaultsHaveEachKindWithItsValue) {
+  const std::string help = "\n" + fault_help();
+  for (const char* shape : {"bit-errors P ", "echo TIME ", "foreign-traffic HEX ", "lost-reply  ",
+                            "exception HH ", "wrong-rate RATE "}) {
+    EXPECT_NE(help.find("\n  " + std::string(shape)), std::string::npos) << shape;
   }
-}
-
-TEST(Fault, UsualFaultsHasOneFaultOfEachKind) {
-  std::vector<Trouble> kinds;
-  for (const std::string& text : usual_faults()) {
-    const Fault fault = parse_fault(text);
-    EXPECT_EQ(fault.text, text);
-    kinds.push_back(fault.trouble);
+  const std::vector<std::string> usual = usual_faults();
+  ASSERT_EQ(usual.size(), fault_kinds().size());
+  for (std::size_t i = 0; i < usual.size(); ++i) {
+    const Fault fault = parse_fault(usual[i]);
+    EXPECT_EQ(fault.text, usual[i]);
+    EXPECT_EQ(fault.kind, &fault_kinds()[i]);
+    EXPECT_NE(help.find("\n  " + std::string(fault.kind->name) + " "), std::string::npos);
   }
-  EXPECT_EQ(kinds,
-            (std::vector<Trouble>{Trouble::BitErrors, Trouble::LostBytes, Trouble::InsertedBytes,
-                                  Trouble::StrayZeros, Trouble::Echo, Trouble::ForeignTraffic,
-                                  Trouble::LostReply, Trouble::LateReply, Trouble::LateDriver,
-                                  Trouble::WrongRate, Trouble::Gone, Trouble::PowerCut, Trouble::Hang}));
 }
 
 // --- schedules ---
@@ -161,15 +142,16 @@ TEST_P(WrongFault, IsRefusedWithAOneLineMessageThatNamesTheErrorAndTheRemedy) {
 }
 
 INSTANTIATE_TEST_SUITE_P(
-    Troubles, WrongFault,
-    testing::Values(Wrong{"", "empty", "bit-errors"}, Wrong{"  ", "empty", "lost-reply"},
+    Kinds, WrongFault,
+    testing::Values(Wrong{"", "ends too early", "expected one of bit-errors"},
+                    Wrong{"  ", "ends too early", "lost-reply"},
                     Wrong{"lost", "'lost' is not a fault", "expected one of bit-errors"},
                     Wrong{"Gone", "'Gone'", "gone"},
-                    Wrong{"bit-errors", "bit-errors: has no value", "add P after 'bit-errors'"},
-                    Wrong{"late-reply", "late-reply: has no value", "add TIME after 'late-reply'"},
-                    Wrong{"wrong-rate", "wrong-rate: has no value", "add RATE after 'wrong-rate'"},
-                    Wrong{"foreign-traffic", "foreign-traffic: has no value",
-                          "add HEX after 'foreign-traffic'"}));
+                    Wrong{"bit-errors", "bit-errors: ends too early", "expected P after 'bit-errors'"},
+                    Wrong{"late-reply", "late-reply: ends too early", "expected TIME after 'late-reply'"},
+                    Wrong{"wrong-rate", "wrong-rate: ends too early", "expected RATE after 'wrong-rate'"},
+                    Wrong{"foreign-traffic", "foreign-traffic: ends too early",
+                          "expected HEX after 'foreign-traffic'"}));
 
 INSTANTIATE_TEST_SUITE_P(
     Values, WrongFault,
@@ -180,6 +162,8 @@ INSTANTIATE_TEST_SUITE_P(
                     Wrong{"late-reply 50", "'50': expected a duration", "50ms"},
                     Wrong{"late-driver -1ms", "'-1ms'", "50ms"},
                     Wrong{"echo 1us", "'1us'", "a duration of at least 1ms"}, Wrong{"echo 0s", "'0s'", "1ms"},
+                    Wrong{"exception 123", "'123'", "one or two hex digits"},
+                    Wrong{"wrong-unit G1", "'G1'", "one or two hex digits"},
                     Wrong{"wrong-rate 300", "'300'", "1200"}, Wrong{"wrong-rate 9600x", "'9600x'", "9600"},
                     Wrong{"foreign-traffic 5", "'5': expected", "pairs of hex digits"},
                     Wrong{"foreign-traffic 05G1", "'05G1'", "pairs"},
@@ -220,10 +204,13 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"gone for 1s for 2s", "'for' is given twice", "leave out one of them"},
         Wrong{"gone every 5s", "has no end", "add 'for TIME'"},
         Wrong{"bit-errors 0.1 every 5s", "has no end", "add 'for TIME'"},
-        Wrong{"gone every 5s for 5s", "'for' is not shorter than the period", "a shorter time"},
-        Wrong{"power-cut every 1s", "lasts 1s, which is not shorter", "add 'for TIME'"},
+        Wrong{"gone every 5s for 5s", "lasts 5s, which is not shorter than the period", "a shorter time"},
+        Wrong{"power-cut every 1s", "lasts 1s, which is not shorter", "a shorter time after 'for'"},
         Wrong{"gone every 10th reply", "has no end", "add 'for TIME'"},
         Wrong{"wrong-rate 1200 with probability 0.5", "has no end", "add 'for TIME'"},
+        Wrong{"bit-errors 0.1 every 10th reply", "does not depend on replies", "'at 5s for 1s'"},
+        Wrong{"echo 5ms with probability 0.5 for 1s", "does not depend on replies", "'at 5s for 1s'"},
+        Wrong{"foreign-traffic 00 every reply", "does not depend on replies", "'at 5s for 1s'"},
         Wrong{"hang for 1s", "'for': this fault has no duration", "leave out 'for'"},
         Wrong{"foreign-traffic 00 for 1s", "'for': this fault has no duration", "leave out 'for'"},
         Wrong{"hang every 0s", "'every 0s'", "a period of at least 1ms"},

@@ -275,7 +275,7 @@ TEST(Arguments, AWrongValueIsRefused) {
     expect_error({"EX9042D", option, value}, std::string(option) + ": '" + value + "'", mend);
   }
   expect_error({"EX9042D", "--fault", "gone\nat\nnoon"}, "--fault: gone at noon: 'noon'", "12.5s");
-  expect_error({"EX9042D", "--fault", " "}, "--fault: the fault is empty", "expected one of bit-errors");
+  expect_error({"EX9042D", "--fault", " "}, "--fault: ends too early", "expected one of bit-errors");
   expect_error({"EX9042D", "--control", ""}, "--control: is empty", "name a path");
   expect_error({"EX9042D", "--capture", ""}, "--capture: is empty", "name a path");
   expect_error({"EX9042D", "--verbose"}, "--verbose", "--help");
@@ -321,7 +321,8 @@ TEST(Arguments, AModuleMayHaveInputsAndFaultsAndALineMayHaveFaults) {
   ASSERT_EQ(line.faults.size(), 2U);
   EXPECT_EQ(line.faults[0].text, "bit-errors 1e-4");
   EXPECT_EQ(line.faults[1].text, "gone at 12.5s");
-  expect_error({"EX9052D,fault=bit-errors 0.1"}, "bit-errors 0.1: concerns the line", "move it to the line");
+  expect_error({"EX9052D,fault=bit-errors 0.1"}, "bit-errors 0.1: concerns the line",
+               "add it as a fault of the line");
   expect_error({"EX9052D,input=8 square 1s"}, "input=: 8 square 1s", "0 to 7");
 }
 

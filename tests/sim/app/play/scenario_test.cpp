@@ -190,8 +190,8 @@ TEST(Play, RefusesStepsThatDoNotFitTheBusBeforePlaying) {
         Wrong{"fault lost", "'lost' is not a fault", "expected one of bit-errors"},
         Wrong{"fault 4 gone", "no module 4", "expected a position from 1 to 3"},
         Wrong{"fault 0 gone", "no module 0", "expected a position from 1 to 3"},
-        Wrong{"fault 2", "the fault is empty", "expected one of bit-errors"},
-        Wrong{"fault 1 bit-errors 0.1", "concerns the line, not a module", "leave out the module's position"},
+        Wrong{"fault 2", "ends too early", "expected one of bit-errors"},
+        Wrong{"fault 1 bit-errors 0.1", "concerns the line, not a module", "add it as a fault of the line"},
         Wrong{"fault gone\nfault off 2", "no fault 2", "'faults' lists the faults"},
         Wrong{"fault off", "fault off", "K|all"}}) {
     const Directory directory;

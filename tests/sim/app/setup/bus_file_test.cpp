@@ -205,7 +205,8 @@ TEST(BusFile, AWrongKeyOfAModuleIsRefused) {
            {"input: ['']", "input: the channel is missing; expected 'CHANNEL square PERIOD'"},
            {"input: 8 square 1s", "input: 8 square 1s: the EX9052D-M has no input '8'; it has 0 to 7"},
            {"fault: [hang, lost]", "fault: 'lost' is not a fault; expected one of bit-errors"},
-           {"fault: echo 2ms", "fault: echo 2ms: concerns the line, not a module; move it to the line"},
+           {"fault: echo 2ms",
+            "fault: echo 2ms: concerns the line, not a module; add it as a fault of the line"},
        }) {
     const std::string refused = why_not(module_with(keys));
     EXPECT_EQ(refused.rfind("3: " + why, 0), 0U) << refused;

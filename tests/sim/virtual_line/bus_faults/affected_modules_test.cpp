@@ -57,17 +57,6 @@ TEST(FaultsOfAModule, AreRefusedIfTheLineHasNoSuchModule) {
   EXPECT_TRUE(bench.faults().list().empty());
 }
 
-TEST(NoiseOfAReply, AffectsOnlyThatReply) {
-  FaultBench bench;
-  bench.add("bit-errors 1 every 2nd reply");
-  for (int i = 0; i < 6; ++i) {
-    const std::string outputs = i % 2 == 0 ? "0001" : "0002";
-    const std::string reply = bench.ask("@01" + outputs);
-    EXPECT_EQ(bench.at(1).outputs(), i % 2 == 0 ? 1 : 2);  // the module has received each request
-    EXPECT_EQ(reply == ">", i % 2 == 0) << i;
-  }
-}
-
 TEST(NoiseOfSeveralFaults, HasTheHighestProbability) {
   FaultBench bench;
   const std::size_t worst = bench.add("lost-bytes 1");

@@ -94,10 +94,10 @@ TEST(FaultsSchedule, TheRepliesOfAllModulesAreCountedTogether) {
   EXPECT_EQ(answered(bench, 2, "01"), "x.");
 }
 
-TEST(FaultsSchedule, OverlappingNoiseOfManyRepliesIsOneOccurrenceInProgress) {
+TEST(FaultsSchedule, OverlappingOccurrencesOfManyRepliesAreOneOccurrenceInProgress) {
   FaultBench bench;
-  bench.add("bit-errors 1e-12 every reply for 1h");
-  bench.add("lost-bytes 1e-12 every reply for 1s");
+  bench.add("late-reply 0s every reply for 1h");
+  bench.add("late-driver 0s every reply for 1s");
   for (int i = 0; i < 20; ++i) {
     EXPECT_EQ(bench.ask("$01M"), kName);
   }

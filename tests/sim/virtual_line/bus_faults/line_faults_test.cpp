@@ -73,13 +73,6 @@ TEST(InsertedBytes, FollowAByteImmediately) {
   EXPECT_FALSE(bench.garbled());
 }
 
-TEST(StrayZeros, AddTheByte00AfterAByte) {
-  FaultBench bench;
-  bench.add("stray-zeros 1");
-  bench.ask("");
-  EXPECT_EQ(bench.heard(), "\0"s);
-}
-
 TEST(InsertedBytes, FollowEveryByteAtProbability1) {
   FaultBench bench;
   bench.add("inserted-bytes 1");
@@ -88,9 +81,9 @@ TEST(InsertedBytes, FollowEveryByteAtProbability1) {
   EXPECT_EQ(of_others(bench).size(), 16U);
 }
 
-TEST(StrayZeros, AtALowProbabilityLeaveMostButNotAllRepliesIntact) {
+TEST(InsertedBytes, AtALowProbabilityLeaveMostButNotAllRepliesIntact) {
   FaultBench bench;
-  bench.add("stray-zeros 0.01");
+  bench.add("inserted-bytes 0.01");
   const std::string which = answered(bench, 200);
   EXPECT_GT(std::count(which.begin(), which.end(), 'x'), 120);
   EXPECT_LT(std::count(which.begin(), which.end(), 'x'), 195);

@@ -1,14 +1,24 @@
-// Tests lost replies, late replies, noise during replies, and a late driver, in virtual time.
+// Tests lost, late and changed replies, and a late driver, in virtual time.
 #include <gtest/gtest.h>
 
 #include <string>
 
+#include "sim/text/values.hpp"
 #include "tests/sim/virtual_line/bus_faults/fault_bench.hpp"
 
 namespace ex9000::sim {
 namespace {
 
 using namespace std::chrono_literals;
+
+/// Sends a Modbus frame and returns all bytes that the master receives within 50 ms, both in hex.
+std::string reply_to(FaultBench& bench, const std::string& frame) {
+  const std::vector<std::uint8_t> bytes = parse_hex_bytes(frame);
+  bench.forget();
+  bench.send({bytes.begin(), bytes.end()});
+  bench.run(50ms);
+  return hex_text({bench.heard().begin(), bench.heard().end()});
+}
 
 TEST(LostReply, IsNotSentAlthoughTheCommandIsExecuted) {
   FaultBench bench;
@@ -80,10 +90,10 @@ TEST(LateReply, IsCompleteIfItsFaultIsRemovedWhileTheModuleReplies) {
 
 TEST(LateReply, IsSentIfTheFaultThatDelaysItIsRemovedAlthoughAnotherFaultRemains) {
   FaultBench bench;
-  const std::size_t first = bench.add("late-reply 1h");
   bench.add("late-reply 1s");
+  const std::size_t last = bench.add("late-reply 1h");
   EXPECT_EQ(bench.ask("$01M"), "");
-  EXPECT_TRUE(bench.faults().remove(first));
+  EXPECT_TRUE(bench.faults().remove(last));
   bench.run(50ms);
   EXPECT_EQ(bench.heard(), kName + "\r");
   EXPECT_EQ(bench.ask("$01M", 1100ms), kName);
@@ -127,44 +137,64 @@ TEST(LateReply, IsNotSentAfterTheSupplyHasFailed) {
   EXPECT_EQ(bench.heard(), "");
 }
 
-TEST(NoiseWithEachReply, DamagesRepliesEvenIfTheModuleHasRepliedBeforeTheFirstFault) {
-  FaultBench bench;
-  ASSERT_EQ(bench.ask("$01M"), kName);
-  bench.add("bit-errors 1 every reply");
-  EXPECT_NE(bench.ask("$01M"), kName);
-  EXPECT_TRUE(bench.garbled());
-}
-
-TEST(LateReply, NoiseDamagesTheLateReplyButNotTheNextRequest) {
-  FaultBench bench;
-  bench.add("late-reply 50ms every 2nd reply");
-  bench.add("bit-errors 1 every 2nd reply");
-  EXPECT_EQ(bench.ask("$01M"), kName);
-  EXPECT_EQ(bench.ask("$01M", 20ms), "");  // the master's timeout is too short
-  bench.send("@010001\r");                 // the noise does not affect the next request
-  bench.run(200ms);
+// MODBUS Application Protocol V1.1b3, section 7: the function code with bit 7 set, then the exception code.
+TEST(ExceptionFault, ReplacesTheReplyAlthoughTheRequestIsExecuted) {
+  FaultBench bench({"EX9042D-M"});
+  bench.add("exception 06");
+  EXPECT_EQ(reply_to(bench, "01050000FF008C3A"), "018506C292");
   EXPECT_EQ(bench.at(1).outputs(), 1);
-  EXPECT_EQ(bench.heard().find(kName), std::string::npos);
-  EXPECT_TRUE(bench.garbled());
+  EXPECT_LE(bench.recorder().drivers.back().at - bench.recorder().bytes.back().end, 3us);
+  bench.faults().remove_all();
+  EXPECT_EQ(reply_to(bench, "01050000FF008C3A"), "01050000FF008C3A");
 }
 
-TEST(LateReply, ItsNoiseEndsAfterTheGivenDuration) {
-  FaultBench bench;
-  bench.add("late-reply 50ms every 2nd reply");
-  bench.add("bit-errors 1 every 2nd reply for 20ms");
-  EXPECT_EQ(bench.ask("$01M"), kName);
-  EXPECT_NE(bench.ask("$01M", 100ms), kName);
-  EXPECT_EQ(bench.faults().list().at(1).in_progress, 0U);
-  EXPECT_EQ(bench.ask("$01M"), kName);
+TEST(ExceptionFault, ReplacesTheCodeOfAnException) {
+  FaultBench bench({"EX9042D-M"});
+  ASSERT_EQ(reply_to(bench, "010502FFFF00BDB2"), "018502C351");  // the module has no such address
+  bench.add("exception 06");
+  EXPECT_EQ(reply_to(bench, "010502FFFF00BDB2"), "018506C292");
 }
 
-TEST(LostReply, ItsNoiseDoesNotDamageTheNextReply) {
+TEST(ExceptionFault, ReplacesEveryNthReply) {
+  FaultBench bench({"EX9042D-M"});
+  bench.add("exception 06 every 2nd reply");
+  for (const char* reply : {"010101005188", "018106C052", "010101005188"}) {
+    EXPECT_EQ(reply_to(bench, "0101000000043DC9"), reply);
+  }
+}
+
+TEST(ExceptionFault, AffectsNeitherBroadcastsNorAscii) {
+  FaultBench bench({"EX9042D-M", "EX9042D@02"});
+  bench.add("exception 06");
+  EXPECT_EQ(reply_to(bench, "00050000FF008DEB"), "");
+  EXPECT_EQ(bench.at(1).outputs(), 1);
+  EXPECT_EQ(bench.ask("$02M"), "!029042D");
+}
+
+TEST(WrongUnit, ReplacesTheAddressOfAModbusReply) {
+  FaultBench bench({"EX9042D-M"});
+  bench.add("wrong-unit 7F");
+  EXPECT_EQ(reply_to(bench, "0101000000043DC9"), "7F01010049A0");
+  bench.add("exception 06");
+  EXPECT_EQ(reply_to(bench, "01050000FF008C3A"), "7F8506A28A");
+  EXPECT_EQ(bench.at(1).outputs(), 1);
+}
+
+TEST(WrongUnit, ReplacesTheAddressOfAnAsciiReplyIfThereIsOne) {
   FaultBench bench;
-  bench.add("lost-reply every 2nd reply");
-  bench.add("bit-errors 1 every 2nd reply");
-  bench.ask("$01M");
-  EXPECT_EQ(bench.ask("$01M"), "");
-  EXPECT_EQ(bench.ask("$01M"), kName);
+  bench.add("wrong-unit 7F");
+  EXPECT_EQ(bench.ask("$01M"), "!7F9042D");
+  EXPECT_EQ(bench.ask("$01Q"), "?7F");
+  EXPECT_EQ(bench.ask("@01"), ">0000");
+  EXPECT_EQ(bench.ask("@01Z"), "?");
+}
+
+TEST(WrongUnit, KeepsTheChecksumRight) {
+  FaultBench bench({"EX9042D,checksum=on"});
+  bench.add("wrong-unit 7F");
+  EXPECT_EQ(bench.ask("$01MD2"), "!7F9042DB1");
+  EXPECT_EQ(bench.ask("@01A1"), ">0000FE");
+  EXPECT_EQ(bench.ask("@01ZFB"), "?3F");
 }
 
 TEST(LateDriver, IsDisabledImmediatelyIfItsFaultIsRemoved) {
