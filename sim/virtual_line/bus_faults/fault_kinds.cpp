@@ -47,11 +47,11 @@ void refuse(const Fault& fault, Reply& reply, const State& state) {
 /// In ASCII, `!` and `?` precede an address, except in the replies `!` and `?` without one (wire.md section
 /// 3). A reply with `>` has none.
 void answer_as(const Fault& fault, Reply& reply, const State& state) {
-  constexpr std::size_t kCheck = 2;  // characters or bytes
+  constexpr std::ptrdiff_t kCheck = 2;  // bytes of the CRC, characters of the checksum
   auto& bytes = reply.bytes;
   if (state.speaks_modbus()) {
     bytes[0] = fault.bytes[0];
-    bytes.resize(bytes.size() - kCheck);
+    bytes.erase(bytes.end() - kCheck, bytes.end());
     end_with_crc(bytes);
     return;
   }
@@ -79,7 +79,7 @@ void hang(const Fault& /*fault*/, ModuleFaults& module) { module.hangs = true; }
 }  // namespace
 
 const std::vector<FaultKind>& fault_kinds() {
-  static const std::vector<FaultKind> kKinds{
+  static const std::vector<FaultKind> kinds{
       {"bit-errors", Value::Probability, "1e-4", Lasts::Open, disturb<&NoiseRates::flipped_bit>,
        "inverts each bit with this probability"},
       {"lost-bytes", Value::Probability, "0.01", Lasts::Open, disturb<&NoiseRates::lost_character>,
@@ -106,7 +106,7 @@ const std::vector<FaultKind>& fault_kinds() {
       {"hang", Value::None, "every 10s", Lasts::Moment, hang,
        "stops the main loop until the module watchdog resets the module"},
   };
-  return kKinds;
+  return kinds;
 }
 
 }  // namespace ex9000::sim

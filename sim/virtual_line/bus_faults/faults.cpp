@@ -1,6 +1,7 @@
 #include "sim/virtual_line/bus_faults/faults.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "sim/text/durations.hpp"

@@ -57,6 +57,28 @@ TEST(FaultsOfAModule, AreRefusedIfTheLineHasNoSuchModule) {
   EXPECT_TRUE(bench.faults().list().empty());
 }
 
+TEST(SeveralFaultsOfAKind, TheOneThatWasAddedLastApplies) {
+  FaultBench bench;
+  bench.add("wrong-rate 19200");
+  const std::size_t last = bench.add("wrong-rate 38400");
+  bench.line().master().set_baud(38400);
+  EXPECT_EQ(bench.ask("$01M"), kName);
+  EXPECT_TRUE(bench.faults().remove(last));
+  bench.line().master().set_baud(19200);
+  EXPECT_EQ(bench.ask("$01M"), kName);
+}
+
+TEST(SeveralFaultsOfAKind, TheEndOfOneDoesNotEndAnother) {
+  FaultBench bench;
+  const VirtualTime begin = bench.now();
+  bench.add("gone for 2s");
+  bench.add("power-cut");
+  bench.run_until(begin + 2s - 1ns);
+  EXPECT_FALSE(bench.at(1).powered());
+  bench.run_until(begin + 2s);
+  EXPECT_TRUE(bench.at(1).powered());
+}
+
 TEST(NoiseOfSeveralFaults, HasTheHighestProbability) {
   FaultBench bench;
   const std::size_t worst = bench.add("lost-bytes 1");
