@@ -156,10 +156,10 @@ TEST(ExceptionFault, ReplacesTheCodeOfAnException) {
 }
 
 TEST(ExceptionFault, ReplacesEveryNthReply) {
-  FaultBench bench({"EX9042D-M"});
+  FaultBench bench({"EX9052D-M"});
   bench.add("exception 06 every 2nd reply");
-  for (const char* reply : {"010101005188", "018106C052", "010101005188"}) {
-    EXPECT_EQ(reply_to(bench, "0101000000043DC9"), reply);
+  for (const char* reply : {"01020100A188", "018206C0A2", "01020100A188"}) {
+    EXPECT_EQ(reply_to(bench, "01020000000879CC"), reply);
   }
 }
 
