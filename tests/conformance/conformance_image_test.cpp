@@ -10,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "sim/notation/actions.hpp"
 #include "tests/conformance/runs.hpp"
 #include "tests/qemu/emulated_board.hpp"
 #include "tests/qemu/image_target.hpp"
@@ -22,8 +23,8 @@ namespace {
 std::uint64_t pulses_of(const play::Transcript& transcript) {
   std::uint64_t pulses = 0;
   for (const play::Step& step : transcript.steps) {
-    const auto* pulse = std::get_if<play::step::Pulse>(&step.action);
-    pulses += pulse != nullptr ? pulse->count : 0;
+    const sim::Words words = step.words();
+    pulses += words[0] == "pulse" ? sim::parse_pulses({words.begin() + 1, words.end()}).count : 0;
   }
   return pulses;
 }

@@ -98,17 +98,17 @@ void RegisterTarget::pulse_input(unsigned channel, std::uint32_t count) {
   bench_.run_for(kBetweenEdges * (2 * std::int64_t{count} + 1));
 }
 
-play::step::Led::Shows RegisterTarget::led(play::step::Led::Shows expected) {
-  using Shows = play::step::Led::Shows;
+play::Led RegisterTarget::led(play::Led expected) {
+  using play::Led;
   const bool lit = bench_.led();
   const Instant gives_up = bench_.timeline.now() + kFlashes;
-  while (expected == Shows::Flashing && bench_.timeline.now() < gives_up) {
+  while (expected == Led::Flashing && bench_.timeline.now() < gives_up) {
     bench_.run_for(milliseconds(1));
     if (bench_.led() != lit) {
-      return Shows::Flashing;
+      return Led::Flashing;
     }
   }
-  return lit ? Shows::On : Shows::Off;
+  return lit ? Led::On : Led::Off;
 }
 
 }  // namespace ex9000::registers

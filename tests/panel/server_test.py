@@ -298,7 +298,8 @@ class Broken(unittest.TestCase):
             # Every frame is written to the capture, so the write fails in a timer of the line, in a command of the
             # page, or in the command that undoes it.
             simulator = Simulator("EX9055D", "--port", "tcp:0", "--capture", fifo, "--timing", "instant",
-                                  "--speed", "10", "--fault", "foreign-traffic 2430314D0D every 10ms", stderr=subprocess.PIPE)
+                                  "--speed", "10", "--fault", "foreign-traffic 2430314D0D every 10ms",
+                                  stderr=subprocess.PIPE)
             self.addCleanup(simulator.close)
             page = Page(simulator.port)
             self.addCleanup(page.close)

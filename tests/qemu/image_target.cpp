@@ -8,7 +8,7 @@ namespace ex9000::rig {
 namespace {
 
 using play::Bytes;
-using play::step::Led;
+using play::Led;
 using std::chrono::milliseconds;
 using std::chrono::nanoseconds;
 
@@ -98,23 +98,23 @@ void ImageTarget::pulse_input(unsigned channel, std::uint32_t count) {
 
 std::uint16_t ImageTarget::outputs() { return settled().outputs(); }
 
-Led::Shows ImageTarget::led(Led::Shows expected) {
+Led ImageTarget::led(Led expected) {
   const bool lit = settled().led_lit();
   if (!module_->powered()) {
-    return Led::Shows::Off;
+    return Led::Off;
   }
-  if (lit && expected == Led::Shows::On) {
+  if (lit && expected == Led::On) {
     module_->assume_led_on();
-    return Led::Shows::On;
+    return Led::On;
   }
   const nanoseconds gives_up = module_->now() + kFlashing;
   while (module_->now() < gives_up) {
     module_->run_for(kLook);
     if (module_->led_lit() != lit) {
-      return Led::Shows::Flashing;
+      return Led::Flashing;
     }
   }
-  return lit ? Led::Shows::On : Led::Shows::Off;
+  return lit ? Led::On : Led::Off;
 }
 
 }  // namespace ex9000::rig

@@ -83,12 +83,12 @@ std::uint16_t PicoTarget::outputs() {
   return bench_.outputs();
 }
 
-play::step::Led::Shows PicoTarget::led(play::step::Led::Shows expected) {
-  using Shows = play::step::Led::Shows;
-  if (expected == Shows::Flashing && bench_.led_changes(kFlashes)) {
-    return Shows::Flashing;
+play::Led PicoTarget::led(play::Led expected) {
+  using play::Led;
+  if (expected == Led::Flashing && bench_.led_changes(kFlashes)) {
+    return Led::Flashing;
   }
-  return bench_.led() ? Shows::On : Shows::Off;
+  return bench_.led() ? Led::On : Led::Off;
 }
 
 void PicoTarget::end() {

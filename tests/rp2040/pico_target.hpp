@@ -26,7 +26,7 @@ class PicoTarget final : public play::Target {
   void set_input(unsigned channel, bool level) override;
   void pulse_input(unsigned channel, std::uint32_t count) override;
   std::uint16_t outputs() override;
-  play::step::Led::Shows led(play::step::Led::Shows expected) override;
+  play::Led led(play::Led expected) override;
   /// Throws std::runtime_error if a character began while the driver was off, if the driver was switched off
   /// too early or too late, if the chip and another part drove a pin to different levels, or if the watchdog
   /// has reset the chip. Ignores different levels on the pins of I2C.

@@ -104,19 +104,19 @@ void ProcessTarget::set_input(unsigned channel, bool level) {
 }
 
 void ProcessTarget::pulse_input(unsigned channel, std::uint32_t count) {
-  control("pulse " + std::to_string(channel) + " " + std::to_string(count));
+  control("pulse " + std::to_string(channel) + " x" + std::to_string(count));
 }
 
 std::uint16_t ProcessTarget::outputs() {
   return static_cast<std::uint16_t>(std::stoul(control("outputs"), nullptr, 16));
 }
 
-play::step::Led::Shows ProcessTarget::led(play::step::Led::Shows /*expected*/) {
+play::Led ProcessTarget::led(play::Led /*expected*/) {
   const std::string shows = control("led");
   if (shows == "flashing") {
-    return play::step::Led::Shows::Flashing;
+    return play::Led::Flashing;
   }
-  return shows == "on" ? play::step::Led::Shows::On : play::step::Led::Shows::Off;
+  return shows == "on" ? play::Led::On : play::Led::Off;
 }
 
 /// Switches the module off, so that it uses no processor time while the next transcript is played.

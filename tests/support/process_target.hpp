@@ -36,7 +36,7 @@ class ProcessTarget final : public play::Target {
   void set_input(unsigned channel, bool level) override;
   void pulse_input(unsigned channel, std::uint32_t count) override;
   std::uint16_t outputs() override;
-  play::step::Led::Shows led(play::step::Led::Shows expected) override;
+  play::Led led(play::Led expected) override;
   void end() override;
 
  private:

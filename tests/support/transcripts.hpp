@@ -4,10 +4,10 @@
 
 #include <chrono>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "sim/app/play/transcript.hpp"
+#include "sim/text/durations.hpp"
 #include "sim/text/fail.hpp"
 
 namespace ex9000::runner {
@@ -26,11 +26,10 @@ inline std::vector<play::Transcript> load_transcripts(const std::string& path) {
 inline std::chrono::milliseconds waits_of(const play::Transcript& transcript) {
   std::chrono::nanoseconds total{0};
   for (const play::Step& step : transcript.steps) {
-    if (const auto* wait = std::get_if<play::step::Wait>(&step.action)) {
-      total += wait->time;
-    } else if (std::holds_alternative<play::step::Silence>(step.action)) {
-      total += play::kSilence;
-    }
+    const sim::Words words = step.words();
+    total += words[0] == "wait"      ? sim::parse_time(words[1])
+             : words[0] == "silence" ? play::kSilence
+                                     : std::chrono::nanoseconds(0);
   }
   return std::chrono::ceil<std::chrono::milliseconds>(total);
 }

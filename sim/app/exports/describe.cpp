@@ -8,11 +8,11 @@
 #include "sim/app/exports/description.hpp"
 #include "sim/app/exports/template.hpp"
 #include "sim/files_and_ports/ports/tcp_address.hpp"
+#include "sim/notation/module_notation.hpp"
 #include "sim/text/embedded_files.hpp"
 #include "sim/text/fail.hpp"
 #include "sim/text/values.hpp"
 #include "sim/text/words.hpp"
-#include "sim/virtual_line/line/module_spec.hpp"
 
 namespace ex9000::sim {
 
@@ -50,20 +50,33 @@ Format format_called(const std::string& name) {
 }
 
 std::uint8_t parse_modbus_address(const std::string& text) {
-  const std::uint8_t address = with_place("--address ", [&] { return parse_hex_byte(text); });
+  const std::uint8_t address = with_place("--address: ", [&] { return parse_hex_byte(text); });
   if (!is_modbus_address(address)) {
-    fail("--address " + text + ": expected a Modbus address, hex 01 to F7");
+    fail("--address: '" + text + "': expected a Modbus address, hex 01 to F7");
   }
   return address;
 }
 
-TcpAddress parse_master_address(const std::string& option, const std::string& text) {
-  TcpAddress tcp = with_place(option + " ", [&] { return parse_tcp_address(text); });
+/// A port of the simulator as a master names it. HOST can be a name, unlike in --port of the simulator.
+struct MasterPort {
+  TcpAddress tcp;
+  bool modbus_tcp = false;  ///< Modbus TCP frames; false: RTU frames
+};
+
+MasterPort parse_master_port(const std::string& text) {
   const std::string of_hosts = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789.-_:%";
-  if (tcp.port == 0 || tcp.host.find_first_not_of(of_hosts) != std::string::npos) {
-    fail(option + " " + text + ": expected HOST:PORT of a simulator, for example 127.0.0.1:5020");
+  const auto colon = text.find(':');
+  const std::string kind = text.substr(0, colon);
+  MasterPort port;
+  port.modbus_tcp = kind == "modbus-tcp";
+  if (colon != std::string::npos && (port.modbus_tcp || kind == "tcp")) {
+    port.tcp = with_place("--port: ", [&] { return parse_tcp_address(text.substr(colon + 1)); });
   }
-  return tcp;
+  if (port.tcp.port == 0 || port.tcp.host.find_first_not_of(of_hosts) != std::string::npos) {
+    fail("--port: '" + text +
+         "': expected tcp:HOST:PORT or modbus-tcp:HOST:PORT of a simulator, for example tcp:127.0.0.1:5020");
+  }
+  return port;
 }
 
 /// Rejects an option that the format does not have.
@@ -80,10 +93,8 @@ Json module_of(const Json& model, const Format& format, const DescribeTexts& tex
               {"key", model["model_key"].get<std::string>() + "_" + hex_byte_text(address)},
               {"address", address}};
   if (format.scope == "port") {
-    const TcpAddress tcp = texts.modbus_tcp
-                               ? parse_master_address("--modbus-tcp", *texts.modbus_tcp)
-                               : parse_master_address("--tcp", texts.tcp.value_or("127.0.0.1:5020"));
-    module.update({{"host", tcp.host}, {"port", tcp.port}, {"modbus_tcp", texts.modbus_tcp.has_value()}});
+    const MasterPort port = parse_master_port(texts.port.value_or("tcp:127.0.0.1:5020"));
+    module.update({{"host", port.tcp.host}, {"port", port.tcp.port}, {"modbus_tcp", port.modbus_tcp}});
   }
   return module;
 }
@@ -109,7 +120,7 @@ std::string format_help() {
   std::string lines;
   for (const Format& format : formats()) {
     constexpr std::size_t kWidth = 16;
-    const char* const options = format.scope == "port"      ? " (MODEL; --address, --tcp, --modbus-tcp)"
+    const char* const options = format.scope == "port"      ? " (MODEL; --address, --port)"
                                 : format.scope == "address" ? " (MODEL; --address)"
                                 : format.scope == "model"   ? " (MODEL)"
                                                             : "";
@@ -123,14 +134,10 @@ std::string format_help() {
 std::string describe(const DescribeTexts& texts) {
   const Format format = format_called(texts.format);
   if (format.scope != "port") {
-    refuse("--tcp", texts.tcp, texts);
-    refuse("--modbus-tcp", texts.modbus_tcp, texts);
+    refuse("--port", texts.port, texts);
   }
   if (format.scope == "any" || format.scope == "model") {
     refuse("--address", texts.address, texts);
-  }
-  if (texts.tcp && texts.modbus_tcp) {
-    fail("--modbus-tcp: cannot be combined with --tcp; leave out one of them");
   }
   if (format.scope == "any") {
     const Models models = texts.model.empty() ? all_models() : Models{&model_called(texts.model)};

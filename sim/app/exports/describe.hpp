@@ -11,8 +11,7 @@ struct DescribeTexts {
   std::string model;
   std::string format = "markdown";
   std::optional<std::string> address = std::nullopt;
-  std::optional<std::string> tcp = std::nullopt;
-  std::optional<std::string> modbus_tcp = std::nullopt;
+  std::optional<std::string> port = std::nullopt;
 };
 
 /// Returns the names of the formats: `csv|esphome|...`.

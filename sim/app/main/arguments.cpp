@@ -130,13 +130,10 @@ CLI::App* add_describe(CLI::App& app, DescribeTexts& texts) {
                    "name the module's Modbus address in hex, for formats that need it (default: 01)")
       ->type_name("HH");
   describe
-      ->add_option("--tcp", texts.tcp,
-                   "name the TCP port of the simulator, for formats that need it (default: 127.0.0.1:5020)")
-      ->type_name("HOST:PORT");
-  describe
-      ->add_option("--modbus-tcp", texts.modbus_tcp,
-                   "name the Modbus TCP port of the simulator, in place of --tcp, for the same formats")
-      ->type_name("HOST:PORT");
+      ->add_option("--port", texts.port,
+                   "name the port of the simulator: tcp:HOST:PORT or modbus-tcp:HOST:PORT (default: "
+                   "tcp:127.0.0.1:5020)")
+      ->type_name("PORT");
   return describe;
 }
 

@@ -45,7 +45,8 @@ std::string of_inputs() {
 std::string of_faults() {
   return "A fault is KIND [VALUE] [WHEN] [for TIME].\n\n" + fault_help() +
          "\n"
-         "WHEN is one of: at 12.5s | every 5s | after 3 writes (to the EEPROM), and for a fault of a module also\n"
+         "WHEN is one of: at 12.5s | every 5s | after 3 writes (to the EEPROM), and for a fault of a module "
+         "also\n"
          "every reply | every 10th reply | with probability 0.01 (for each reply).\n"
          "Without WHEN the fault begins immediately and stays active; power-cut, foreign-traffic and hang\n"
          "then occur once. `for 2s` limits how long the fault lasts.\n"

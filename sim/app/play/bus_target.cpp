@@ -5,7 +5,8 @@
 
 #include "sim/app/setup/line_factory.hpp"
 #include "sim/files_and_ports/files/eeprom_file.hpp"
-#include "sim/front_ends/control_socket/control.hpp"
+#include "sim/notation/actions.hpp"
+#include "sim/notation/input_notation.hpp"
 #include "sim/notation/module_notation.hpp"
 #include "sim/text/fail.hpp"
 #include "sim/text/words.hpp"
@@ -116,10 +117,12 @@ void BusTarget::reset() {
   run_until(now() + kComingUp);
 }
 
+/// Throws std::runtime_error if the chosen module lacks the input.
 void BusTarget::require_input(unsigned channel) {
-  const std::string flaw = missing_input(module().model(), channel);
-  if (!flaw.empty()) {
-    throw std::runtime_error(flaw);
+  try {
+    sim::parse_input(std::to_string(channel), module().model());
+  } catch (const std::invalid_argument& error) {
+    throw std::runtime_error(error.what());
   }
 }
 
@@ -133,13 +136,13 @@ void BusTarget::pulse_input(unsigned channel, std::uint32_t count) {
   module().pulse_input(channel, count);
 }
 
-step::Led::Shows BusTarget::led(step::Led::Shows /*expected*/) {
+Led BusTarget::led(Led /*expected*/) {
   // No virtual time passes here, so the check does not extend the time between other steps. The unit tests of
   // StatusLed check how the LED flashes.
   if (module().powered() && module().module().led_pattern() == StatusLed::Pattern::HostTimeout) {
-    return step::Led::Shows::Flashing;
+    return Led::Flashing;
   }
-  return module().led_lit() ? step::Led::Shows::On : step::Led::Shows::Off;
+  return module().led_lit() ? Led::On : Led::Off;
 }
 
 void BusTarget::choose_module(std::size_t position) {
@@ -177,22 +180,16 @@ void BusTarget::turn_to(std::size_t line, std::size_t module) {
   module_ = module;
 }
 
-void BusTarget::run_fault_command(const std::string& command) {
-  sim::Words words = sim::words_of(command);
-  std::vector<sim::Control::ControlledLine> lines{{"", chosen()}};
-  std::string told = command;
-  if (words.size() > 1 && words[1].find_first_not_of("0123456789") == std::string::npos) {
-    lines.clear();
-    for (std::size_t i = 0; i < lines_.size(); ++i) {
-      lines.push_back({names_[i], *lines_[i]});
-    }
-    // The control socket expects the module's position before the command.
-    std::swap(words[0], words[1]);
-    told = sim::joined(words);
+void BusTarget::act(const sim::Words& words) {
+  sim::LinesInUse lines;
+  for (std::size_t i = 0; i < lines_.size(); ++i) {
+    lines.push_back({names_[i], *lines_[i]});
   }
-  const std::string reply = sim::Control(std::move(lines)).carry_out(told).text;
-  if (reply.rfind("ok", 0) != 0) {
-    throw std::runtime_error(reply.substr(reply.find(' ') + 1));
+  const bool of_a_module = words[0].find_first_not_of("0123456789") == std::string::npos;
+  try {
+    sim::act(of_a_module ? lines : sim::LinesInUse{lines[line_]}, words);
+  } catch (const std::invalid_argument& error) {
+    throw std::runtime_error(error.what());
   }
 }
 

@@ -31,9 +31,6 @@ class BusTarget : public Target {
   /// its line does not have.
   BusTarget(const sim::Setup& setup, const Memories& memories, PlayObserver* observer = nullptr);
 
-  /// Throws std::runtime_error if the chosen module lacks the input.
-  void require_input(unsigned channel);
-
   [[nodiscard]] sim::VirtualTime now() { return chosen().clock().virtual_now(); }
 
   // --- Target ---
@@ -49,16 +46,17 @@ class BusTarget : public Target {
   void set_input(unsigned channel, bool level) override;
   void pulse_input(unsigned channel, std::uint32_t count) override;
   std::uint16_t outputs() override { return module().outputs(); }
-  step::Led::Shows led(step::Led::Shows expected) override;
+  Led led(Led expected) override;
   void choose_module(std::size_t position) override;
   void choose_line(const std::string& name) override;
-  void run_fault_command(const std::string& command) override;
+  void act(const sim::Words& words) override;
 
  protected:
   sim::Line& chosen() { return *lines_[line_]; }
   sim::SimulatedModule& module() { return chosen().module(module_); }
 
  private:
+  void require_input(unsigned channel);
   void run_until(sim::VirtualTime until);
   void add_line(const sim::LineSetup& setup, Memories::const_iterator memories, std::uint64_t seed);
   void turn_to(std::size_t line, std::size_t module);

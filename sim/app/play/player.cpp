@@ -4,7 +4,7 @@
 #include <array>
 #include <stdexcept>
 
-#include "sim/app/play/modbus_frame.hpp"
+#include "sim/app/play/playing.hpp"
 #include "sim/text/values.hpp"
 
 namespace ex9000::play {
@@ -44,115 +44,59 @@ std::string shown(const Bytes& bytes) {
   return sim::hex_text(bytes, " ") + " (" + std::to_string(bytes.size()) + " bytes)";
 }
 
-const char* name_of(step::Led::Shows shows) {
-  return shows == step::Led::Shows::On ? "on" : shows == step::Led::Shows::Off ? "off" : "flashing";
+}  // namespace
+
+void Playing::send(const Bytes& request) {
+  nothing_more();
+  target_.send(request);
+  reply_pending_ = true;
 }
 
-/// Each call carries out one step. Throws std::runtime_error if the step fails.
-class Playing {
- public:
-  Playing(Target& target, bool checksum) : target_(target), checksum_(checksum) {}
+void Playing::send_more(const Bytes& bytes) {
+  target_.send(bytes);
+  reply_pending_ = true;
+}
 
-  void operator()(const step::SendDcon& step) { send(dcon_frame(step.text)); }
-  void operator()(const step::ExpectDcon& step) { expect_one_of({dcon_frame(step.text)}); }
-  void operator()(const step::SendModbus& step) { send(with_crc(step.frame)); }
-  void operator()(const step::ExpectModbus& step) {
-    std::vector<Bytes> permitted;
-    for (const Bytes& frame : step.frames) {
-      permitted.push_back(with_crc(frame));
-    }
-    expect_one_of(permitted);
+void Playing::expect_one_of(const std::vector<Bytes>& permitted) {
+  const Bytes heard = target_.receive(permitted.front().size(), kLongestReply);
+  reply_pending_ = false;
+  if (std::find(permitted.begin(), permitted.end(), heard) == permitted.end()) {
+    throw std::runtime_error("expected " + shown(permitted.front()) + ", received " + shown(heard));
   }
-  /// Does not check for earlier replies, because the bytes may be the rest of a frame.
-  void operator()(const step::SendBytes& step) {
-    target_.send(step.bytes);
-    reply_pending_ = true;
-  }
-  void operator()(const step::Silence& /*step*/) { nothing_for(kSilence); }
-  void operator()(const step::Wait& step) { nothing_for(step.time); }
-  void operator()(const step::Checksum& step) { checksum_ = step.on; }
-  void operator()(const step::Format& step) { target_.set_format(step.format); }
-  void operator()(const step::Baud& step) {
-    nothing_more();
-    target_.set_baud(step.rate);
-  }
-  void operator()(const step::Power& step) {
-    nothing_more();
-    target_.power(step.on);
-  }
-  void operator()(const step::PowerCycle& /*step*/) {
-    nothing_more();
-    target_.power(false);
-    target_.power(true);
-  }
-  void operator()(const step::Reset& /*step*/) {
-    nothing_more();
-    target_.reset();
-  }
-  void operator()(const step::Init& step) { target_.set_init(step.asserted); }
-  void operator()(const step::Input& step) { target_.set_input(step.channel, step.level); }
-  void operator()(const step::Pulse& step) { target_.pulse_input(step.channel, step.count); }
-  void operator()(const step::Outputs& step) {
-    const std::uint16_t outputs = target_.outputs();
-    if (outputs != step.channels) {
-      throw std::runtime_error("outputs are " + sim::hex_word_text(outputs));
-    }
-  }
-  void operator()(const step::Led& step) {
-    const step::Led::Shows shows = target_.led(step.shows);
-    if (shows != step.shows) {
-      throw std::runtime_error(std::string("the LED is ") + name_of(shows));
-    }
-  }
+}
 
-  void operator()(const step::OnModule& step) {
-    nothing_more();
-    target_.choose_module(step.position);
+void Playing::expect_outputs(std::uint16_t channels) {
+  const std::uint16_t outputs = target_.outputs();
+  if (outputs != channels) {
+    throw std::runtime_error("outputs are " + sim::hex_word_text(outputs));
   }
-  void operator()(const step::OnLine& step) {
-    nothing_more();
-    target_.choose_line(step.name);
+}
+
+void Playing::expect_led(Led shows) {
+  const Led shown = target_.led(shows);
+  if (shown != shows) {
+    throw std::runtime_error(std::string("the LED is ") + led_text(shown));
   }
-  void operator()(const step::FaultCommand& step) { target_.run_fault_command(step.command); }
+}
 
-  /// Throws std::runtime_error if bytes arrive that no step expects.
-  void nothing_more() { nothing_for(reply_pending_ ? kReplyBegins : kAfterReply); }
-
- private:
-  [[nodiscard]] Bytes dcon_frame(const std::string& text) const {
-    const std::string frame = text + (checksum_ ? checksum_of(text) : "") + "\r";
-    return {frame.begin(), frame.end()};
+void Playing::nothing_for(std::chrono::nanoseconds time) {
+  const Bytes heard = target_.listen(time);
+  reply_pending_ = reply_pending_ && time < kReplyBegins;
+  if (!heard.empty()) {
+    throw std::runtime_error("expected nothing, received " + shown(heard));
   }
+}
 
-  void send(const Bytes& bytes) {
-    nothing_more();
-    target_.send(bytes);
-    reply_pending_ = true;
+void Playing::nothing_more() {
+  if (!rehearses_) {
+    nothing_for(reply_pending_ ? kReplyBegins : kAfterReply);
   }
+}
 
-  /// `permitted` contains at least one reply; all have the same length.
-  void expect_one_of(const std::vector<Bytes>& permitted) {
-    const Bytes heard = target_.receive(permitted.front().size(), kLongestReply);
-    reply_pending_ = false;
-    if (std::find(permitted.begin(), permitted.end(), heard) == permitted.end()) {
-      throw std::runtime_error("expected " + shown(permitted.front()) + ", received " + shown(heard));
-    }
-  }
-
-  void nothing_for(std::chrono::nanoseconds time) {
-    const Bytes heard = target_.listen(time);
-    reply_pending_ = reply_pending_ && time < kReplyBegins;
-    if (!heard.empty()) {
-      throw std::runtime_error("expected nothing, received " + shown(heard));
-    }
-  }
-
-  Target& target_;
-  bool checksum_;
-  bool reply_pending_ = false;  ///< bytes were sent, and a reply may still arrive
-};
-
-}  // namespace
+Bytes Playing::dcon_frame(const std::string& text) const {
+  const std::string frame = text + (checksum_ ? checksum_of(text) : "") + "\r";
+  return {frame.begin(), frame.end()};
+}
 
 Result play(const Transcript& transcript, Target& target) {
   Result result;
@@ -171,7 +115,7 @@ Result play(const Transcript& transcript, Target& target) {
     for (const Step& step : transcript.steps) {
       ++result.steps;
       where = transcript.file + ":" + std::to_string(step.line) + ": " + step.text;
-      std::visit(playing, step.action);
+      step.run(playing);
     }
     where = transcript.file + ": at the end";
     playing.nothing_more();

@@ -6,12 +6,20 @@
 #include <cstdint>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "firmware/model/model.hpp"
 #include "firmware/settings/settings.hpp"
 #include "sim/app/play/transcript.hpp"
+#include "sim/text/words.hpp"
 
 namespace ex9000::play {
+
+/// What the status LED shows.
+enum class Led { On, Off, Flashing };
+constexpr const char* led_text(Led led) {
+  return led == Led::On ? "on" : led == Led::Off ? "off" : "flashing";
+}
 
 /// A module and the master's end of its line. A target with several modules acts on one of them at a time.
 /// Each call returns when its action is complete; the target lets the required time pass.
@@ -47,10 +55,10 @@ class Target {
   virtual std::uint16_t outputs() = 0;
   /// Returns the state of the LED. `expected` is the state in the step. A target that can only watch the LED
   /// may use `expected` to choose how long to watch.
-  virtual step::Led::Shows led(step::Led::Shows expected) = 0;
+  virtual Led led(Led expected) = 0;
 
   // Functions for a target with several modules and with faults. They throw std::runtime_error if the module,
-  // the line or the fault does not exist, or if the fault command is wrong. The implementations in this class
+  // the line or the fault does not exist, or if the action is wrong. The implementations in this class
   // always throw.
 
   /// Chooses the module for the following calls. `position` is the position of the module, from 0, across all
@@ -62,11 +70,8 @@ class Target {
   virtual void choose_line(const std::string& /*name*/) {
     throw std::runtime_error("there is only one line");
   }
-  /// Carries out `fault FAULT`, `fault off K|all` or `faults` for the chosen line, or `fault N FAULT` for
-  /// module N. N is the position of the module, from 1, across all lines.
-  virtual void run_fault_command(const std::string& /*command*/) {
-    throw std::runtime_error("this target has no faults");
-  }
+  /// Carries out an action (sim/notation/actions.hpp): `N ACTION`, or `ACTION` of the chosen line.
+  virtual void act(const sim::Words& /*words*/) { throw std::runtime_error("this target has no actions"); }
 
   /// Called at the end of a run if all steps have passed. Throws std::runtime_error if the target has found
   /// an error that no step has reported.

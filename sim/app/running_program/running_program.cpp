@@ -27,11 +27,12 @@ RunningProgram::RunningProgram(boost::asio::io_context& io, Setup setup, Print p
 }
 
 void RunningProgram::open_control() {
-  std::vector<Control::ControlledLine> lines;
+  LinesInUse lines;
   for (const auto& running : lines_) {
     const LineSummary& introduced = running->introduced();
     lines.push_back({introduced.name, running->line(), [&line = *running] { return line.sent(); },
-                     introduced.port("serial") != nullptr});
+                     introduced.port("serial") != nullptr,
+                     [&line = *running](const std::string& text) { line.record().note(text); }});
   }
   control_.emplace(std::move(lines));
   if (!setup_.control) {

@@ -196,11 +196,9 @@ bool Session::compare() {
   if (outputs != reference_.outputs()) {
     return differs("outputs " + hex(reference_.outputs(), 4), "outputs " + hex(outputs, 4));
   }
-  using Shows = play::step::Led::Shows;
-  const Shows expected = !reference_.powered()      ? Shows::Off
-                         : reference_.led_flashes() ? Shows::Flashing
-                                                    : Shows::On;
-  const Shows led = target_.led(expected);
+  using play::Led;
+  const Led expected = !reference_.powered() ? Led::Off : reference_.led_flashes() ? Led::Flashing : Led::On;
+  const Led led = target_.led(expected);
   const char* const names[] = {"led on", "led off", "led flashing"};
   return led == expected ||
          differs(names[static_cast<unsigned>(expected)], names[static_cast<unsigned>(led)]);

@@ -21,8 +21,8 @@ WIREN_BOARD = {"coil": "coil", "discrete": "discrete_input", "holding": "holding
 
 # Each of these options of the program selects a type of frame. The dictionaries map the options to the names that Home
 # Assistant and Node-RED use for these types.
-HOME_ASSISTANT = {"--tcp": "rtuovertcp", "--modbus-tcp": "tcp"}
-NODE_RED_CLIENTS = {"--tcp": "TELNET", "--modbus-tcp": "DEFAULT"}
+HOME_ASSISTANT = {"tcp": "rtuovertcp", "modbus-tcp": "tcp"}
+NODE_RED_CLIENTS = {"tcp": "TELNET", "modbus-tcp": "DEFAULT"}
 
 # The number of outputs and the number of inputs of each -M model (wire.md section 1).
 CHANNELS = {
@@ -64,9 +64,9 @@ def ranges_to_read(model, presets):
 
 
 class EveryMap(unittest.TestCase):
-    def of_each_model(self, play, options=("--tcp", "--modbus-tcp")):
-        for model, option in itertools.product(models_with_modbus(), options):
-            with self.subTest(model=model, option=option), Line(model, option) as line:
+    def of_each_model(self, play, kinds=("tcp", "modbus-tcp")):
+        for model, kind in itertools.product(models_with_modbus(), kinds):
+            with self.subTest(model=model, kind=kind), Line(model, kind) as line:
                 play(line, model)
 
     def expect_switch(self, line, read, write):
@@ -76,9 +76,9 @@ class EveryMap(unittest.TestCase):
 
     def test_home_assistant_switches_every_output_reads_every_sensor_and_has_every_action(self):
         def play(line, model):
-            text = describe(model, "--format", "home-assistant", line.option, f"127.0.0.1:{line.port}")
+            text = describe(model, "--format", "home-assistant", "--port", f"{line.kind}:127.0.0.1:{line.port}")
             hub = yaml.safe_load(text)[0]
-            self.assertEqual((hub["type"], hub["port"]), (HOME_ASSISTANT[line.option], line.port))
+            self.assertEqual((hub["type"], hub["port"]), (HOME_ASSISTANT[line.kind], line.port))
             switches, sensors = hub.get("switches", []), hub.get("binary_sensors", []) + hub.get("sensors", [])
             self.assertEqual({switch["address"] for switch in switches}, set(range(CHANNELS[model][0])))
             for switch in switches:
@@ -102,13 +102,13 @@ class EveryMap(unittest.TestCase):
 
     def test_node_red_has_every_required_read_and_write_and_each_succeeds(self):
         def play(line, model):
-            text = describe(model, "--format", "node-red", line.option, f"127.0.0.1:{line.port}")
+            text = describe(model, "--format", "node-red", "--port", f"{line.kind}:127.0.0.1:{line.port}")
             nodes = {node["id"]: node for node in json.loads(text)}
             read, written = set(), set()
             for node in nodes.values():
                 if node["type"] == "modbus-client":
                     client = (node["tcpType"], node["tcpPort"])
-                    self.assertEqual(client, (NODE_RED_CLIENTS[line.option], str(line.port)))
+                    self.assertEqual(client, (NODE_RED_CLIENTS[line.kind], str(line.port)))
                 elif node["type"] == "modbus-read":
                     first, count = int(node["adr"]), int(node["quantity"])
                     kind = NODE_RED[node["dataType"]]
@@ -150,7 +150,7 @@ class EveryMap(unittest.TestCase):
             self.assertEqual(read, {(kind, first + i) for kind, first, size in ranges for i in range(size)})
             self.assertEqual(written, coils_to_write(model))
 
-        self.of_each_model(play, ["--tcp"])  # the export contains no port
+        self.of_each_model(play, ["tcp"])  # the export contains no port
 
     def test_wb_mqtt_serial_reads_its_channels_and_writes_every_required_coil(self):
         def play(line, model):
@@ -167,7 +167,7 @@ class EveryMap(unittest.TestCase):
                     written |= {(channel["address"], True), (channel["address"], False)}
             self.assertEqual(written, coils_to_write(model))
 
-        self.of_each_model(play, ["--tcp"])  # a template contains no port
+        self.of_each_model(play, ["tcp"])  # a template contains no port
 
 
 if __name__ == "__main__":

@@ -12,7 +12,6 @@ namespace ex9000::sim {
 namespace {
 
 constexpr const char* kForAnyModel[] = {"csv", "json", "markdown"};
-constexpr const char* kWithPort[] = {"home-assistant", "node-red"};
 constexpr const char* kForTools[] = {"esphome", "home-assistant", "node-red", "wb-mqtt-serial"};
 
 std::string described(const std::string& model, const char* format) {
@@ -78,11 +77,11 @@ TEST(Describe, FormatsForToolsRequireAModelWithModbus) {
 
 TEST(Describe, AnAddressIsOneOrTwoHexDigitsFrom01ToF7) {
   for (const char* address : {"0", "00", "F8", "FF"}) {
-    expect_refused({"EX9042D-M", "home-assistant", address, {}}, std::string("--address ") + address,
+    expect_refused({"EX9042D-M", "home-assistant", address, {}}, std::string("--address: '") + address,
                    "expected a Modbus address, hex 01 to F7");
   }
   for (const char* address : {"", "001", "1G", "0x1", "-1", "1,"}) {
-    expect_refused({"EX9042D-M", "home-assistant", address, {}}, "--address '" + std::string(address) + "'",
+    expect_refused({"EX9042D-M", "home-assistant", address, {}}, "--address: '" + std::string(address) + "'",
                    "expected one or two hex digits");
   }
   EXPECT_NE(describe({"EX9042D-M", "home-assistant", "f7", {}}).find("slave: 247\n"), std::string::npos);
@@ -91,19 +90,13 @@ TEST(Describe, AnAddressIsOneOrTwoHexDigitsFrom01ToF7) {
 
 TEST(Describe, AnInvalidTcpHostOrPortIsRefused) {
   for (const char* tcp : {"", "0", "localhost:0", "localhost", "65536", "a b:1", "\xFF:1", "\"a\":1"}) {
-    expect_refused({"EX9042D-M", "node-red", {}, tcp}, "--tcp ", "HOST:PORT");
-    expect_refused({"EX9042D-M", "node-red", {}, {}, tcp}, "--modbus-tcp ", "HOST:PORT");
+    for (const std::string kind : {"tcp:", "modbus-tcp:", "", "pty:"}) {
+      expect_refused({"EX9042D-M", "node-red", {}, kind + tcp}, "--port: ", "HOST:PORT");
+    }
   }
-  const std::string text = describe({"EX9042D-M", "node-red", {}, "[fe80::1%eth0]:4001"});
+  const std::string text = describe({"EX9042D-M", "node-red", {}, "tcp:[fe80::1%eth0]:4001"});
   EXPECT_NE(text.find("\"tcpHost\": \"fe80::1%eth0\""), std::string::npos);
   EXPECT_NE(text.find("\"tcpPort\": \"4001\""), std::string::npos);
-}
-
-TEST(Describe, TcpAndModbusTcpTogetherAreRefused) {
-  for (const char* format : kWithPort) {
-    expect_refused({"EX9042D-M", format, {}, "127.0.0.1:5020", "127.0.0.1:502"},
-                   "--modbus-tcp: cannot be combined with --tcp", "leave out one of them");
-  }
 }
 
 TEST(Describe, FormatsRefuseTheAddressAndThePortsThatTheyDoNotContain) {
@@ -112,8 +105,7 @@ TEST(Describe, FormatsRefuseTheAddressAndThePortsThatTheyDoNotContain) {
     if (std::string(format) != "esphome") {
       expect_refused({"EX9042D-M", format, "01", {}}, "--address" + has_no, "leave it out");
     }
-    expect_refused({"EX9042D-M", format, {}, "5020"}, "--tcp" + has_no, "leave it out");
-    expect_refused({"EX9042D-M", format, {}, {}, "5020"}, "--modbus-tcp" + has_no, "leave it out");
+    expect_refused({"EX9042D-M", format, {}, "tcp:5020"}, "--port" + has_no, "leave it out");
   }
 }
 
@@ -128,8 +120,7 @@ TEST(Describe, TheHelpHasALineForEachFormat) {
   const std::string help = "\n" + format_help();
   EXPECT_NE(help.find("\n  json            all data as JSON, for programs\n"), std::string::npos) << help;
   EXPECT_NE(help.find("ESPHome (MODEL; --address)\n"), std::string::npos) << help;
-  EXPECT_NE(help.find("node-red-contrib-modbus (MODEL; --address, --tcp, --modbus-tcp)\n"),
-            std::string::npos);
+  EXPECT_NE(help.find("node-red-contrib-modbus (MODEL; --address, --port)\n"), std::string::npos);
 }
 
 }  // namespace

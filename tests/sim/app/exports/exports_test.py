@@ -33,7 +33,7 @@ def with_further_entities(hub):
 
 class HomeAssistant(unittest.TestCase):
     def test_a_hub_has_switches_sensors_and_counters(self):
-        hub = hub_of("EX9060D-M", "--address", "2a", "--tcp", "192.0.2.7:4001")
+        hub = hub_of("EX9060D-M", "--address", "2a", "--port", "tcp:192.0.2.7:4001")
         self.assertEqual({key: hub[key] for key in ["name", "type", "host", "port"]},
                          {"name": "ex9060d_m_2A", "type": "rtuovertcp", "host": "192.0.2.7", "port": 4001})
         of = {entity["name"].removeprefix("EX9060D-M 2A "): entity for _, entity in entities(hub)}
@@ -64,8 +64,8 @@ class HomeAssistant(unittest.TestCase):
                 self.assertGreaterEqual(entity["scan_interval"], 5)
 
     def test_over_modbus_tcp_only_the_type_of_the_hub_differs(self):
-        over_tcp, over_modbus_tcp = (hub_of("EX9052D-M", option, "[fe80::1%eth0]:502")
-                                     for option in ["--tcp", "--modbus-tcp"])
+        over_tcp, over_modbus_tcp = (hub_of("EX9052D-M", "--port", f"{kind}:[fe80::1%eth0]:502")
+                                     for kind in ["tcp", "modbus-tcp"])
         self.assertEqual((over_tcp.pop("type"), over_modbus_tcp.pop("type")), ("rtuovertcp", "tcp"))
         self.assertEqual(over_tcp["host"], "fe80::1%eth0")
         self.assertEqual(over_tcp, over_modbus_tcp)

@@ -22,13 +22,13 @@ def crc16(data):
 class Line:
     """One module at address 01, which a master reaches over TCP.
 
-    The option of the program selects the frames: --tcp selects Modbus RTU, --modbus-tcp selects Modbus TCP.
+    The kind of the port selects the frames: tcp selects Modbus RTU, modbus-tcp selects Modbus TCP.
     `read` and `write_coil` raise OSError if the simulator has ended or sends nothing for 60 s.
     """
 
-    def __init__(self, model, option="--tcp"):
-        self.option = option
-        command = [PROGRAM, f"{model}@01", option, "0", "--line", "instant"]
+    def __init__(self, model, kind="tcp"):
+        self.kind = kind
+        command = [PROGRAM, f"{model}@01", "--port", f"{kind}:0", "--timing", "instant"]
         self._program = subprocess.Popen(command, stdout=subprocess.PIPE, encoding="utf-8")
         self.port = self._port()
         self._socket = socket.create_connection(("127.0.0.1", self.port), timeout=60)  # seconds; only detects a hang
@@ -93,7 +93,7 @@ class Line:
         Raises ValueError if the reply is an exception, or if its header, CRC, address or function is wrong.
         """
         request = struct.pack(">BBHH", 1, function, first, value)
-        reply = self._ask_modbus_tcp(request) if self.option == "--modbus-tcp" else self._ask_rtu(request)
+        reply = self._ask_modbus_tcp(request) if self.kind == "modbus-tcp" else self._ask_rtu(request)
         if reply[:2] != request[:2]:
             expected = f"expected a reply that begins with {request[:2].hex(' ')}, in hex"
             raise ValueError(f"request {request.hex(' ')}: wrong reply {reply.hex(' ')}; {expected}")

@@ -64,7 +64,7 @@ function mistakesOf(node) {
 test("the editor accepts the properties of every node", () => {
   assert.ok(MODELS.length >= 8);
   for (const model of MODELS) {
-    for (const options of [[], ["--modbus-tcp", "192.0.2.7:502", "--address", "f7"]]) {
+    for (const options of [[], ["--port", "modbus-tcp:192.0.2.7:502", "--address", "f7"]]) {
       const nodes = flowOf(model, ...options).filter(({ type }) => type.startsWith("modbus-"));
       assert.ok(nodes.length > 0);
       nodes.forEach((node) => assert.deepEqual(mistakesOf(node), [], model));
@@ -101,7 +101,7 @@ test("Node-RED finds the tab, the client and the target of each wire", () => {
 test("ids are stable, and differ between modules", () => {
   const idsOf = (...words) => flowOf(...words).map(({ id }) => id);
   const ids = idsOf("EX9042D-M");
-  assert.deepEqual(idsOf("EX9042D-M", "--modbus-tcp", "192.0.2.7:4001"), ids);
+  assert.deepEqual(idsOf("EX9042D-M", "--port", "modbus-tcp:192.0.2.7:4001"), ids);
   const others = new Set([...idsOf("EX9042D-M", "--address", "02"), ...idsOf("EX9043D-M")]);
   assert.ok(ids.every((id) => !others.has(id)));
 });

@@ -114,16 +114,17 @@ TEST(Arguments, DescribeAcceptsAModelNameInAnyCaseWithOrWithoutEx) {
 TEST(Arguments, DescribeOptionsMayComeBeforeOrAfterTheModel) {
   EXPECT_EQ(printed({"describe", "--format=json", "EX9042D"}),
             printed({"describe", "EX9042D", "--format", "json"}));
-  EXPECT_EQ(printed({"describe", "EX9042D-M", "--tcp", "4001", "--address=2", "--format", "home-assistant"}),
-            printed({"describe", "--format", "home-assistant", "--address", "02", "--tcp", "127.0.0.1:4001",
-                     "EX9042D-M"}));
+  EXPECT_EQ(
+      printed({"describe", "EX9042D-M", "--port", "tcp:4001", "--address=2", "--format", "home-assistant"}),
+      printed({"describe", "--format", "home-assistant", "--address", "02", "--port", "tcp:127.0.0.1:4001",
+               "EX9042D-M"}));
 }
 
 TEST(Arguments, WrongDescribeArgumentsAreRefused) {
   expect_error({"describe", "EX9999"}, "describe: 'EX9999'", "--models");
   expect_error({"describe", "EX9042D@01"}, "EX9042D@01", "--models");
   expect_error({"describe", "EX9042D", "EX9060D"}, "EX9060D", "--help");
-  expect_error({"describe", "EX9042D", "--port", "pty:x"}, "--port", "--help");
+  expect_error({"describe", "EX9042D", "--pty", "x"}, "--pty", "--help");
   expect_error({"describe", "EX9042D", "--format"}, "--format", "--help");
   EXPECT_EQ(parse({"describe", "EX9999"}).exit_status, kWrongArguments);
 }
@@ -141,7 +142,8 @@ TEST(Arguments, HelpListsEachOptionWithItsValue) {
 
 TEST(Arguments, DescribeHasItsOwnHelp) {
   const std::string text = printed({"describe", "--help"});
-  for (const char* word : {"MODEL", "--format", "csv|esphome|", "--address", "--tcp", "127.0.0.1:5020"}) {
+  for (const char* word :
+       {"MODEL", "--format", "csv|esphome|", "--address", "--port", "tcp:127.0.0.1:5020"}) {
     EXPECT_NE(text.find(word), std::string::npos) << word;
   }
   EXPECT_EQ(text.find("--baud"), std::string::npos);

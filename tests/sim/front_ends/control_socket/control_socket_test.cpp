@@ -107,7 +107,7 @@ TEST(ControlSocket, CommandsSetInputsAndReadOutputsOfAModule) {
   ControlClient client(simulator.socket());
   Terminal terminal(simulator.tty(), 9600);
   EXPECT_EQ(client.ask("1 input 5 on"), "ok");
-  EXPECT_EQ(client.ask("1 pulse 0 1234"), "ok");
+  EXPECT_EQ(client.ask("1 pulse 0 x1234"), "ok");
   terminal.type("@01\r");
   EXPECT_EQ(terminal.read_line(kReplyTimeout), ">0020\r");
   terminal.type("#010\r");

@@ -97,12 +97,12 @@ TEST(ControlPulse, UpToAMillionPulsesOfOneCommandAreCounted) {
   for (const Case& pulses : cases) {
     ControlBench ascii("EX9052D");
     const VirtualTime before = ascii.now();
-    EXPECT_EQ(ascii.tell(std::string("1 pulse 7 ") + pulses.count), "ok");
+    EXPECT_EQ(ascii.tell(std::string("1 pulse 7 x") + pulses.count), "ok");
     EXPECT_EQ(ascii.now(), before);
     EXPECT_EQ(ascii.ask("#017"), std::string("!01") + pulses.ascii) << pulses.count;
     EXPECT_EQ(ascii.ask("#016"), "!0100000");
     ControlBench modbus("EX9052D-M");
-    EXPECT_EQ(modbus.tell(std::string("1 pulse 0 ") + pulses.count), "ok");
+    EXPECT_EQ(modbus.tell(std::string("1 pulse 0 x") + pulses.count), "ok");
     EXPECT_EQ(modbus.ask(Bytes{1, 0x04, 0, 0, 0, 1}),
               (Bytes{1, 0x04, 2, static_cast<std::uint8_t>(pulses.modbus >> 8U),
                      static_cast<std::uint8_t>(pulses.modbus & 0xFFU)}))
@@ -115,14 +115,14 @@ TEST(ControlPulse, AnInvalidCountIsRefused) {
   for (const char* count :
        {"0", "00", "1000001", "10000000", "999999999", "4294967296", "4294967297", "18446744073709551617",
         "99999999999999999999999999", "-1", "+1", "0x10", "1e3", "1.0", "1,000", "ten", "1 2", "1;"}) {
-    bench.expect_refused(std::string("1 pulse 0 ") + count);
+    bench.expect_refused(std::string("1 pulse 0 x") + count);
   }
 }
 
 TEST(ControlPulse, PulsesWithoutPowerAreNotCounted) {
   ControlBench bench("EX9052D");
   bench.tell("1 power off");
-  EXPECT_EQ(bench.tell("1 pulse 0 5"), "ok");
+  EXPECT_EQ(bench.tell("1 pulse 0 x5"), "ok");
   bench.tell("1 power on");
   bench.run(milliseconds(100));
   EXPECT_EQ(bench.ask("#010"), "!0100000");

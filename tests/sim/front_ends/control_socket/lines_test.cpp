@@ -49,7 +49,7 @@ TEST(ControlLine, TheCommandHelpAndTheOptionHelpShowTheseCommands) {
                                  "N reset",
                                  "N init on|off",
                                  "N input C on|off",
-                                 "N pulse C [COUNT]",
+                                 "N pulse C [xCOUNT]",
                                  "N inputs",
                                  "N outputs",
                                  "N timers",
@@ -159,11 +159,10 @@ TEST(ControlLine, FormatSetsTheLineFormatOfTheMaster) {
 TEST(ControlLine, RateAndFormatOfASerialPortCannotBeChanged) {
   ModuleBench bench("EX9052D");
   Control control({{"", bench.line(), nullptr, true}});
-  EXPECT_EQ(
-      control.carry_out("format 8E1").text,
-      "error: the line's serial port keeps its line format; start the program with another line format");
+  EXPECT_EQ(control.carry_out("format 8E1").text,
+            "error: the line's serial port keeps its rate and format; start the program with others");
   EXPECT_EQ(control.carry_out("baud 19200").text,
-            "error: the line's serial port keeps its rate; start the program with another rate");
+            "error: the line's serial port keeps its rate and format; start the program with others");
   EXPECT_EQ(bench.line().master().mode(), hal::SerialMode{9600});
 }
 

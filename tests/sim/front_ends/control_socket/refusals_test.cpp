@@ -40,7 +40,7 @@ TEST(ControlRefusals, InvalidCommandsAreRefused) {
                               "1 input 99999999999999999999 on",
                               "1 input 4294967296 on",
                               "1 pulse",
-                              "1 pulse 0 1 1",
+                              "1 pulse 0 x1 1",
                               "1 pulse -1",
                               "1 inputs 0",
                               "1 outputs 0",

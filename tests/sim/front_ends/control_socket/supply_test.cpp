@@ -61,7 +61,7 @@ TEST(ControlPower, OffDuringAWriteLeavesTheOldOrTheNewSettings) {
 TEST(ControlReset, DrivesThePowerOnValueSetsTheResetStatusAndClearsTheCountersAndTheLatches) {
   ControlBench bench("EX9055D");
   bench.tell("1 input 3 on");
-  bench.tell("1 pulse 0 7");
+  bench.tell("1 pulse 0 x7");
   bench.ask("@01FF");
   bench.ask("$015");
   ASSERT_EQ(bench.ask("#010"), "!0100007");
@@ -174,7 +174,7 @@ TEST(ControlHang, AResetOrAPowerCycleEndsAHang) {
 TEST(ControlHang, OtherCommandsWorkOnAHungModule) {
   ControlBench bench("EX9055D");
   bench.tell("1 hang");
-  for (const char* command : {"1 input 0 on", "1 pulse 1 100000", "1 init on", "1 init off", "1 inputs",
+  for (const char* command : {"1 input 0 on", "1 pulse 1 x100000", "1 init on", "1 init off", "1 inputs",
                               "1 outputs", "1 led", "1 status", "list", "1 power on"}) {
     EXPECT_EQ(bench.tell(command).rfind("ok", 0), 0U) << command;
   }

@@ -1,0 +1,243 @@
+#include "sim/app/play/steps.hpp"
+
+#include <utility>
+
+#include "sim/app/play/modbus_frame.hpp"
+#include "sim/app/play/playing.hpp"
+#include "sim/notation/actions.hpp"
+#include "sim/notation/input_notation.hpp"
+#include "sim/text/durations.hpp"
+#include "sim/text/fail.hpp"
+#include "sim/text/values.hpp"
+
+namespace ex9000::play {
+
+namespace {
+
+using sim::fail;
+using sim::parse_on_off;
+using sim::Words;
+using Run = std::function<void(Playing& playing)>;
+
+/// A step that begins with a keyword.
+struct Row {
+  std::string_view name;
+  std::string_view args;
+  std::size_t fewest;
+  std::size_t most;
+  enum class Of {
+    Any,         ///< transcripts and scenarios
+    AnyActs,     ///< the same, and the step changes a module
+    AnyOnInput,  ///< the same, and the first argument is an input of the module
+    Scenarios,
+  } of;
+  Run (*parse)(const Words& args);
+
+  [[nodiscard]] std::string shape() const {
+    return std::string(name) + (args.empty() ? "" : " ") + std::string(args);
+  }
+};
+
+Run supply(const Words& args) {
+  return [on = parse_on_off(args[0])](Playing& playing) {
+    playing.nothing_more();
+    playing.target().power(on);
+  };
+}
+
+Run power_cycle(const Words& /*args*/) {
+  return [](Playing& playing) {
+    playing.nothing_more();
+    playing.target().power(false);
+    playing.target().power(true);
+  };
+}
+
+Run reset(const Words& /*args*/) {
+  return [](Playing& playing) {
+    playing.nothing_more();
+    playing.target().reset();
+  };
+}
+
+Run baud(const Words& args) {
+  return [rate = sim::parse_baud_rate(args[0])](Playing& playing) {
+    playing.nothing_more();
+    playing.target().set_baud(rate);
+  };
+}
+
+Run led(const Words& args) {
+  for (const Led shows : {Led::On, Led::Off, Led::Flashing}) {
+    if (args[0] == led_text(shows)) {
+      return [shows](Playing& playing) { playing.expect_led(shows); };
+    }
+  }
+  fail("'" + args[0] + "': expected on, off or flashing");
+}
+
+Run module(const Words& args) {
+  constexpr unsigned long kMostModules = 999'999;
+  return [position = sim::parse_whole_number(args[0], 1, kMostModules) - 1](Playing& playing) {
+    playing.nothing_more();
+    playing.target().choose_module(position);
+  };
+}
+
+Run line(const Words& args) {
+  return [name = args[0]](Playing& playing) {
+    playing.nothing_more();
+    playing.target().choose_line(name);
+  };
+}
+
+constexpr std::size_t kAnyNumber = 1000;
+
+constexpr Row kRows[] = {
+    {"bytes", "HEX", 1, kAnyNumber, Row::Of::Any,
+     [](const Words& args) -> Run {
+       return
+           [bytes = sim::parse_hex_bytes(sim::joined(args))](Playing& playing) { playing.send_more(bytes); };
+     }},
+    {"silence", "", 0, 0, Row::Of::Any,
+     [](const Words& /*args*/) -> Run { return [](Playing& playing) { playing.nothing_for(kSilence); }; }},
+    {"wait", "TIME", 1, 1, Row::Of::Any,
+     [](const Words& args) -> Run {
+       return [time = sim::parse_time(args[0])](Playing& playing) { playing.nothing_for(time); };
+     }},
+    {"checksum", "on|off", 1, 1, Row::Of::Any,
+     [](const Words& args) -> Run {
+       return [on = parse_on_off(args[0])](Playing& playing) { playing.set_checksum(on); };
+     }},
+    {"baud", "RATE", 1, 1, Row::Of::Any, baud},
+    {"format", "8N1|8N2|8E1|8O1", 1, 1, Row::Of::Any,
+     [](const Words& args) -> Run {
+       return [format = sim::parse_line_format(args[0])](Playing& playing) {
+         playing.target().set_format(format);
+       };
+     }},
+    {"power", "on|off", 1, 1, Row::Of::AnyActs, supply},
+    {"power-cycle", "", 0, 0, Row::Of::AnyActs, power_cycle},
+    {"reset", "", 0, 0, Row::Of::AnyActs, reset},
+    {"init", "on|off", 1, 1, Row::Of::AnyActs,
+     [](const Words& args) -> Run {
+       return [on = parse_on_off(args[0])](Playing& playing) { playing.target().set_init(on); };
+     }},
+    {"input", "C on|off", 2, 2, Row::Of::AnyOnInput,
+     [](const Words& args) -> Run {
+       return [channel = sim::parse_pulses({args[0]}).channel, on = parse_on_off(args[1])](Playing& playing) {
+         playing.target().set_input(channel, on);
+       };
+     }},
+    {"pulse", "C [xCOUNT]", 1, 2, Row::Of::AnyOnInput,
+     [](const Words& args) -> Run {
+       return [pulses = sim::parse_pulses(args)](Playing& playing) {
+         playing.target().pulse_input(pulses.channel, pulses.count);
+       };
+     }},
+    {"outputs", "HHHH", 1, 1, Row::Of::Any,
+     [](const Words& args) -> Run {
+       return
+           [channels = sim::parse_hex_word(args[0])](Playing& playing) { playing.expect_outputs(channels); };
+     }},
+    {"led", "on|off|flashing", 1, 1, Row::Of::Any, led},
+    {"module", "N", 1, 1, Row::Of::Scenarios, module},
+    {"line", "NAME", 1, 1, Row::Of::Scenarios, line},
+};
+
+/// An action of the control socket, on module N or on the chosen line.
+Run action(const Words& words) {
+  return [words](Playing& playing) { playing.target().act(words); };
+}
+
+bool is_action(const std::string& word) {
+  return word.find_first_not_of("0123456789") == std::string::npos || word == "fault" || word == "faults";
+}
+
+[[noreturn]] void refuse(const std::string& text) {
+  std::string shapes = "> TEXT, < TEXT, => HEX, <= HEX";
+  for (const Row& row : kRows) {
+    shapes += ", " + row.shape();
+  }
+  fail("'" + text + "' is not a step; expected one of " + shapes +
+       ", N ACTION, fault FAULT, fault off K|all");
+}
+
+/// Parses `HEX` or `HEX or HEX ...`.
+Run parse_modbus_reply(const std::string& text) {
+  const std::string separator = " or ";
+  std::vector<Bytes> permitted;
+  for (std::size_t from = 0, end = 0; end != std::string::npos; from = end + separator.size()) {
+    end = text.find(separator, from);
+    permitted.push_back(
+        with_crc(sim::parse_hex_bytes(text.substr(from, end == std::string::npos ? end : end - from))));
+    if (permitted.back().size() != permitted.front().size()) {
+      fail("'" + text + "': the replies differ in length; expected replies of the same length");
+    }
+  }
+  return [permitted = std::move(permitted)](Playing& playing) { playing.expect_one_of(permitted); };
+}
+
+/// Parses a step that sends a frame or expects one; null for any other step.
+Run parse_frame(const std::string& text) {
+  for (const std::string lead : {"<=", "=>", "<", ">"}) {
+    if (text.rfind(lead, 0) != 0) {
+      continue;
+    }
+    std::string rest = text.substr(lead.size());
+    if (!rest.empty() && rest[0] != ' ' && rest[0] != '\t') {
+      fail("'" + text + "': expected a blank after " + lead);
+    }
+    rest.erase(0, 1);
+    if (lead == "<=") {
+      return parse_modbus_reply(rest);
+    }
+    if (lead == "=>") {
+      return [frame = with_crc(sim::parse_hex_bytes(rest))](Playing& playing) { playing.send(frame); };
+    }
+    if (lead == "<") {
+      return [rest](Playing& playing) { playing.expect_dcon(rest); };
+    }
+    return [rest](Playing& playing) { playing.send_dcon(rest); };
+  }
+  return nullptr;
+}
+
+[[noreturn]] void refuse_in_transcripts(const std::string& text) {
+  fail("'" + text + "': only scenarios have this step; remove the step or the 'model:' lines");
+}
+
+}  // namespace
+
+Step parse_step(unsigned line, const std::string& text, const Model* model) {
+  if (Run run = parse_frame(text)) {
+    return {line, text, std::move(run), false};
+  }
+  const Words words = sim::words_of(text);
+  const Words args(words.begin() + 1, words.end());
+  for (const Row& row : kRows) {
+    if (row.name != words[0]) {
+      continue;
+    }
+    if (args.size() < row.fewest || args.size() > row.most) {
+      fail("'" + text + "': expected " + row.shape());
+    }
+    Run run = row.parse(args);
+    if (model != nullptr && row.of == Row::Of::Scenarios) {
+      refuse_in_transcripts(text);
+    }
+    if (model != nullptr && row.of == Row::Of::AnyOnInput) {
+      sim::parse_input(args[0], *model);
+    }
+    return {line, text, std::move(run), row.of != Row::Of::Any};
+  }
+  if (!is_action(words[0])) {
+    refuse(text);
+  }
+  if (model != nullptr) {
+    refuse_in_transcripts(text);
+  }
+  return {line, text, action(words), true};
+}
+
+}  // namespace ex9000::play
