@@ -216,11 +216,12 @@ constexpr Action kLineActions[] = {
   fail("'" + joined(words) + "' is not a command; expected one of " + joined(action_shapes(), ", "));
 }
 
+/// `said`: the command for the log. `lead`: stands before the shape of the action in a message.
 template <std::size_t kSize>
-std::string act(const Action (&actions)[kSize], const Place& place, const Words& words,
-                const std::string& lead) {
+std::string act(const Action (&actions)[kSize], const Place& place, const Words& words, const std::string& lead,
+                const std::string& said) {
   for (const Action& action : actions) {
-    if (words.empty() || action.name != words[0]) {
+    if (action.name != words[0]) {
       continue;
     }
     const Words args(words.begin() + 1, words.end());
@@ -229,7 +230,7 @@ std::string act(const Action (&actions)[kSize], const Place& place, const Words&
     }
     std::string result = action.act(place, args);
     if (action.changes && place.in_use.note) {
-      place.in_use.note(joined(words));
+      place.in_use.note(said);
     }
     return result;
   }
@@ -253,7 +254,8 @@ std::string on_module(const LinesInUse& lines, const Words& words) {
   for (; index >= each->line.size(); ++each) {
     index -= each->line.size();
   }
-  return act(kModuleActions, {*each, index, 0}, Words(words.begin() + 1, words.end()), "N ");
+  return act(kModuleActions, {*each, index, 0}, Words(words.begin() + 1, words.end()), "N ",
+             joined(words));
 }
 
 std::string on_line(const LinesInUse& lines, const Words& words) {
@@ -261,7 +263,7 @@ std::string on_line(const LinesInUse& lines, const Words& words) {
     if (lines.size() != 1) {
       fail("there are several lines; put 'line NAME' before the command");
     }
-    return act(kLineActions, {lines[0]}, words, "");
+    return act(kLineActions, {lines[0]}, words, "", joined(words));
   }
   if (words.size() < 3) {
     fail("expected line NAME and a command of a line, for example line NAME faults");
@@ -269,7 +271,8 @@ std::string on_line(const LinesInUse& lines, const Words& words) {
   std::size_t first_module = 0;
   for (const LineInUse& each : lines) {
     if (each.name == words[1]) {
-      return act(kLineActions, {each, 0, first_module}, Words(words.begin() + 2, words.end()), "");
+      const Words action(words.begin() + 2, words.end());
+      return act(kLineActions, {each, 0, first_module}, action, "", joined(action));
     }
     first_module += each.line.size();
   }

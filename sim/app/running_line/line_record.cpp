@@ -28,23 +28,39 @@ LineRecord::LineRecord(Line& line, std::string name, LogFormat format, const Pri
       log_(format == LogFormat::Json ? json_log(name_, stations_of(line), print)
                                      : text_log(stations_of(line), print)) {}
 
-void LineRecord::note(const std::string& text) {
+void LineRecord::note(const std::string& text) { write(text, true); }
+
+void LineRecord::event(const std::string& text) { write(text, prints_); }
+
+void LineRecord::write(const std::string& text, bool prints) {
   if (over_) {
     return;
   }
   const VirtualTime now = line_.clock().virtual_now();
-  log_->note(now, text);
+  if (prints) {
+    log_->note(now, text);
+  }
   if (also_note_) {
     also_note_(now, text);
   }
 }
 
+void LineRecord::hear_modules() {
+  const StationNames names = stations_of(line_);
+  for (std::size_t i = 0; i < line_.size(); ++i) {
+    line_.module(i).tell([this, name = names.of(i + 1)](const std::string& text) { event(name + ": " + text); });
+  }
+}
+
 void LineRecord::tell(FrameWatch::Take take, BusLog::Note note) {
   also_note_ = std::move(note);
+  hear_modules();
   listen(std::move(take));
 }
 
 void LineRecord::print_frames() {
+  prints_ = true;
+  hear_modules();
   listen([this](const Frame& frame) {
     if (!over_) {
       log_->frame(frame);

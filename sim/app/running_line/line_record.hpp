@@ -27,6 +27,8 @@ class LineRecord final : private Station {
   /// Writes a note to the log, with the time of the line's clock. Notes are printed even if frames are not.
   /// Does nothing after the end of the log, see `end_at`.
   void note(const std::string& text);
+  /// The same for what happens to the line and its modules: printed only if frames are.
+  void event(const std::string& text);
   void print_frames();
   /// Starts to write frames to `capture`, which must outlive this object. `began` is the timestamp of time 0
   /// of the line in the capture, since 1970-01-01 00:00:00 UTC.
@@ -49,6 +51,8 @@ class LineRecord final : private Station {
   // --- Station: called at the time that `end_at` sets ---
   void run() override;
 
+  void write(const std::string& text, bool prints);
+  void hear_modules();
   void listen(FrameWatch::Take take);
   void take(const Frame& frame);
 
@@ -60,6 +64,7 @@ class LineRecord final : private Station {
   std::vector<FrameWatch::Take> takers_;
   bool gives_hints_ = false;
   std::set<std::string> hints_;
+  bool prints_ = false;
   bool listens_ = false;
   bool over_ = false;
 };

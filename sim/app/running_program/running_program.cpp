@@ -32,7 +32,7 @@ void RunningProgram::open_control() {
     const LineSummary& introduced = running->introduced();
     lines.push_back({introduced.name, running->line(), [&line = *running] { return line.sent(); },
                      introduced.port("serial") != nullptr,
-                     [&line = *running](const std::string& text) { line.record().note(text); }});
+                     [&line = *running](const std::string& text) { line.record().event("command: " + text); }});
   }
   control_.emplace(std::move(lines));
   if (!setup_.control) {

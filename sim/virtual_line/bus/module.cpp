@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "sim/text/values.hpp"
+
 namespace ex9000::sim {
 
 namespace {
@@ -45,6 +47,7 @@ void SimulatedModule::follow_supply() {
   if (on == powered()) {
     return;
   }
+  say(on ? "power on" : "power off");
   if (on) {
     start(ResetReason::PowerOn);
   } else {
@@ -54,8 +57,32 @@ void SimulatedModule::follow_supply() {
   settle();
 }
 
+void SimulatedModule::tell(Event event) {
+  event_ = std::move(event);
+  outputs_.on_change([this](std::uint16_t channels) {
+    say("outputs " + hex_word_text(channels) + why_outputs_change());
+  });
+}
+
+void SimulatedModule::say(const std::string& text) const {
+  if (event_) {
+    event_(text);
+  }
+}
+
+/// The cause, unless it is a request or a timer of the outputs.
+std::string SimulatedModule::why_outputs_change() const {
+  if (!powered()) {
+    return switched_on_ && !supply_interrupted_ ? ": reset" : ": no power";
+  }
+  return !module().listening()                     ? ": start"
+         : module().state().settings.timeout_status ? ": host watchdog"
+                                                    : "";
+}
+
 void SimulatedModule::restart(ResetReason reason) {
   if (powered()) {
+    say(reason == ResetReason::ModuleWatchdog ? "reset by the module watchdog" : "reset");
     stop();
     start(reason);
     settle();
@@ -64,6 +91,7 @@ void SimulatedModule::restart(ResetReason reason) {
 
 void SimulatedModule::start(ResetReason reason) {
   hung_ = false;
+  stores_ = 0;
   mcu_.emplace(*this);
   mcu_->line.release_late(driver_late_by_);
   mcu_->tick.start();
@@ -82,17 +110,20 @@ void SimulatedModule::stop() {
 
 void SimulatedModule::set_init(bool asserted) {
   init_switch_.set(asserted);
+  say(asserted ? "INIT* tied to GND" : "INIT* released");
   react();
 }
 
 void SimulatedModule::set_input(unsigned channel, bool level) {
   if (inputs_.set(channel, level)) {
+    say("input " + std::to_string(channel) + (level ? " on" : " off"));
     edge(channel, level);
     react();
   }
 }
 
 void SimulatedModule::pulse_input(unsigned channel, std::uint32_t count) {
+  say("input " + std::to_string(channel) + " pulse x" + std::to_string(count));
   const bool level = inputs_.level(channel);
   for (std::uint32_t i = 0; i < count; ++i) {
     edge(channel, !level);
@@ -194,8 +225,16 @@ void SimulatedModule::run() {
   run_timers();
   if (mcu_->device.has_work()) {
     turn();
+    say_stores();
   }
   settle();
+}
+
+void SimulatedModule::say_stores() {
+  if (const std::uint16_t stores = module().state().statistics.stores; stores != stores_) {
+    stores_ = stores;
+    say("settings stored");
+  }
 }
 
 void SimulatedModule::end_silence() {

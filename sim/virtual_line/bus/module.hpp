@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <functional>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -80,6 +82,12 @@ class SimulatedModule final : public Station {
   /// Returns an image of the whole memory that contains `settings`; a blank image for factory settings.
   static std::vector<std::uint8_t> memory_image(const Model& model, const Settings& settings);
 
+  /// Receives what happens to the module, for people: `power off`, `input 3 on`, `outputs 0005`, `settings
+  /// stored`.
+  using Event = std::function<void(const std::string& text)>;
+  /// Tells of each event from now on.
+  void tell(Event event);
+
   [[nodiscard]] const Model& model() const { return model_; }
   /// Returns the firmware's Module object. Call this only while the module is powered.
   [[nodiscard]] const Module& module() const { return mcu_->device.module(); }
@@ -131,6 +139,9 @@ class SimulatedModule final : public Station {
     hal::Device<Board> device;
   };
 
+  void say(const std::string& text) const;
+  void say_stores();
+  [[nodiscard]] std::string why_outputs_change() const;
   void end_silence();
   void run_line();
   void run_memory();
@@ -167,6 +178,8 @@ class SimulatedModule final : public Station {
   TimingAt timing_at_;
   BusEnd& end_;
   hal::doubles::Memory memory_;
+  Event event_;
+  std::uint16_t stores_ = 0;  ///< that `run_memory` has seen
   hal::doubles::Inputs inputs_;
   hal::doubles::Outputs outputs_;
   hal::doubles::StatusLed led_;
