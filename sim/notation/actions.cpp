@@ -218,8 +218,8 @@ constexpr Action kLineActions[] = {
 
 /// `said`: the command for the log. `lead`: stands before the shape of the action in a message.
 template <std::size_t kSize>
-std::string act(const Action (&actions)[kSize], const Place& place, const Words& words, const std::string& lead,
-                const std::string& said) {
+std::string act(const Action (&actions)[kSize], const Place& place, const Words& words,
+                const std::string& lead, const std::string& said) {
   for (const Action& action : actions) {
     if (action.name != words[0]) {
       continue;
@@ -254,8 +254,7 @@ std::string on_module(const LinesInUse& lines, const Words& words) {
   for (; index >= each->line.size(); ++each) {
     index -= each->line.size();
   }
-  return act(kModuleActions, {*each, index, 0}, Words(words.begin() + 1, words.end()), "N ",
-             joined(words));
+  return act(kModuleActions, {*each, index, 0}, Words(words.begin() + 1, words.end()), "N ", joined(words));
 }
 
 std::string on_line(const LinesInUse& lines, const Words& words) {

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/virtual_line/bus_faults/fault.hpp"
+#include "sim/virtual_line/faults/fault.hpp"
 
 namespace ex9000::sim {
 

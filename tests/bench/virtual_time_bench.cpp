@@ -42,7 +42,7 @@ void idle_line(benchmark::State& state) {
   const auto tell = [&line](const std::vector<std::uint8_t>& bytes, VirtualTime then) {
     const auto sent = frame(bytes);
     line.master().send(sent.data(), sent.size());
-    line.bus().run_for(then);
+    line.wires().run_for(then);
   };
   line.come_up();
   line.master().set_baud(115200);
@@ -85,7 +85,7 @@ void loaded_line(benchmark::State& state) {
     next = (next + 1) % requests.size();
     // A request of 8 characters, a reply of 13 characters, two silences of 1.75 ms, and a margin for
     // rounding.
-    line.bus().run_for(std::chrono::microseconds(21 * 10 * 1'000'000 / 115200 + 2 * 1752 + 10));
+    line.wires().run_for(std::chrono::microseconds(21 * 10 * 1'000'000 / 115200 + 2 * 1752 + 10));
     if (!heard) {
       state.SkipWithError("no reply");
     }

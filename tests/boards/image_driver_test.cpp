@@ -11,7 +11,7 @@
 #include "firmware/model/model.hpp"
 #include "firmware/settings/settings.hpp"
 #include "sim/app/play/modbus_frame.hpp"
-#include "sim/virtual_line/bus/module.hpp"
+#include "sim/virtual_line/wires/module.hpp"
 #include "tests/boards/images_under_test.hpp"
 #include "tests/mcu_model/board_bench.hpp"
 

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/virtual_line/bus/module.hpp"
+#include "sim/virtual_line/wires/module.hpp"
 #include "tests/firmware/settings/stored_bytes.hpp"
 #include "tests/qemu/master.hpp"
 #include "tests/qemu/timed_module.hpp"

@@ -10,7 +10,7 @@
 #include "firmware/settings/settings.hpp"
 #include "sim/app/play/modbus_frame.hpp"
 #include "sim/text/values.hpp"
-#include "sim/virtual_line/bus/module.hpp"
+#include "sim/virtual_line/wires/module.hpp"
 #include "tests/boards/images_under_test.hpp"
 #include "tests/mcu_model/board_bench.hpp"
 

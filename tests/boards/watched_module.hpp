@@ -10,7 +10,7 @@
 #include <tuple>
 #include <vector>
 
-#include "sim/virtual_line/bus/module.hpp"
+#include "sim/virtual_line/wires/module.hpp"
 #include "tests/boards/images_under_test.hpp"
 #include "tests/mcu_model/board_bench.hpp"
 #include "tests/oracles/reference/hexadecimal.hpp"

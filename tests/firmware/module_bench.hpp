@@ -9,7 +9,7 @@
 #include "sim/app/play/modbus_frame.hpp"
 #include "sim/notation/module_notation.hpp"
 #include "sim/virtual_line/line/line.hpp"
-#include "tests/sim/virtual_line/bus/bus_recorder.hpp"
+#include "tests/sim/virtual_line/wires/wires_recorder.hpp"
 
 namespace ex9000::sim {
 
@@ -27,7 +27,7 @@ class ModuleBench {
   explicit ModuleBench(const std::string& module)
       : spec_(parse_module_spec(module)),
         line_({spec_}, kPaced, [this](std::uint8_t byte, ByteStatus /*status*/) { heard_.push_back(byte); }) {
-    line_.bus().observe(recorder_);
+    line_.wires().observe(recorder_);
     line_.come_up();
     line_.master().set_mode(line_.module(0).mode());
     recorder_.clear();
@@ -35,9 +35,9 @@ class ModuleBench {
 
   SimulatedModule& module() { return line_.module(0); }
   Line& line() { return line_; }
-  BusRecorder& recorder() { return recorder_; }
+  WiresRecorder& recorder() { return recorder_; }
   [[nodiscard]] VirtualTime now() { return line_.clock().virtual_now(); }
-  void run(VirtualTime time) { line_.bus().run_for(time); }
+  void run(VirtualTime time) { line_.wires().run_for(time); }
   /// Runs until `condition` is true, but for at most one second, and checks `condition` every millisecond.
   /// Returns whether `condition` is true at the end.
   template <class Condition>
@@ -52,7 +52,7 @@ class ModuleBench {
   void send(const Bytes& bytes) {
     line_.master().send(bytes.data(), bytes.size());
     while (line_.master().sending()) {
-      line_.bus().run_until(line_.bus().next());
+      line_.wires().run_until(line_.wires().next());
     }
   }
   void send(const std::string& text) { send(Bytes(text.begin(), text.end())); }
@@ -105,7 +105,7 @@ class ModuleBench {
  private:
   ModuleSpec spec_;
   Line line_;
-  BusRecorder recorder_;
+  WiresRecorder recorder_;
   Bytes heard_;
 };
 

@@ -207,7 +207,7 @@ TEST(FedByRequests, OnlyARequestBeforeTheExpiryRestartsTheHostWatchdog) {
     ASSERT_EQ(bench.ask("~01310A"), "!01");
     bench.send(request);
     const VirtualTime expires = bench.now() + seconds(1);
-    bench.line().bus().run_until(expires - takes + microseconds(offset));
+    bench.line().wires().run_until(expires - takes + microseconds(offset));
     bench.send(request);
     bench.run(milliseconds(300));
     EXPECT_EQ(bench.module().module().state().settings.timeout_status, offset > 0) << offset;
@@ -225,7 +225,7 @@ TEST(FedByRequests, AModbusRequestRestartsTheHostWatchdogAtTheEndOfItsSilence) {
     ASSERT_EQ(bench.ask(std::vector<std::uint8_t>{0x01, 0x05, 0x01, 0x04, 0xFF, 0}).size(), 6U);
     bench.send(request);
     const VirtualTime expires = bench.now() + microseconds(1750) + seconds(1);
-    bench.line().bus().run_until(expires - takes - microseconds(1750) + microseconds(offset));
+    bench.line().wires().run_until(expires - takes - microseconds(1750) + microseconds(offset));
     bench.send(request);
     bench.run(milliseconds(300));
     EXPECT_EQ(bench.module().module().state().settings.timeout_status, offset > 0) << offset;

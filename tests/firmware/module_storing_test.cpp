@@ -252,9 +252,9 @@ TEST(Storing, AStoreIsPermanentEvenIfTheMemoryDidNotAnswerAtReset) {
 TEST(Storing, RefusedSettingsAreNotInForceAfterTheNextResetEvenIfTheyWereWritten) {
   ModuleBench bench("EX9042D,name=OLD");
   bench.send("~01ONEW\r");
-  bench.line().bus().run_until(bench.line().bus().next());       // the turn-around is over
-  ASSERT_EQ(bench.module().memory().writes(), 1U);               // the write has begun
-  bench.line().bus().run_until(bench.module().memory().next());  // written, but not yet read back
+  bench.line().wires().run_until(bench.line().wires().next());     // the turn-around is over
+  ASSERT_EQ(bench.module().memory().writes(), 1U);                 // the write has begun
+  bench.line().wires().run_until(bench.module().memory().next());  // written, but not yet read back
   bench.module().memory().fail(true);
   bench.forget_heard();
   bench.run(milliseconds(200));
@@ -336,8 +336,8 @@ TEST(Queueing, TwoRepliesAreAtLeastT35Apart) {
   bench.run(microseconds(1800));
   bench.send(with_crc({1, 0x01, 0x00, 0x00, 0x00, 0x08}));
   bench.run(milliseconds(100));
-  std::vector<BusRecorder::Driver> on;
-  std::vector<BusRecorder::Driver> off;
+  std::vector<WiresRecorder::Driver> on;
+  std::vector<WiresRecorder::Driver> off;
   for (const auto& driver : bench.recorder().drivers) {
     if (driver.station == 1) {
       (driver.on ? on : off).push_back(driver);

@@ -199,11 +199,11 @@ TEST(Time, TheHostWatchdogExpiresOnTimeAcrossTheClockWrap) {
   ModuleBench bench("EX9043D-M");
   ASSERT_EQ(bench.ask(Bytes{1, 0x0F, 0x00, 0x00, 0x00, 0x10, 0x02, 0x0F, 0x00}).at(1), 0x0F);
   ASSERT_EQ(bench.ask(Bytes{1, 0x06, 0x01, 0xE8, 0x00, 0x14}).at(1), 0x06);
-  bench.line().bus().run_until(kWrap - milliseconds(1000));
+  bench.line().wires().run_until(kWrap - milliseconds(1000));
   ASSERT_EQ(bench.ask(Bytes{1, 0x05, 0x01, 0x04, 0xFF, 0x00}).at(1), 0x05);
   const Bytes host_ok = with_crc({1, 0x03, 0x30, 0x38, 0x00, 0x00});
   // The clock wraps while the master sends the frame.
-  bench.line().bus().run_until(kWrap - milliseconds(4));
+  bench.line().wires().run_until(kWrap - milliseconds(4));
   bench.send(host_ok);
   const VirtualTime restarted = bench.now() + microseconds(4010);  // T3.5 after the frame
   ASSERT_GT(restarted, kWrap);
@@ -222,7 +222,7 @@ TEST(Time, AMasterThatPollsOncePerClockWrapIsAnsweredEveryTime) {
   for (int i = 0; i < 5; ++i) {
     const VirtualTime began = bench.now();
     ASSERT_EQ(bench.ask(Bytes{1, 0x01, 0, 0, 0, 13}), (Bytes{1, 0x01, 2, 0, 0}));
-    bench.line().bus().run_until(began + kWrap);
+    bench.line().wires().run_until(began + kWrap);
   }
 }
 

@@ -32,7 +32,7 @@ TEST(HostWatchdog, HostOksAtIntervalsShorterThanTheTimeoutPreventExpiryAtAnyBaud
     for (int i = 0; i < 20; ++i) {
       const VirtualTime began = bench.now();
       bench.send(host_ok);
-      bench.line().bus().run_until(began + milliseconds(299));
+      bench.line().wires().run_until(began + milliseconds(299));
     }
     EXPECT_FALSE(bench.module().module().state().settings.timeout_status) << baud;
   }

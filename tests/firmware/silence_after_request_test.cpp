@@ -74,7 +74,7 @@ TEST(SilenceAfterRequest, AnOutputCommandIsRefusedIfTheHostWatchdogExpiresDuring
   bench.run(kLong);
   bench.send("~**\r");
   const VirtualTime times_out = bench.now() + kTimeout;
-  bench.line().bus().run_until(times_out - kBeforeTheTimeout - kCommand);
+  bench.line().wires().run_until(times_out - kBeforeTheTimeout - kCommand);
   bench.forget_heard();
   bench.send("@010001\r");
   EXPECT_LT(bench.now(), times_out);
@@ -140,10 +140,10 @@ TEST(SilenceAfterRequest, TheInitSwitchIsEvaluatedAtTheEndOfTheSilence) {
     bench.run(kLong);
     const VirtualTime ends = bench.now() + static_cast<std::int64_t>(command.size()) * kCharacter;
     bench.line().master().send(reinterpret_cast<const std::uint8_t*>(command.data()), command.size());
-    bench.line().bus().run_until(ends - kMovedBeforeTheEnd);
+    bench.line().wires().run_until(ends - kMovedBeforeTheEnd);
     bench.module().set_init(!asserted);
     bench.forget_heard();
-    bench.line().bus().run_until(ends + milliseconds(200));
+    bench.line().wires().run_until(ends + milliseconds(200));
     EXPECT_EQ(bench.heard_text(), asserted ? "?01\r" : "!01\r");
   }
 }

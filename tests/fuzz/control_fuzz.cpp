@@ -260,7 +260,7 @@ class RunTimeLimit {
   void pass(Watched& watched, unsigned long steps) {
     constexpr unsigned long kMostHeard = 200;
     for (; steps != 0 && steps_left_ != 0 && watched.heard < kMostHeard; --steps, --steps_left_) {
-      watched.line.bus().run_for(std::chrono::milliseconds(10));
+      watched.line.wires().run_for(std::chrono::milliseconds(10));
     }
   }
   /// Returns whether the command may run. Of the commands with 100 to 99,999 pulses, only the first one in

@@ -123,11 +123,11 @@ class Clients {
       } else if (event < 8) {
         clients_[event - 4U] = std::make_unique<Client>(line_);
       } else if (event == 8) {
-        line_.bus().run_for(milliseconds(4 * data[at++]));
+        line_.wires().run_for(milliseconds(4 * data[at++]));
       }
     }
     while (line_.requests().busy()) {
-      line_.bus().run_for(milliseconds(50));
+      line_.wires().run_for(milliseconds(50));
     }
     for (const auto& client : clients_) {
       client->check_end();

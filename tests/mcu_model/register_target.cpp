@@ -1,6 +1,6 @@
 #include "tests/mcu_model/register_target.hpp"
 
-#include "sim/virtual_line/bus/module.hpp"
+#include "sim/virtual_line/wires/module.hpp"
 
 namespace ex9000::registers {
 

@@ -25,7 +25,7 @@ class Programs(unittest.TestCase):
         self.assertEqual(self.nearest("firmware", "firmware/line/crc16.hpp")[0], "crc16_test")
         self.assertEqual(self.nearest("hal", "hal/pl011/uart.hpp")[0], "uart_driver_test")
         self.assertEqual(self.nearest("hal", "hal/flash/record_log.hpp")[0], "record_log_test")
-        self.assertEqual(self.nearest("sim", "sim/virtual_line/bus/bus.cpp")[0], "bus_test")
+        self.assertEqual(self.nearest("sim", "sim/virtual_line/wires/wires.cpp")[0], "bus_test")
 
     def test_if_no_test_has_the_name_of_the_file_tests_that_include_the_header_come_first(self):
         self.assertEqual(self.nearest("hal", "hal/stellaris/outputs.hpp")[0], "pins_driver_test")

@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-#include "sim/virtual_line/bus/module.hpp"
+#include "sim/virtual_line/wires/module.hpp"
 #include "tests/qemu/signals.hpp"
 #include "tests/qemu/uart_registers.hpp"
 #include "tests/support/line_control.hpp"

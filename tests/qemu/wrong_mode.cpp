@@ -1,6 +1,6 @@
 #include "tests/qemu/wrong_mode.hpp"
 
-#include "sim/virtual_line/bus/uart_sampler.hpp"
+#include "sim/virtual_line/wires/uart_sampler.hpp"
 
 namespace ex9000::rig {
 

@@ -6,7 +6,7 @@
 #include "boards/pico/board.hpp"
 #include "hal/flash/record_log.hpp"
 #include "sim/text/values.hpp"
-#include "sim/virtual_line/bus/module.hpp"
+#include "sim/virtual_line/wires/module.hpp"
 
 namespace ex9000::pico {
 

@@ -4,17 +4,17 @@ namespace ex9000::runner {
 
 void CoreTarget::send(const play::Bytes& bytes) {
   sent_.insert(sent_.end(), bytes.begin(), bytes.end());
-  BusTarget::send(bytes);
+  LineTarget::send(bytes);
 }
 
 play::Bytes CoreTarget::receive(std::size_t count, std::chrono::milliseconds patience) {
-  play::Bytes heard = BusTarget::receive(count, patience);
+  play::Bytes heard = LineTarget::receive(count, patience);
   note_coverage(heard);
   return heard;
 }
 
 play::Bytes CoreTarget::listen(std::chrono::nanoseconds time) {
-  play::Bytes heard = BusTarget::listen(time);
+  play::Bytes heard = LineTarget::listen(time);
   note_coverage(heard);
   return heard;
 }

@@ -2,7 +2,7 @@
 // of the core's tables the transcripts reach.
 #pragma once
 
-#include "sim/app/play/bus_target.hpp"
+#include "sim/app/play/line_target.hpp"
 #include "tests/support/coverage.hpp"
 
 namespace ex9000::runner {
@@ -10,14 +10,14 @@ namespace ex9000::runner {
 using play::Bytes;
 
 /// A module and a master on a virtual bus.
-class CoreTarget final : public play::BusTarget {
+class CoreTarget final : public play::LineTarget {
  public:
   /// Records in `coverage` what the transcripts reach. Records nothing if `coverage` is null.
   explicit CoreTarget(Coverage* coverage = nullptr) : coverage_(coverage) {}
 
   /// Returns the module with its terminals. The module also has terminals for inputs that the model does not
   /// have. A transcript cannot set these inputs.
-  using play::BusTarget::module;
+  using play::LineTarget::module;
 
   void send(const Bytes& bytes) override;
   Bytes receive(std::size_t count, std::chrono::milliseconds patience) override;

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "sim/app/play/bus_target.hpp"
+#include "sim/app/play/line_target.hpp"
 #include "sim/app/play/player.hpp"
 #include "sim/app/play/rehearsal.hpp"
 #include "sim/app/play/transcript.hpp"
@@ -64,7 +64,7 @@ bool play(const Task& task, const std::function<void(const std::string& line)>& 
   for (const Transcript& transcript : all) {
     check(transcript, task.bus);
     if (task.bus) {
-      BusTarget bus(*task.bus, memories);
+      LineTarget bus(*task.bus, memories);
       rehearse(transcript, bus);
     }
   }
@@ -75,7 +75,7 @@ bool play(const Task& task, const std::function<void(const std::string& line)>& 
     const std::string who =
         transcript.model == nullptr ? "" : " (" + std::string(transcript.model->designation) + ")";
     observer.run_begins(transcript.file + who);
-    BusTarget target = task.bus ? BusTarget(*task.bus, memories, &observer) : BusTarget(&observer);
+    LineTarget target = task.bus ? LineTarget(*task.bus, memories, &observer) : LineTarget(&observer);
     const Result result = play(transcript, target);
     observer.run_ends();
     steps += result.steps;

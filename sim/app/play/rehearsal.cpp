@@ -8,7 +8,7 @@
 
 namespace ex9000::play {
 
-void rehearse(const Transcript& scenario, BusTarget& bus) {
+void rehearse(const Transcript& scenario, LineTarget& bus) {
   Playing rehearsal(bus, false, true);
   for (const Step& step : scenario.steps) {
     try {

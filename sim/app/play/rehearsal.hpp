@@ -2,7 +2,7 @@
 // commands that the bus rejects.
 #pragma once
 
-#include "sim/app/play/bus_target.hpp"
+#include "sim/app/play/line_target.hpp"
 #include "sim/app/play/transcript.hpp"
 
 namespace ex9000::play {
@@ -11,6 +11,6 @@ namespace ex9000::play {
 /// that the inputs in other steps exist. No virtual time passes, so errors that depend on time are not found.
 /// `bus` must not be used for anything else afterwards. If a step is wrong, throws std::invalid_argument that
 /// names the file, the line number, the step and what is wrong.
-void rehearse(const Transcript& scenario, BusTarget& bus);
+void rehearse(const Transcript& scenario, LineTarget& bus);
 
 }  // namespace ex9000::play

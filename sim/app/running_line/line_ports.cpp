@@ -7,7 +7,7 @@ namespace ex9000::sim {
 
 LinePorts::LinePorts(Line& line, const All& ports, Notice notice)
     : line_(line), ports_(ports), notice_(std::move(notice)), reported_(line.size()) {
-  line.bus().observe(*this);
+  line.wires().observe(*this);
 }
 
 void LinePorts::driver(std::size_t station, bool on, VirtualTime /*now*/) {
@@ -62,7 +62,7 @@ bool LinePorts::hold_line() const {
 
 void LinePorts::report_mismatches() {
   const SerialMode mode = line_.master().mode();
-  if (!mismatches_ && line_.bus().all_hear(mode)) {
+  if (!mismatches_ && line_.wires().all_hear(mode)) {
     return;
   }
   mismatches_ = false;

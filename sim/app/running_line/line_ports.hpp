@@ -17,7 +17,7 @@ namespace ex9000::sim {
 /// Every port gets the bytes that the master's end of the line receives. If a master sets a rate at a port,
 /// this rate becomes the line's rate. Pacer or SteppedLine puts the bytes and the requests of masters on the
 /// line.
-class LinePorts final : private BusObserver {
+class LinePorts final : private WireObserver {
  public:
   using All = std::vector<std::unique_ptr<Port>>;
   using Notice = std::function<void(const std::string&)>;

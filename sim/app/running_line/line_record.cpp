@@ -48,11 +48,12 @@ void LineRecord::write(const std::string& text, bool prints) {
 void LineRecord::hear_modules() {
   const StationNames names = stations_of(line_);
   for (std::size_t i = 0; i < line_.size(); ++i) {
-    line_.module(i).tell([this, name = names.of(i + 1)](const std::string& text) { event(name + ": " + text); });
+    line_.module(i).tell(
+        [this, name = names.of(i + 1)](const std::string& text) { event(name + ": " + text); });
   }
 }
 
-void LineRecord::tell(FrameWatch::Take take, BusLog::Note note) {
+void LineRecord::tell(FrameWatch::Take take, LineLog::Note note) {
   also_note_ = std::move(note);
   hear_modules();
   listen(std::move(take));
@@ -77,7 +78,7 @@ void LineRecord::keep_in(Capture& capture, VirtualTime began) {
   });
 }
 
-void LineRecord::end_at(VirtualTime end) { line_.bus().attach(*this).run_at(end); }
+void LineRecord::end_at(VirtualTime end) { line_.wires().attach(*this).run_at(end); }
 
 void LineRecord::run() {
   frames_.finish();
@@ -88,7 +89,7 @@ void LineRecord::listen(FrameWatch::Take take) {
   takers_.push_back(std::move(take));
   if (!listens_) {
     frames_.add_receiver([this](const Frame& frame) { this->take(frame); });
-    line_.bus().observe(frames_);
+    line_.wires().observe(frames_);
   }
   listens_ = true;
 }

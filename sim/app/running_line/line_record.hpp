@@ -9,7 +9,7 @@
 #include "sim/app/setup/setup.hpp"
 #include "sim/line_monitor/capture/capture.hpp"
 #include "sim/line_monitor/frames/frame_watch.hpp"
-#include "sim/line_monitor/log/bus_log.hpp"
+#include "sim/line_monitor/log/line_log.hpp"
 #include "sim/virtual_line/line/line.hpp"
 
 namespace ex9000::sim {
@@ -17,7 +17,7 @@ namespace ex9000::sim {
 /// Records no frames until `print_frames`, `keep_in` or `tell` is called.
 class LineRecord final : private Station {
  public:
-  using Print = BusLog::Print;
+  using Print = LineLog::Print;
 
   /// Records a line that has started up. `line` must outlive this object. If frames are recorded or `end_at`
   /// is called, this object must also live as long as the bus of `line` is used. `name` is the name of the
@@ -37,7 +37,7 @@ class LineRecord final : private Station {
   /// `hint_for`. Each text is noted once.
   void give_hints() { gives_hints_ = true; }
   /// Starts to call `take` with each frame when the frame has ended, and `note` with each note.
-  void tell(FrameWatch::Take take, BusLog::Note note);
+  void tell(FrameWatch::Take take, LineLog::Note note);
   /// Ends the log and the capture at `end` in the line's time. The line may run beyond `end`, because the
   /// program reads the wall clock only at some moments. The log and the capture omit everything that happens
   /// after `end`. Call this before the line's time reaches `end`.
@@ -58,9 +58,9 @@ class LineRecord final : private Station {
 
   Line& line_;
   std::string name_;
-  std::unique_ptr<BusLog> log_;
+  std::unique_ptr<LineLog> log_;
   FrameWatch frames_{[this] { return line_.master().mode(); }};
-  BusLog::Note also_note_;
+  LineLog::Note also_note_;
   std::vector<FrameWatch::Take> takers_;
   bool gives_hints_ = false;
   std::set<std::string> hints_;

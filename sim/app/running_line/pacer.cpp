@@ -89,17 +89,17 @@ std::chrono::steady_clock::time_point Pacer::when(VirtualTime time) const {
 /// Processes the events up to `until`, and later events that need not wait for the wall clock. Leaves the
 /// line's clock at the last event, not at `until`: see Pace::host_latency.
 void Pacer::catch_up(VirtualTime until) {
-  VirtualTime next = line_.bus().next();
+  VirtualTime next = line_.wires().next();
   report_delay(next);
-  for (; next <= until || leads(next); next = line_.bus().next()) {
-    line_.bus().run_next();
+  for (; next <= until || leads(next); next = line_.wires().next()) {
+    line_.wires().run_next();
   }
 }
 
 /// Returns whether the event at `next` need not wait for the wall clock.
 bool Pacer::leads(VirtualTime next) const {
   return pace_.lead != VirtualTime(0) &&
-         (line_.bus().carries() || next <= line_.spacing().last_byte() + pace_.lead);
+         (line_.wires().carries() || next <= line_.spacing().last_byte() + pace_.lead);
 }
 
 /// Returns whether masters have to wait, because the line has many bytes to carry or virtual time has run too
@@ -135,7 +135,7 @@ void Pacer::arm_timer() {
   if (held_) {
     return;
   }
-  VirtualTime next = std::min(line_.bus().next(), frames_ == nullptr ? kNever : frames_->next());
+  VirtualTime next = std::min(line_.wires().next(), frames_ == nullptr ? kNever : frames_->next());
   if (paused_ && line_.clock().virtual_now() > wall()) {
     next = std::min(next, line_.clock().virtual_now() - kFarthestAhead);
   }
@@ -180,7 +180,7 @@ void Pacer::report_joined(Bytes bytes) {
 void Pacer::reach_present() {
   const VirtualTime present = wall();
   catch_up(present);
-  line_.bus().run_until(std::max(present, line_.clock().virtual_now()));
+  line_.wires().run_until(std::max(present, line_.clock().virtual_now()));
 }
 
 void Pacer::now(const std::function<void()>& action) {
@@ -194,7 +194,7 @@ bool Pacer::bytes(const Port& port, Bytes bytes, const Port::Positions& damaged,
   const auto latency = std::chrono::duration_cast<VirtualTime>(pace_.host_latency * pace_.speed);
   const VirtualTime written = wall() - latency - travelled;
   catch_up(written);
-  line_.bus().run_until(std::max(written, line_.clock().virtual_now()));
+  line_.wires().run_until(std::max(written, line_.clock().virtual_now()));
   ports_.take_rate(port);
   Bytes rest = bytes;
   const bool splits = pace_.lead != VirtualTime(0) && damaged.empty();

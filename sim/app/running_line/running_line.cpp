@@ -50,7 +50,7 @@ RunningLine::RunningLine(boost::asio::io_context& io, const LineSetup& setup, st
   line_->come_up();
   came_up_ = line_->clock().virtual_now();
   line_->master().set_mode(first_mode(setup, *line_));
-  introduce();
+  summarize();
   open_ports(stepped);
   record_ = std::make_unique<LineRecord>(*line_, log_name(), format, print);
   record_->give_hints();
@@ -81,7 +81,7 @@ void RunningLine::open_ports(bool stepped) {
     if (port.wait) {
       ports_.back()->hold_line();
     }
-    introduced_.ports.push_back(ports_.back()->summary());
+    summary_.ports.push_back(ports_.back()->summary());
   }
 }
 
@@ -111,9 +111,9 @@ void RunningLine::make_missing_memories(std::list<NewFile>& made) {
 
 /// The name of the line or, if it has none, the address of its first port; "line" if it has no port either.
 std::string RunningLine::log_name() const {
-  return !setup_.name.empty()         ? setup_.name
-         : !introduced_.ports.empty() ? introduced_.ports.front().address
-                                      : "line";
+  return !setup_.name.empty()      ? setup_.name
+         : !summary_.ports.empty() ? summary_.ports.front().address
+                                   : "line";
 }
 
 std::string RunningLine::remark(std::size_t index) const {
@@ -136,17 +136,17 @@ std::string RunningLine::remark(std::size_t index) const {
          (overruled ? ", not those given here" : "");
 }
 
-void RunningLine::introduce() {
-  introduced_.name = setup_.name;
+void RunningLine::summarize() {
+  summary_.name = setup_.name;
   for (std::size_t i = 0; i < line_->size(); ++i) {
     SimulatedModule& module = line_->module(i);
     const InForce& in_force = module.module().state().in_force;
-    introduced_.modules.push_back({std::string(module.model().designation), module.model().inputs,
-                                   module.model().outputs, in_force.address,
-                                   in_force.protocol == Protocol::Ascii, module.mode(), remark(i)});
+    summary_.modules.push_back({std::string(module.model().designation), module.model().inputs,
+                                module.model().outputs, in_force.address,
+                                in_force.protocol == Protocol::Ascii, module.mode(), remark(i)});
   }
-  introduced_.mode = line_->master().mode();
-  introduced_.instant = setup_.instant;
+  summary_.mode = line_->master().mode();
+  summary_.instant = setup_.instant;
 }
 
 void RunningLine::start() {
@@ -174,7 +174,7 @@ SteppedLine& RunningLine::start_stepped(SteppedLine::Arrived arrived) {
 
 void RunningLine::run_until(VirtualTime up) {
   const VirtualTime until = std::max(came_up_ + up, line_->clock().virtual_now());
-  line_->bus().run_until(until);
+  line_->wires().run_until(until);
   if (FrameWatch* frames = record_->frames()) {
     frames->run(until);
   }

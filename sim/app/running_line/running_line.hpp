@@ -60,21 +60,21 @@ class RunningLine {
   [[nodiscard]] std::uint64_t sent() const { return connected_ ? connected_->sent() : 0; }
   /// Returns the line's time at which the modules have been up for `up`.
   [[nodiscard]] VirtualTime when_up_for(VirtualTime up) const { return came_up_ + up; }
-  [[nodiscard]] const LineSummary& introduced() const { return introduced_; }
+  [[nodiscard]] const LineSummary& summary() const { return summary_; }
 
  private:
   [[nodiscard]] std::unique_ptr<Port> open(const PortSetup& port, bool stepped);
   void open_ports(bool stepped);
   [[nodiscard]] std::string log_name() const;
   [[nodiscard]] std::string remark(std::size_t index) const;
-  void introduce();
+  void summarize();
 
   boost::asio::io_context& io_;
   const LineSetup& setup_;
   std::vector<std::unique_ptr<EepromFile>> memories_;  ///< for each module; null if it has no EEPROM file
   std::unique_ptr<Line> line_;
   VirtualTime came_up_{0};  ///< the line's time at which all modules had started up
-  LineSummary introduced_;
+  LineSummary summary_;
   LinePorts::All ports_;
   std::unique_ptr<LineRecord> record_;
   const LinePorts::Notice note_ = [this](const std::string& text) { record_->note(text); };

@@ -46,7 +46,7 @@ void SteppedLine::put_on_line() {
 }
 
 void SteppedLine::run_until(VirtualTime until) {
-  line_.bus().run_until(until);
+  line_.wires().run_until(until);
   if (ports_.reply_is_complete()) {
     ports_.hand_out();
   }

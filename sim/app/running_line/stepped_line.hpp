@@ -40,7 +40,7 @@ class SteppedLine final : private Arrivals {
 
   [[nodiscard]] VirtualTime now() const { return line_.clock().virtual_now(); }
   /// Returns the time of the next event; kNever if no event occurs without an action from outside.
-  [[nodiscard]] VirtualTime next() const { return line_.bus().next(); }
+  [[nodiscard]] VirtualTime next() const { return line_.wires().next(); }
   /// Processes all events up to and including `until`. Calls `hand_out` if a reply has become complete.
   void run_until(VirtualTime until);
   /// See Line::pending.

@@ -29,10 +29,11 @@ RunningProgram::RunningProgram(boost::asio::io_context& io, Setup setup, Print p
 void RunningProgram::open_control() {
   LinesInUse lines;
   for (const auto& running : lines_) {
-    const LineSummary& introduced = running->introduced();
-    lines.push_back({introduced.name, running->line(), [&line = *running] { return line.sent(); },
-                     introduced.port("serial") != nullptr,
-                     [&line = *running](const std::string& text) { line.record().event("command: " + text); }});
+    const LineSummary& summary = running->summary();
+    lines.push_back(
+        {summary.name, running->line(), [&line = *running] { return line.sent(); },
+         summary.port("serial") != nullptr,
+         [&line = *running](const std::string& text) { line.record().event("command: " + text); }});
   }
   control_.emplace(std::move(lines));
   if (!setup_.control) {
@@ -56,7 +57,7 @@ void RunningProgram::open_panel(const std::string& models) {
       setup_.speed.factor);
   for (std::size_t i = 0; i < lines_.size(); ++i) {
     RunningLine& running = *lines_[i];
-    panel_->add_line(running.introduced(), running.line(), [&running] { return running.pacer().present(); });
+    panel_->add_line(running.summary(), running.line(), [&running] { return running.pacer().present(); });
     running.record().tell(
         [this, i](const Frame& frame) { panel_->hear(i, frame); },
         [this, i](VirtualTime now, const std::string& text) { panel_->note(i, now, text); });
@@ -121,17 +122,17 @@ void RunningProgram::keep_a_capture() {
 }
 
 void RunningProgram::make_files_and_greet() {
-  BannerContent introduced;
-  introduced.panel = panel_server_ ? panel_server_->address() : "";
-  introduced.control = setup_.control.value_or("");
+  BannerContent summary;
+  summary.panel = panel_server_ ? panel_server_->address() : "";
+  summary.control = setup_.control.value_or("");
   for (const auto& running : lines_) {
     running->make_missing_memories(made_);
-    introduced.lines.push_back(running->introduced());
+    summary.lines.push_back(running->summary());
   }
   if (capture_) {
     keep_a_capture();
   }
-  (for_machines() ? greet_ : print_)(greeting(introduced));
+  (for_machines() ? greet_ : print_)(greeting(summary));
   for (NewFile& file : made_) {
     file.keep();
   }

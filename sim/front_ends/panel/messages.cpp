@@ -78,19 +78,19 @@ Message message_of(const Plate& plate) {
   return message;
 }
 
-Message message_of(const InputRecords& gathered, unsigned inputs) {
-  const auto counters = gathered.counters.begin();
-  return {{"high", gathered.latched_high},
-          {"low", gathered.latched_low},
+Message message_of(const InputRecords& records, unsigned inputs) {
+  const auto counters = records.counters.begin();
+  return {{"high", records.latched_high},
+          {"low", records.latched_low},
           {"counters", std::vector<std::uint32_t>(counters, counters + inputs)}};
 }
 
-Message message_of(const HostWatchdogState& guard) {
-  return {{"enabled", guard.enabled},
-          {"timedOut", guard.timed_out},
-          {"timeout", guard.timeout},
-          {"expires", guard.expires ? Message(microseconds(*guard.expires)) : Message()},
-          {"resetStatus", guard.reset_status}};
+Message message_of(const HostWatchdogState& host_watchdog) {
+  return {{"enabled", host_watchdog.enabled},
+          {"timedOut", host_watchdog.timed_out},
+          {"timeout", host_watchdog.timeout},
+          {"expires", host_watchdog.expires ? Message(microseconds(*host_watchdog.expires)) : Message()},
+          {"resetStatus", host_watchdog.reset_status}};
 }
 
 Message message_of(const Stored& stored) {

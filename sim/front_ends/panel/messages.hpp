@@ -9,7 +9,7 @@
 
 #include "sim/front_ends/panel/recent_traffic.hpp"
 #include "sim/line_monitor/module_view/face.hpp"
-#include "sim/virtual_line/bus_faults/faults.hpp"
+#include "sim/virtual_line/faults/faults.hpp"
 
 namespace ex9000::sim {
 
@@ -21,8 +21,8 @@ Message plate_layout(const Model& model);
 // Each part of a module's Face is a separate Message, because the parts change independently.
 Message message_of(const Plate& plate);
 /// Returns a message that contains the latches and the first `inputs` counters.
-Message message_of(const InputRecords& gathered, unsigned inputs);
-Message message_of(const HostWatchdogState& guard);
+Message message_of(const InputRecords& records, unsigned inputs);
+Message message_of(const HostWatchdogState& host_watchdog);
 Message message_of(const Stored& stored);
 
 /// Returns the list of a line's faults. `first` is the position of the line's first module across all lines,

@@ -61,8 +61,8 @@ bool operator==(const Faults::Info& a, const Faults::Info& b) {
 struct Panel::Module {
   const SimulatedModule* module = nullptr;
   ChangeTracked<Plate> plate;
-  ChangeTracked<InputRecords> gathered;
-  ChangeTracked<HostWatchdogState> guard;
+  ChangeTracked<InputRecords> records;
+  ChangeTracked<HostWatchdogState> host_watchdog;
   ChangeTracked<Stored> stored;
 };
 
@@ -83,8 +83,8 @@ struct Panel::Watched {
     for (Module& module : modules) {
       const Face face = face_of(*module.module, line->clock().virtual_now());
       module.plate.set(face.plate, look);
-      module.gathered.set(face.gathered, look);
-      module.guard.set(face.guard, look);
+      module.records.set(face.records, look);
+      module.host_watchdog.set(face.host_watchdog, look);
       module.stored.set(face.stored, look);
     }
     mode.set(line->master().mode(), look);
@@ -238,11 +238,11 @@ class Panel::Viewer final : public PanelViewer {
     if (const Plate* plate = module.plate.news_since(sent_look_)) {
       message["plate"] = message_of(*plate);
     }
-    if (const InputRecords* gathered = module.gathered.news_since(sent_look_)) {
-      message["gathered"] = message_of(*gathered, module.module->model().inputs);
+    if (const InputRecords* records = module.records.news_since(sent_look_)) {
+      message["records"] = message_of(*records, module.module->model().inputs);
     }
-    if (const HostWatchdogState* guard = module.guard.news_since(sent_look_)) {
-      message["guard"] = message_of(*guard);
+    if (const HostWatchdogState* host_watchdog = module.host_watchdog.news_since(sent_look_)) {
+      message["hostWatchdog"] = message_of(*host_watchdog);
     }
     if (const Stored* stored = module.stored.news_since(sent_look_)) {
       message["stored"] = message_of(*stored);

@@ -74,7 +74,7 @@ void FrameWatch::byte(std::size_t station, std::uint8_t byte, SerialMode mode, b
 
 void FrameWatch::driver(std::size_t station, bool on, VirtualTime /*now*/) {
   if (!on) {
-    sender(station).change.reset();  // a byte in progress is cut off, and the bus does not report it
+    sender(station).change.reset();  // a byte in progress is cut off, and Wires does not report it
     if (station != kMaster) {
       hand_out(station);
     }

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "sim/line_monitor/frames/frame_meaning.hpp"
-#include "sim/virtual_line/bus/bus.hpp"
+#include "sim/virtual_line/wires/wires.hpp"
 
 namespace ex9000::sim {
 
@@ -36,7 +36,7 @@ struct Frame {
   /// start bit is lost, the data that a receiver reads from the rest of the byte is not included.
   FrameBytes bytes;
   std::vector<Change> changes;
-  bool collided = false;  ///< see BusObserver::byte; true if at least one byte collided
+  bool collided = false;  ///< see WireObserver::byte; true if at least one byte collided
   /// The modes of the sender and of the line at the first byte. Receivers in the line's mode get `bytes`
   /// only if the rates and the parities of both modes are equal. A change of a mode during the frame does not
   /// change these members.
@@ -55,7 +55,7 @@ struct Frame {
 /// with a correct CRC also ends if the gap before the next byte is longer than 1.5 characters. A frame of
 /// another station also ends when this station disables its driver. Every frame ends after 300 bytes at the
 /// latest.
-class FrameWatch final : public BusObserver {
+class FrameWatch final : public WireObserver {
  public:
   using Take = std::function<void(const Frame&)>;
   /// Returns the present mode of the line.
@@ -74,7 +74,7 @@ class FrameWatch final : public BusObserver {
   /// Passes on all unfinished frames. Call this when no more bytes follow.
   void finish() { run(kNever); }
 
-  // --- BusObserver ---
+  // --- WireObserver ---
   void driver(std::size_t station, bool on, VirtualTime now) override;
   void changed(std::size_t station, Levels arrives) override;
   void byte(std::size_t station, std::uint8_t byte, SerialMode mode, bool collided, VirtualTime start,

@@ -96,7 +96,7 @@ std::string useless_gateway(const LineSummary& line) {
                  : "";
 }
 
-std::string introduction(const LineSummary& line) {
+std::string summary_of(const LineSummary& line) {
   std::string text = (line.name.empty() ? "line" : line.name) + " at " +
                      mode_text(line.mode.baud, line.mode.format) +
                      (line.instant ? ", bytes take no time" : "") + ":\n";
@@ -126,7 +126,7 @@ std::string greeting(const BannerContent& all) {
   text += "ex9000-sim " + std::string(kFirmwareVersion);
   text += all.lines.size() == 1 ? ", " : ":\n";
   for (const LineSummary& line : all.lines) {
-    text += introduction(line);
+    text += summary_of(line);
   }
   if (!all.control.empty()) {
     text += "  control socket " + shell_word(all.control) + "\n";

@@ -52,29 +52,29 @@ Plate plate_of(const SimulatedModule& module) {
 
 InputRecords gathered_of(const SimulatedModule& module) {
   const Inputs& inputs = module.module().state().inputs;
-  InputRecords gathered{inputs.latched_high(), inputs.latched_low(), {}};
+  InputRecords records{inputs.latched_high(), inputs.latched_low(), {}};
   for (unsigned channel = 0; channel < module.model().inputs; ++channel) {
-    gathered.counters[channel] = inputs.counter(channel);
+    records.counters[channel] = inputs.counter(channel);
   }
-  return gathered;
+  return records;
 }
 
-HostWatchdogState guard_of(const SimulatedModule& module, VirtualTime now) {
+HostWatchdogState host_watchdog_of(const SimulatedModule& module, VirtualTime now) {
   const State& state = module.module().state();
-  HostWatchdogState guard;
-  guard.enabled = state.settings.watchdog_enabled;
-  guard.timed_out = state.settings.timeout_status;
-  guard.timeout = state.settings.watchdog_timeout;
-  guard.reset_status = state.reset_status;
+  HostWatchdogState host_watchdog;
+  host_watchdog.enabled = state.settings.watchdog_enabled;
+  host_watchdog.timed_out = state.settings.timeout_status;
+  host_watchdog.timeout = state.settings.watchdog_timeout;
+  host_watchdog.reset_status = state.reset_status;
   const Deadline expiry = module.module().host_watchdog_expiry();
   // Rounds `now` down to microseconds, like the firmware's clock, so that `expires` stays the same until the
   // watchdog is restarted.
   const auto since = std::chrono::duration_cast<std::chrono::microseconds>(now);
   const Time core_now(static_cast<std::uint32_t>(since.count()));
   if (expiry.armed() && !expiry.reached(core_now)) {
-    guard.expires = since + std::chrono::microseconds(expiry.remaining(core_now).microseconds());
+    host_watchdog.expires = since + std::chrono::microseconds(expiry.remaining(core_now).microseconds());
   }
-  return guard;
+  return host_watchdog;
 }
 
 /// Reads the copies, and selects the copy that a reset would load (wire.md section 8).
@@ -131,7 +131,7 @@ Face face_of(const SimulatedModule& module, VirtualTime now) {
   if (!listens(module)) {
     return {plate_of(module), {}, {}, stored_of(module)};
   }
-  return {plate_of(module), gathered_of(module), guard_of(module, now), stored_of(module)};
+  return {plate_of(module), gathered_of(module), host_watchdog_of(module, now), stored_of(module)};
 }
 
 std::string_view led_text(Led led) {

@@ -10,7 +10,7 @@
 
 #include "firmware/model/model.hpp"
 #include "firmware/settings/settings.hpp"
-#include "sim/virtual_line/bus/module.hpp"
+#include "sim/virtual_line/wires/module.hpp"
 
 namespace ex9000::sim {
 
@@ -84,8 +84,8 @@ struct Stored {
 /// The part of a module's state that viewers show. The model is not included, because it does not change.
 struct Face {
   Plate plate;
-  InputRecords gathered;
-  HostWatchdogState guard;
+  InputRecords records;
+  HostWatchdogState host_watchdog;
   Stored stored;
 };
 

@@ -4,7 +4,7 @@
 
 namespace ex9000::sim {
 
-FrameSpacing::FrameSpacing(Line& line) : line_(line) { line.bus().observe(*this); }
+FrameSpacing::FrameSpacing(Line& line) : line_(line) { line.wires().observe(*this); }
 
 VirtualTime FrameSpacing::after_own() const { return last_byte_ + line_.rtu_silence(); }
 

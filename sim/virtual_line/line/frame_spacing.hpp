@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "sim/virtual_line/bus/bus.hpp"
+#include "sim/virtual_line/wires/wires.hpp"
 
 namespace ex9000::sim {
 
@@ -12,9 +12,9 @@ class Line;
 
 /// Observes which station has sent last, so that the master can begin a frame late enough: modules must not
 /// treat two frames as one.
-class FrameSpacing final : private BusObserver {
+class FrameSpacing final : private WireObserver {
  public:
-  /// Observes the bus of `line`. Use this object only while `line` exists.
+  /// Observes Wires of `line`. Use this object only while `line` exists.
   explicit FrameSpacing(Line& line);
 
   /// Returns the end of the last complete byte on the wires, including a second stop bit; 0 if no byte is

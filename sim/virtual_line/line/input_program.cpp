@@ -11,8 +11,8 @@ constexpr unsigned kChatters = 4;
 
 }  // namespace
 
-MovedInput::MovedInput(Bus& bus, SimulatedModule& module, const InputProgram& program, std::uint64_t seed)
-    : clock_(bus.clock()), end_(bus.attach(*this)), module_(module), program_(program), chance_(seed) {
+MovedInput::MovedInput(Wires& wires, SimulatedModule& module, const InputProgram& program, std::uint64_t seed)
+    : clock_(wires.clock()), end_(wires.attach(*this)), module_(module), program_(program), chance_(seed) {
   const VirtualTime now = clock_.virtual_now();
   plan(program.kind == InputProgram::Kind::Square     ? now
        : program.kind == InputProgram::Kind::KeyAgain ? now + program.time

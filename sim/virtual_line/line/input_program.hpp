@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <deque>
 
-#include "sim/virtual_line/bus/bus.hpp"
-#include "sim/virtual_line/bus/module.hpp"
-#include "sim/virtual_line/bus_faults/chance.hpp"
+#include "sim/virtual_line/faults/chance.hpp"
+#include "sim/virtual_line/wires/module.hpp"
+#include "sim/virtual_line/wires/wires.hpp"
 
 namespace ex9000::sim {
 
@@ -23,8 +23,8 @@ struct InputProgram {
 /// Changes the level of one input, even if the module has no power.
 class MovedInput final : public Station {
  public:
-  /// Attaches itself to `bus` and starts the program now. The same `seed` produces the same bouncing.
-  MovedInput(Bus& bus, SimulatedModule& module, const InputProgram& program, std::uint64_t seed);
+  /// Attaches itself to `wires` and starts the program now. The same `seed` produces the same bouncing.
+  MovedInput(Wires& wires, SimulatedModule& module, const InputProgram& program, std::uint64_t seed);
   MovedInput(const MovedInput&) = delete;
   MovedInput& operator=(const MovedInput&) = delete;
 
@@ -41,7 +41,7 @@ class MovedInput final : public Station {
   void chatter(VirtualTime begins, bool level);
 
   VirtualClock& clock_;
-  BusEnd& end_;
+  WireEnd& end_;
   SimulatedModule& module_;
   InputProgram program_;
   Chance chance_;

@@ -20,11 +20,11 @@ LineTiming instantly(std::uint32_t /*baud*/, LineFormat /*format*/) {
 
 Line::Line(const std::vector<ModuleSpec>& modules, LineKind kind, Master::Receive receive)
     : kind_(kind),
-      bus_(clock_, kind.times_faster),
-      master_(bus_, SerialMode{baud_rate(kFactoryBaudCode)}, std::move(receive)),
+      wires_(clock_, kind.times_faster),
+      master_(wires_, SerialMode{baud_rate(kFactoryBaudCode)}, std::move(receive)),
       spacing_(*this) {
   for (const ModuleSpec& spec : modules) {
-    modules_.push_back(std::make_unique<SimulatedModule>(bus_, *spec.model, kind.timing_at));
+    modules_.push_back(std::make_unique<SimulatedModule>(wires_, *spec.model, kind.timing_at));
     SimulatedModule& module = *modules_.back();
     module.store(spec.settings);
     module.set_init(spec.init_asserted);
@@ -36,7 +36,7 @@ void Line::come_up() {
   for (const auto& module : modules_) {
     module->power(true);
   }
-  bus_.run_for(kComingUp);
+  wires_.run_for(kComingUp);
 }
 
 void Line::configure_faults(std::uint64_t seed, Faults::Notice notice) {
@@ -46,7 +46,7 @@ void Line::configure_faults(std::uint64_t seed, Faults::Notice notice) {
 
 Faults& Line::faults() {
   if (!faults_) {
-    faults_ = std::make_unique<Faults>(bus_, master_, modules_, chance_.number(), notice_);
+    faults_ = std::make_unique<Faults>(wires_, master_, modules_, chance_.number(), notice_);
   }
   return *faults_;
 }
@@ -59,11 +59,11 @@ RequestQueue& Line::requests() {
 }
 
 void Line::move_input(std::size_t index, const InputProgram& program) {
-  moved_inputs_.push_back(std::make_unique<MovedInput>(bus_, *modules_[index], program, chance_.number()));
+  moved_inputs_.push_back(std::make_unique<MovedInput>(wires_, *modules_[index], program, chance_.number()));
 }
 
 bool Line::unsettled() const {
-  return bus_.busy() || master_.sending() || (faults_ && faults_->pending()) ||
+  return wires_.busy() || master_.sending() || (faults_ && faults_->pending()) ||
          std::any_of(modules_.begin(), modules_.end(), [](const auto& module) { return module->pending(); });
 }
 

@@ -4,14 +4,14 @@
 #include <memory>
 #include <vector>
 
-#include "sim/virtual_line/bus/bus.hpp"
-#include "sim/virtual_line/bus/master.hpp"
-#include "sim/virtual_line/bus/module.hpp"
-#include "sim/virtual_line/bus_faults/faults.hpp"
+#include "sim/virtual_line/faults/faults.hpp"
 #include "sim/virtual_line/line/frame_spacing.hpp"
 #include "sim/virtual_line/line/input_program.hpp"
 #include "sim/virtual_line/line/module_spec.hpp"
 #include "sim/virtual_line/line/request_queue.hpp"
+#include "sim/virtual_line/wires/master.hpp"
+#include "sim/virtual_line/wires/module.hpp"
+#include "sim/virtual_line/wires/wires.hpp"
 
 namespace ex9000::sim {
 
@@ -32,7 +32,7 @@ LineTiming instantly(std::uint32_t baud, LineFormat format);
 /// Bytes take almost no time: each takes about 0.02 us at 115200 baud and about 2 us at 1200 baud.
 constexpr LineKind kInstant{4000, instantly};
 
-/// A line with a master and modules. Station 0 of the bus is the master. The next stations are the modules,
+/// A line with a master and modules. Station 0 of Wires is the master. The next stations are the modules,
 /// in the order in which the constructor gets them.
 class Line {
  public:
@@ -45,12 +45,12 @@ class Line {
 
   VirtualClock& clock() { return clock_; }
   [[nodiscard]] const VirtualClock& clock() const { return clock_; }
-  Bus& bus() { return bus_; }
+  Wires& wires() { return wires_; }
   Master& master() { return master_; }
   [[nodiscard]] const Master& master() const { return master_; }
   [[nodiscard]] const FrameSpacing& spacing() const { return spacing_; }
   /// Returns the queue for the requests of the Modbus TCP gateway and of the panel. The first call attaches
-  /// the queue to the bus.
+  /// the queue to the wires.
   RequestQueue& requests();
   [[nodiscard]] std::size_t size() const { return modules_.size(); }
   SimulatedModule& module(std::size_t index) { return *modules_[index]; }
@@ -58,7 +58,7 @@ class Line {
   /// Sets the seed of all random faults and of bouncing contacts; `notice` gets the messages about faults.
   /// Call this before `faults` and `move_input`.
   void configure_faults(std::uint64_t seed, Faults::Notice notice);
-  /// Returns the faults of this line. The first call attaches them to the bus.
+  /// Returns the faults of this line. The first call attaches them to the wires.
   Faults& faults();
   /// Returns the faults of this line without attaching them; null if `faults` has not been called yet.
   [[nodiscard]] const Faults* faults_so_far() const { return faults_.get(); }
@@ -88,7 +88,7 @@ class Line {
 
   VirtualClock clock_;
   LineKind kind_;
-  Bus bus_;
+  Wires wires_;
   Master master_;
   FrameSpacing spacing_;
   std::vector<std::unique_ptr<SimulatedModule>> modules_;

@@ -7,7 +7,7 @@
 #include "firmware/model/model.hpp"
 #include "firmware/settings/settings.hpp"
 #include "sim/text/places.hpp"
-#include "sim/virtual_line/bus_faults/fault.hpp"
+#include "sim/virtual_line/faults/fault.hpp"
 #include "sim/virtual_line/line/input_program.hpp"
 
 namespace ex9000::sim {

@@ -7,7 +7,7 @@
 
 namespace ex9000::sim {
 
-RequestQueue::RequestQueue(Line& line) : line_(line), timer_(line.bus().attach(*this)) {
+RequestQueue::RequestQueue(Line& line) : line_(line), timer_(line.wires().attach(*this)) {
   line.master().also_receive([this](std::uint8_t byte, ByteStatus status) { hear(byte, status); });
 }
 
@@ -37,7 +37,7 @@ void RequestQueue::send_next() {
 /// Returns whether the master sends, bytes are on the wires, or the line is unsettled. After a reply to this
 /// queue, an unsettled line does not count, because `send` leaves the required silence.
 bool RequestQueue::others_use_the_line() const {
-  return line_.master().sending() || line_.bus().carries() ||
+  return line_.master().sending() || line_.wires().carries() ||
          (line_.spacing().last_byte() != own_byte_ && line_.unsettled());
 }
 

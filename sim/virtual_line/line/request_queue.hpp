@@ -7,7 +7,7 @@
 #include <memory>
 #include <vector>
 
-#include "sim/virtual_line/bus/bus.hpp"
+#include "sim/virtual_line/wires/wires.hpp"
 
 namespace ex9000::sim {
 
@@ -53,7 +53,7 @@ class RequestQueue final : private Station {
     std::weak_ptr<void> owner;  ///< the client; must not be empty
   };
 
-  /// Attaches this object to the bus and the master of `line`. This object must live as long as they are
+  /// Attaches this object to Wires and the master of `line`. This object must live as long as they are
   /// used.
   explicit RequestQueue(Line& line);
   RequestQueue(const RequestQueue&) = delete;
@@ -83,7 +83,7 @@ class RequestQueue final : private Station {
   void enter(State state, VirtualTime until);
 
   Line& line_;
-  BusEnd& timer_;
+  WireEnd& timer_;
   State state_ = State::Idle;
   std::deque<Request> waiting_;  ///< the first one is in progress, unless the state is Idle or WaitsForLine
   VirtualTime own_byte_{0};      ///< end of the last reply to this queue; 0: none

@@ -90,11 +90,11 @@ void Pulser::run() {
 Crowd::Crowd(std::uint32_t baud, std::uint64_t seed)
     : random_(seed),
       line_(specs(baud), sim::kPaced, [this](std::uint8_t byte, ByteStatus) { heard_.push_back(byte); }),
-      pulser_(line_.bus(), line_.module(0)) {
+      pulser_(line_.wires(), line_.module(0)) {
   for (std::size_t i = 0; i < kModules; ++i) {
     described_.push_back(described(i, baud));
   }
-  line_.bus().observe(*this);
+  line_.wires().observe(*this);
   line_.come_up();
   line_.master().set_baud(baud);
 }
@@ -197,7 +197,7 @@ void Crowd::exchange() {
   heard_.clear();
   spoke_.clear();
   line_.master().send(request.data(), request.size());
-  line_.bus().run_for(takes);
+  line_.wires().run_for(takes);
   reference::Answer expected;
   for (reference::Module& each : described_) {
     reference::Answer answer = each.on_request(request, now());
@@ -211,8 +211,8 @@ void Crowd::exchange() {
   const VirtualTime most =
       VirtualTime(expected.stores ? kAnswersStoring : kAnswers) + line_.master().takes(expected.reply.size());
   const VirtualTime end = now() + most;
-  while (now() < end && (spoke_.empty() || line_.bus().busy())) {
-    line_.bus().run_until(std::min(line_.bus().next(), end));
+  while (now() < end && (spoke_.empty() || line_.wires().busy())) {
+    line_.wires().run_until(std::min(line_.wires().next(), end));
   }
   ASSERT_FALSE(collided_) << "two drivers were on";
   ASSERT_EQ(heard_, expected.reply) << "the reply to " << testing::PrintToString(request);
@@ -233,7 +233,7 @@ void Crowd::exchange() {
     }
   }
   // After a reply, the next request follows as early as possible: when the silence is over.
-  line_.bus().run_for(line_.rtu_silence() + microseconds(10));
+  line_.wires().run_for(line_.rtu_silence() + microseconds(10));
   expect_outputs_as_described();
   pulser_.resume();
 }

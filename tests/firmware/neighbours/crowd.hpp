@@ -15,7 +15,7 @@ namespace ex9000::neighbours {
 /// channel.
 class Pulser final : public sim::Station {
  public:
-  Pulser(sim::Bus& bus, sim::SimulatedModule& module)
+  Pulser(sim::Wires& bus, sim::SimulatedModule& module)
       : clock_(bus.clock()), end_(bus.attach(*this)), module_(module) {}
   Pulser(const Pulser&) = delete;
   Pulser& operator=(const Pulser&) = delete;
@@ -40,14 +40,14 @@ class Pulser final : public sim::Station {
   }
 
   sim::VirtualClock& clock_;
-  sim::BusEnd& end_;
+  sim::WireEnd& end_;
   sim::SimulatedModule& module_;
   sim::VirtualTime period_{0};
   sim::VirtualTime next_ = sim::kNever;
   std::uint32_t pulses_ = 0;
 };
 
-class Crowd final : public sim::BusObserver {
+class Crowd final : public sim::WireObserver {
  public:
   static constexpr std::size_t kModules = 32;
 
@@ -75,7 +75,7 @@ class Crowd final : public sim::BusObserver {
   /// Returns the number of replies from each module.
   [[nodiscard]] const std::vector<std::uint64_t>& of_each() const { return of_each_; }
 
-  // --- sim::BusObserver ---
+  // --- sim::WireObserver ---
   void driver(std::size_t station, bool on, sim::VirtualTime now) override;
   void byte(std::size_t /*station*/, std::uint8_t /*byte*/, hal::SerialMode /*mode*/, bool collided,
             sim::VirtualTime /*start*/, sim::VirtualTime /*end*/) override {

@@ -12,7 +12,7 @@
 #include <functional>
 
 #include "sim/app/play/modbus_frame.hpp"
-#include "sim/virtual_line/bus_faults/echo.hpp"
+#include "sim/virtual_line/faults/echo.hpp"
 #include "tests/firmware/noise/noisy_line.hpp"
 #include "tests/firmware/noise/theory.hpp"
 #include "tests/support/environment.hpp"
@@ -74,8 +74,8 @@ struct Trouble {
 void ask(NoisyLine& noisy) {
   const FrameBytes request = noisy.a_request();
   noisy.line().master().send(request.data(), request.size());
-  noisy.line().bus().run_for(noisy.line().master().takes(request.size()) + milliseconds(4) +
-                             microseconds(noisy.below(4000)));
+  noisy.line().wires().run_for(noisy.line().master().takes(request.size()) + milliseconds(4) +
+                               microseconds(noisy.below(4000)));
 }
 
 void with_rates(NoisyLine& noisy, std::uint64_t exchanges, sim::NoiseRates rates) {
@@ -106,7 +106,7 @@ void echo(NoisyLine& noisy, std::uint64_t exchanges) {
   repeater.switch_on(milliseconds(3));
   for (std::uint64_t i = 0; i < exchanges; ++i) {
     ask(noisy);
-    noisy.line().bus().run_for(microseconds(noisy.below(6000)));
+    noisy.line().wires().run_for(microseconds(noisy.below(6000)));
   }
   repeater.switch_off();
 }
@@ -121,7 +121,7 @@ void another_master(NoisyLine& noisy, std::uint64_t exchanges, hal::SerialMode m
     ask(noisy);
   }
   while (other.sending()) {
-    noisy.line().bus().run_for(milliseconds(10));
+    noisy.line().wires().run_for(milliseconds(10));
   }
 }
 

@@ -61,11 +61,11 @@ NoisyLine::NoisyLine(Check check, std::uint64_t seed)
     : check_(check),
       specs_{sim::parse_module_spec(spec_of(check))},
       line_(specs_, sim::kPaced, [this](std::uint8_t byte, ByteStatus) { to_master_.push_back(byte); }),
-      noise_(line_.bus(), {}, seed),
+      noise_(line_.wires(), {}, seed),
       random_(seed + 1),
-      onlooker_(line_.bus(), line_.module(0), kModule) {
-  line_.bus().attach(*this).listen({kBaud});
-  line_.bus().disturb(*this);
+      onlooker_(line_.wires(), line_.module(0), kModule) {
+  line_.wires().attach(*this).listen({kBaud});
+  line_.wires().disturb(*this);
   line_.master().set_baud(kBaud);
   come_up();
 }
@@ -106,9 +106,9 @@ FrameBytes NoisyLine::a_request() {
 void NoisyLine::send(const FrameBytes& bytes, VirtualTime then) {
   const VirtualTime takes = line_.master().takes(bytes.size());
   line_.master().send(bytes.data(), bytes.size());
-  line_.bus().run_for(takes);
+  line_.wires().run_for(takes);
   noise_.set_rates({});
-  line_.bus().run_for(then);
+  line_.wires().run_for(then);
 }
 
 void NoisyLine::exchange(const FrameBytes& request, double flipped_bit, Tally& tally) {
@@ -144,14 +144,14 @@ void NoisyLine::exchange(const FrameBytes& request, double flipped_bit, Tally& t
   if (after.storing != before.storing) {
     // The command may have changed the stored settings. Later requests must not depend on the new values.
     ++tally.storing;
-    line_.bus().run_for(kLongest);
+    line_.wires().run_for(kLongest);
     come_up();
   }
 }
 
 void NoisyLine::expect_the_first_clean_frame_is_answered() {
   noise_.set_rates({});
-  line_.bus().run_for(kLongest);
+  line_.wires().run_for(kLongest);
   if (check_ != Check::Crc) {
     send({'\r'}, kLongest);
   }

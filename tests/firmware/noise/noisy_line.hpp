@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "sim/virtual_line/bus_faults/noise.hpp"
+#include "sim/virtual_line/faults/noise.hpp"
 #include "sim/virtual_line/line/line.hpp"
 #include "tests/firmware/noise/onlooker.hpp"
 
@@ -44,7 +44,7 @@ class NoisyLine final : public sim::Disturbance, public sim::Station {
   /// Creates another station on the line. The station exists as long as this object.
   template <class AStation, class... Arguments>
   AStation& attach(Arguments&&... arguments) {
-    const auto station = std::make_shared<AStation>(line_.bus(), std::forward<Arguments>(arguments)...);
+    const auto station = std::make_shared<AStation>(line_.wires(), std::forward<Arguments>(arguments)...);
     others_.push_back(station);
     return *station;
   }

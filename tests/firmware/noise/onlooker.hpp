@@ -8,19 +8,19 @@
 #include <cstdint>
 #include <vector>
 
-#include "sim/virtual_line/bus/bus.hpp"
-#include "sim/virtual_line/bus/module.hpp"
+#include "sim/virtual_line/wires/module.hpp"
+#include "sim/virtual_line/wires/wires.hpp"
 #include "tests/oracles/judges/module_state.hpp"
 #include "tests/oracles/judges/witness.hpp"
 
 namespace ex9000::noise {
 
 /// Reports failures through GoogleTest.
-class Onlooker final : public sim::BusObserver {
+class Onlooker final : public sim::WireObserver {
  public:
   /// `module` and this object must live as long as the bus is used. Nothing else may observe the module's
   /// outputs. `station`: the module's number on the bus.
-  Onlooker(sim::Bus& bus, sim::SimulatedModule& module, std::size_t station)
+  Onlooker(sim::Wires& bus, sim::SimulatedModule& module, std::size_t station)
       : clock_(bus.clock()),
         module_(module),
         station_(station),
@@ -65,7 +65,7 @@ class Onlooker final : public sim::BusObserver {
   /// Returns the number of replies plus the number of changes of outputs.
   [[nodiscard]] std::uint64_t replies_and_output_changes() const { return replies_and_output_changes_; }
 
-  // --- sim::BusObserver ---
+  // --- sim::WireObserver ---
   void driver(std::size_t station, bool on, sim::VirtualTime /*now*/) override {
     if (station != station_ || !checking_) {
       return;

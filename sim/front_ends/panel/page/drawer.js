@@ -4,7 +4,7 @@
 
 import {bit, hexByte, make, setAttribute, setText} from "/element.js";
 
-/// Returns [name, textOf] of each row in the list of settings. `textOf(settings, plate, guard)` returns the text of the
+/// Returns [name, textOf] of each row in the list of settings. `textOf(settings, plate, hostWatchdog)` returns the text of the
 /// row. `inputs` contains the label of each input.
 function settingRows(inputs) {
   const listed = (labels) => labels.filter(Boolean).join(", ") || "none";
@@ -27,8 +27,8 @@ function settingRows(inputs) {
       `${watchdog ? "enabled" : "disabled"}, ${(timeout / 10).toFixed(1)} s`],
     ["Host watchdog restarted by", ({fedByRequests}) => fedByRequests ? "host OK and requests" : "host OK"],
     ["Timeout status", ({timedOut}) => timedOut ? "set" : "clear"],
-    ["Reset status", (settings, {listening}, guard) =>
-      listening && guard?.resetStatus ? "reset since the last $AA5" : "–"],
+    ["Reset status", (settings, {listening}, hostWatchdog) =>
+      listening && hostWatchdog?.resetStatus ? "reset since the last $AA5" : "–"],
     ["Module watchdog", (settings, {resets}) => `${resets} ${resets === 1 ? "reset" : "resets"}`],
   ];
 }
@@ -50,7 +50,7 @@ export class Drawer {
 
   /// Shows the state. Does nothing while the drawer is closed, or before the plate and the stored copies have arrived.
   draw() {
-    const {plate, stored, guard} = this.state;
+    const {plate, stored, hostWatchdog} = this.state;
     if (!this.element.open || !stored || !plate) {
       return;
     }
@@ -58,7 +58,7 @@ export class Drawer {
     this.values?.show(plate.outputs, settings.powerOn, settings.safe);
     setText(this.kept, originOfSettings(stored));
     for (const {textOf, value} of this.settings) {
-      setText(value, textOf(settings, plate, guard));
+      setText(value, textOf(settings, plate, hostWatchdog));
     }
     this.copies.forEach(({caption, bytes}, index) => {
       const copy = stored.copies[index];

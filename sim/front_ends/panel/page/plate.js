@@ -36,16 +36,16 @@ export class Plate {
     this.address = this.readout("Address");
     this.baud = this.readout("Baud");
     this.protocol = this.readout("Protocol");
-    this.guard = this.readout("Host watchdog", "wide");
+    this.hostWatchdog = this.readout("Host watchdog", "wide");
     this.bar = make("span", {class: "countdown", "aria-hidden": "true"}, make("span"));
-    this.guard.box.append(this.bar);
+    this.hostWatchdog.box.append(this.bar);
     this.drawer = new Drawer(this.layout, this.title, this.state);
     const edge = this.layout.initTerminal ? ["INIT*", ...edgeTerminals] : edgeTerminals;
     return make("article", {class: "plate", "aria-label": this.title},
       make("div", {class: "head"},
         make("div", {class: "title"}, make("h3", {}, this.layout.model), this.name),
         make("div", {class: "lamp"}, this.led, this.ledText)),
-      make("div", {class: "readouts"}, this.address.box, this.baud.box, this.protocol.box, this.guard.box),
+      make("div", {class: "readouts"}, this.address.box, this.baud.box, this.protocol.box, this.hostWatchdog.box),
       this.strip("outputs", "Outputs", this.outputs), this.strip("inputs", "Inputs", this.inputs),
       make("div", {class: "controls"},
         make("span", {class: "control"}, make("span", {"aria-hidden": "true"}, "Power"), this.power.element),
@@ -90,8 +90,8 @@ export class Plate {
     if (news.plate) {
       this.showPlate(news.plate);
     }
-    if (news.gathered) {
-      const {counters, high, low} = news.gathered;
+    if (news.records) {
+      const {counters, high, low} = news.records;
       this.inputs.forEach((input, channel) =>
         input.showGathered(counters[channel], bit(high, channel), bit(low, channel)));
     }
@@ -129,23 +129,23 @@ export class Plate {
 
   /// Updates the readout and the countdown of the host watchdog. `now` is the time of the line's clock in us.
   tick(now) {
-    const {plate, guard} = this.state;
-    if (!guard) {
+    const {plate, hostWatchdog} = this.state;
+    if (!hostWatchdog) {
       return;
     }
-    const total = guard.timeout * 1e5;
-    const left = guard.expires === null ? 0 : Math.max(0, guard.expires - now);
+    const total = hostWatchdog.timeout * 1e5;
+    const left = hostWatchdog.expires === null ? 0 : Math.max(0, hostWatchdog.expires - now);
     let text = "off";
     if (!plate?.listening) {
       text = "––";
-    } else if (guard.timedOut) {
+    } else if (hostWatchdog.timedOut) {
       text = "timed out";
-    } else if (guard.enabled) {
+    } else if (hostWatchdog.enabled) {
       text = `${(left / 1e6).toFixed(1)} s of ${(total / 1e6).toFixed(1)} s`;
     }
-    setText(this.guard.value, text);
-    setAttribute(this.guard.box, "data-state", guard.timedOut ? "expired" : guard.enabled ? "runs" : "off");
-    const share = guard.enabled && total ? Math.round(100 * left / total) : 0;
+    setText(this.hostWatchdog.value, text);
+    setAttribute(this.hostWatchdog.box, "data-state", hostWatchdog.timedOut ? "expired" : hostWatchdog.enabled ? "runs" : "off");
+    const share = hostWatchdog.enabled && total ? Math.round(100 * left / total) : 0;
     if (share !== this.share) {
       this.share = share;
       this.bar.firstChild.style.inlineSize = `${share}%`;

@@ -8,14 +8,14 @@
 #include <vector>
 
 #include "sim/app/main/play_record.hpp"
-#include "sim/app/play/bus_target.hpp"
+#include "sim/app/play/line_target.hpp"
 #include "sim/app/play/play.hpp"
 #include "sim/app/play/player.hpp"
 #include "sim/app/play/transcript.hpp"
 #include "sim/app/setup/bus_file.hpp"
 #include "sim/files_and_ports/files/eeprom_file.hpp"
 #include "sim/notation/module_notation.hpp"
-#include "sim/virtual_line/bus/module.hpp"
+#include "sim/virtual_line/wires/module.hpp"
 #include "tests/support/directory.hpp"
 
 namespace ex9000::play {
@@ -36,7 +36,7 @@ const sim::Setup& two_lines() {
 std::string failure_of(const std::string& steps, const sim::Setup& setup = two_lines()) {
   const Directory directory;
   write_file(directory / "steps.txt", steps);
-  BusTarget target(setup, read_memories(setup));
+  LineTarget target(setup, read_memories(setup));
   return play(load(directory / "steps.txt").front(), target).failure;
 }
 

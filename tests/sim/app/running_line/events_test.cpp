@@ -27,7 +27,7 @@ class EventsOfALine : public testing::Test {
   void ask(const std::string& command, VirtualTime time = milliseconds(100)) {
     const std::string frame = command + "\r";
     line_.master().send(std::vector<std::uint8_t>(frame.begin(), frame.end()).data(), frame.size());
-    line_.bus().run_for(time);
+    line_.wires().run_for(time);
   }
   /// The notes since the last call, without their times.
   Events take() {
@@ -80,7 +80,7 @@ TEST_F(EventsOfALine, SayWhyOutputsChangeUnlessARequestHasChangedThem) {
   act("1 power on");
   EXPECT_EQ(take(), (Events{"0A EX9055D: power off", "0A EX9055D: outputs 0000: no power", "1 power off",
                             "0A EX9055D: power on", "1 power on"}));
-  line_.bus().run_for(milliseconds(100));
+  line_.wires().run_for(milliseconds(100));
   ask("@0A01");
   take();
   act("1 reset");
@@ -90,7 +90,7 @@ TEST_F(EventsOfALine, SayWhyOutputsChangeUnlessARequestHasChangedThem) {
 TEST_F(EventsOfALine, TheModuleWatchdogIsNamed) {
   record_.print_frames();
   act("1 hang");
-  line_.bus().run_for(seconds(2));
+  line_.wires().run_for(seconds(2));
   EXPECT_EQ(take(), (Events{"1 hang", "0A EX9055D: reset by the module watchdog"}));
 }
 

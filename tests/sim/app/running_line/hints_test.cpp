@@ -105,7 +105,7 @@ TEST_F(Hints, EachIsNotedOnceAfterItsFrame) {
   for (const char* command : {"$01M\r", "$01M\r", "$02M\r"}) {
     const FrameBytes bytes = text(command);
     line->master().send(bytes.data(), bytes.size());
-    line->bus().run_for(std::chrono::milliseconds(100));
+    line->wires().run_for(std::chrono::milliseconds(100));
   }
   EXPECT_EQ(log, (std::vector<std::string>{"  > master  $01M\\r  ; $AAM: read the module's name",
                                            "  - no module that speaks ASCII has the address 01",

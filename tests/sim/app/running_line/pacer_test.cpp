@@ -15,7 +15,7 @@
 #include "sim/app/play/modbus_frame.hpp"
 #include "sim/notation/fault_notation.hpp"
 #include "sim/notation/module_notation.hpp"
-#include "tests/sim/virtual_line/bus/bus_recorder.hpp"
+#include "tests/sim/virtual_line/wires/wires_recorder.hpp"
 
 namespace ex9000::sim {
 namespace {
@@ -54,7 +54,7 @@ class PacedLine : public testing::Test {
     port_ = port.get();
     ports_.push_back(std::move(port));
     pacer_.emplace(io_, line_, connected_, nullptr, kSlow, [](const std::string& /*text*/) {});
-    line_.bus().observe(recorder_);
+    line_.wires().observe(recorder_);
     line_.come_up();
     line_.master().set_baud(115200);
     recorder_.clear();
@@ -99,7 +99,7 @@ class PacedLine : public testing::Test {
              kPaced,
              [this](std::uint8_t byte, ByteStatus /*status*/) { connected_.hear(byte); }};
   LinePorts connected_{line_, ports_, [](const std::string& /*text*/) {}};
-  BusRecorder recorder_;
+  WiresRecorder recorder_;
   std::optional<Pacer> pacer_;
 };
 

@@ -40,7 +40,7 @@ class MadeLine : public testing::Test {
 
 TEST_F(MadeLine, TheInputProgramOfEachModuleRuns) {
   begin();
-  line_->bus().run_for(microseconds(500));
+  line_->wires().run_for(microseconds(500));
   EXPECT_EQ(line_->module(0).input_levels(), 1U << 3U);
   EXPECT_EQ(line_->module(1).input_levels(), 1U << 4U);
 }
@@ -50,9 +50,9 @@ TEST_F(MadeLine, AFaultWhoseTimePassesDuringTheStartOfTheModulesBeginsImmediatel
   setup_.faults[0].module = 0;
   setup_.faults[1].module = 1;
   begin();
-  line_->bus().run_for(milliseconds(1));
+  line_->wires().run_for(milliseconds(1));
   EXPECT_EQ(notices_.size(), 1U);
-  line_->bus().run_for(milliseconds(100));
+  line_->wires().run_for(milliseconds(100));
   EXPECT_EQ(notices_.size(), 2U);
 }
 
@@ -60,7 +60,7 @@ TEST_F(MadeLine, AFaultThatRecursKeepsItsPeriod) {
   setup_.faults = {parse_fault("gone every 20ms for 1ms")};
   setup_.faults[0].module = 0;
   begin();
-  line_->bus().run_for(milliseconds(90));
+  line_->wires().run_for(milliseconds(90));
   EXPECT_EQ(notices_.size(), 8U);  // four beginnings and four ends
 }
 
@@ -70,10 +70,10 @@ TEST_F(MadeLine, AByteTakesTenBitTimesWithAndWithoutStrictGaps) {
     begin();
     constexpr std::uint8_t kByte = 0x55;
     line_->master().send(&kByte, 1);
-    line_->bus().run_for(microseconds(1041));  // ten bits at 9600 baud take 1041.7 us
-    EXPECT_TRUE(line_->bus().carries()) << strict;
-    line_->bus().run_for(microseconds(1));
-    EXPECT_FALSE(line_->bus().carries()) << strict;
+    line_->wires().run_for(microseconds(1041));  // ten bits at 9600 baud take 1041.7 us
+    EXPECT_TRUE(line_->wires().carries()) << strict;
+    line_->wires().run_for(microseconds(1));
+    EXPECT_FALSE(line_->wires().carries()) << strict;
   }
 }
 

@@ -49,7 +49,7 @@ class ControlBench : public ModuleBench {
   void run_to_reset() {
     const VirtualTime gives_up = now() + std::chrono::milliseconds(2000);
     while (!status_has("mode=starting") && now() < gives_up) {
-      line().bus().run_until(line().bus().next());
+      line().wires().run_until(line().wires().next());
     }
   }
 

@@ -45,7 +45,7 @@ class GatewayLine {
       EXPECT_FALSE(result.answered) << "answered twice";
       result = {true, answer, line.clock().virtual_now()};
     });
-    line.bus().run_for(time);
+    line.wires().run_for(time);
     return result;
   }
   Pdu reply(std::uint8_t unit, const Pdu& pdu) { return ask(unit, pdu).pdu.value_or(Pdu()); }
@@ -132,7 +132,7 @@ TEST(Gateway, TheTimeoutCanBeSet) {
   ask_on_line(
       bench.line, {1, 0x02, kReadOutputs}, bench.owner,
       [&](const std::optional<Pdu>& /*answer*/) { answered = bench.line.clock().virtual_now(); }, seconds(1));
-  bench.line.bus().run_for(seconds(2));
+  bench.line.wires().run_for(seconds(2));
   EXPECT_GE(answered - asked, milliseconds(1019));
   EXPECT_LE(answered - asked, milliseconds(1022));
 }
@@ -159,7 +159,7 @@ TEST(Gateway, AModuleWithInitSpeaksAsciiUntilAStartWithoutInit) {
   bench.line.module(0).set_init(false);
   bench.line.module(0).power(false);
   bench.line.module(0).power(true);
-  bench.line.bus().run_for(seconds(1));
+  bench.line.wires().run_for(seconds(1));
   EXPECT_EQ(bench.reply(0x01, kReadOutputs), kOutputsOff);
 }
 
@@ -235,7 +235,7 @@ std::vector<Pdu> answers_if_replies_are_late(GatewayLine& bench, RequestFor requ
     ask_on_line(bench.line, {1, 0x01, request_for(coil)}, bench.owner,
                 [&](const std::optional<Pdu>& answer) { answers.push_back(answer.value_or(Pdu())); });
   }
-  bench.line.bus().run_for(seconds(10));
+  bench.line.wires().run_for(seconds(10));
   return answers;
 }
 
@@ -262,10 +262,10 @@ TEST(Gateway, TheReplyToAnotherMasterIsNotTheReplyToTheClient) {
   std::optional<Pdu> reply;
   ask_on_line(bench.line, {1, 0x01, read_coil_0}, bench.owner,
               [&](const std::optional<Pdu>& answer) { reply = answer; });
-  bench.line.bus().run_for(milliseconds(100));  // the reply of the module is lost
+  bench.line.wires().run_for(milliseconds(100));  // the reply of the module is lost
   const std::vector<std::uint8_t> other = rtu_frame(0x01, {0x01, 0x00, 0x05, 0x00, 0x01});
   bench.line.master().send(other.data(), other.size());
-  bench.line.bus().run_for(seconds(2));
+  bench.line.wires().run_for(seconds(2));
   EXPECT_EQ(reply, (Pdu{0x81, kNoReply}));
 }
 
@@ -283,7 +283,7 @@ TEST(Gateway, AReplyAfterTheTimeoutIsNotTheReplyToTheNextRequest) {
   ask_on_line(bench.line, {1, 0x01, kReadOutputs}, bench.owner, [](const std::optional<Pdu>& answer) {
     EXPECT_EQ(answer, (Pdu{0x81, kNoReply}));
   });
-  bench.line.bus().run_for(milliseconds(520));
+  bench.line.wires().run_for(milliseconds(520));
   EXPECT_EQ(bench.reply(0x03, kReadOutputs), (Pdu{0x81, kNoReply}));
 }
 

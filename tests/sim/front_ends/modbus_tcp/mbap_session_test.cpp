@@ -107,7 +107,7 @@ TEST(MbapSession, FiveClientsOnOneLineGetTheirOwnReplies) {
               [](const std::optional<Buffer>& reply) {
                 EXPECT_EQ(reply, (Buffer{0x0F, 0x00, 0x00, 0x00, 0x10}));
               });
-  line.bus().run_for(seconds(1));
+  line.wires().run_for(seconds(1));
   std::vector<std::unique_ptr<PollingClient>> clients;
   for (unsigned i = 0; i < 5; ++i) {
     clients.push_back(std::make_unique<PollingClient>(line, i));
@@ -121,12 +121,12 @@ TEST(MbapSession, FiveClientsOnOneLineGetTheirOwnReplies) {
     } else {
       client.arrive();
     }
-    line.bus().run_for(std::chrono::milliseconds(random() % 100));
+    line.wires().run_for(std::chrono::milliseconds(random() % 100));
   }
   for (const auto& client : clients) {
     client->arrive();
   }
-  line.bus().run_for(seconds(60));
+  line.wires().run_for(seconds(60));
   for (const auto& client : clients) {
     EXPECT_EQ(client->in_flight(), 0U);
     EXPECT_GT(client->answered(), 2 * duration.count());
@@ -149,13 +149,13 @@ TEST(MbapSession, RequestsWaitWhileTheirClientReadsNoReplies) {
     const Buffer bytes = mbap_bytes({1, 1, {0x01, 0x00, 0x00, 0x00, 0x0D}});
     session.receive({bytes.data(), bytes.size()});
   }
-  line.bus().run_for(seconds(1));
+  line.wires().run_for(seconds(1));
   EXPECT_EQ(replies, 1U);
   EXPECT_FALSE(session.idle());
   EXPECT_EQ(session.unread(), 99U * 12);
   for (int i = 0; i < 100; ++i) {
     session.resume();
-    line.bus().run_for(seconds(1));
+    line.wires().run_for(seconds(1));
   }
   EXPECT_EQ(replies, 100U);
   EXPECT_EQ(session.unread(), 0U);
@@ -181,7 +181,7 @@ TEST(MbapSession, ClientsTakeTurnsEvenIfOneClientSendsManyRequests) {
     many->receive({to_nobody.data(), to_nobody.size()});
   }
   one->receive({to_nobody.data(), to_nobody.size()});
-  line.bus().run_for(std::chrono::milliseconds(500));  // two timeouts of 220 ms
+  line.wires().run_for(std::chrono::milliseconds(500));  // two timeouts of 220 ms
   EXPECT_EQ(order, (std::vector<std::string>{"many", "one"}));
 }
 
@@ -200,7 +200,7 @@ TEST(MbapSession, WaitingRequestsOfADisconnectedClientAreNotSent) {
     session->receive({bytes.data(), bytes.size()});
   }
   session.reset();
-  line.bus().run_for(seconds(2));
+  line.wires().run_for(seconds(2));
   EXPECT_EQ(line.module(0).outputs(), 0x0001);  // the first request was on the line already
 }
 

@@ -68,7 +68,7 @@ class ModbusTcpServerTest : public testing::Test {
     for (const auto& process : std::exchange(arrivals_.processes, {})) {
       process();
     }
-    line_.bus().run_for(time);
+    line_.wires().run_for(time);
   }
   static Buffer receive(tcp::socket& client, std::size_t size) {
     Buffer bytes(size);

@@ -24,12 +24,12 @@ class PanelBench : public ModuleBench {
                  line().requests().ask(std::move(request));
                },
                1, [this] { return wall_clock_; }) {
-    LineSummary introduced;
-    introduced.name = "hall";
-    introduced.ports.push_back({"tcp", "127.0.0.1:5020", ""});
-    panel_.add_line(introduced, line(), [this] { return now(); });
+    LineSummary summary;
+    summary.name = "hall";
+    summary.ports.push_back({"tcp", "127.0.0.1:5020", ""});
+    panel_.add_line(summary, line(), [this] { return now(); });
     frames_.add_receiver([this](const Frame& frame) { panel_.hear(0, frame); });
-    line().bus().observe(frames_);
+    line().wires().observe(frames_);
     viewer_ = panel_.viewer();
   }
 

@@ -32,7 +32,7 @@ TEST(PanelMessages, TheFirstMessageHasTheCompleteState) {
   EXPECT_EQ(hello["modules"][0]["outputs"][7], "DO7");
   EXPECT_EQ(hello["modules"][0]["inputs"].size(), 8U);
   const Message& module = message["state"]["modules"][0];
-  for (const char* part : {"plate", "gathered", "guard", "stored"}) {
+  for (const char* part : {"plate", "records", "hostWatchdog", "stored"}) {
     EXPECT_TRUE(module.contains(part)) << part;
   }
   EXPECT_EQ(module["plate"]["address"], 7);
@@ -50,7 +50,7 @@ TEST(PanelMessages, LaterMessagesHaveOnlyTheChanges) {
   const Message& module = message["state"]["modules"][0];
   EXPECT_EQ(module["plate"]["inputs"], 4);
   EXPECT_FALSE(module.contains("stored"));
-  EXPECT_FALSE(module.contains("guard"));
+  EXPECT_FALSE(module.contains("hostWatchdog"));
   EXPECT_TRUE(bench.look().is_null());
 }
 
@@ -92,9 +92,9 @@ class TwoLines {
   TwoLines() {
     for (std::size_t i = 0; i < lines_.size(); ++i) {
       lines_[i]->come_up();
-      LineSummary introduced;
-      introduced.name = i == 0 ? "hall" : "yard";
-      panel_.add_line(introduced, *lines_[i], [this, i] { return lines_[i]->clock().virtual_now(); });
+      LineSummary summary;
+      summary.name = i == 0 ? "hall" : "yard";
+      panel_.add_line(summary, *lines_[i], [this, i] { return lines_[i]->clock().virtual_now(); });
     }
     viewer_ = panel_.viewer();
     hello_ = look()["hello"];
@@ -189,7 +189,7 @@ TEST(PanelOfTwoLines, ABaudRateIsReportedWithItsLine) {
 
 TEST(PanelOfTwoLines, EachLineHasItsOwnTime) {
   TwoLines bench;
-  bench.line(1).bus().run_for(milliseconds(250));
+  bench.line(1).wires().run_for(milliseconds(250));
   bench.line(1).master().set_baud(19200);  // without a change, the page gets no message within 1 s
   const Message lines = bench.look()["state"]["lines"];
   EXPECT_EQ(lines[1]["now"].get<std::int64_t>() - lines[0]["now"].get<std::int64_t>(), 250'000);

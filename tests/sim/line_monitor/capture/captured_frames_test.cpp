@@ -73,13 +73,13 @@ Packet of_a_spoiled(const Bytes& request, OneHit hit) {
   line.come_up();
   sim::Capture capture(directory / "line.pcapng", "--capture: ");
   sim::FrameWatch frames([&line] { return line.master().mode(); });
-  line.bus().observe(frames);
-  line.bus().disturb(hit);
+  line.wires().observe(frames);
+  line.wires().disturb(hit);
   capture.begin();
   const std::size_t number = capture.add_line("line", 1, std::chrono::seconds(0));
   frames.add_receiver([&](const sim::Frame& frame) { capture.write(number, frame); });
   line.master().send(request.data(), request.size());
-  line.bus().run_for(std::chrono::milliseconds(100));
+  line.wires().run_for(std::chrono::milliseconds(100));
   frames.finish();
   const std::vector<Packet> packets = decoded(
       directory / "line.pcapng", {"frame.comment", "mbrtu.crc16.status", "modbus.reference_num", "text"});

@@ -7,7 +7,7 @@
 
 #include "sim/app/play/modbus_frame.hpp"
 #include "sim/line_monitor/frames/frame_errors.hpp"
-#include "sim/virtual_line/bus/master.hpp"
+#include "sim/virtual_line/wires/master.hpp"
 
 namespace ex9000::sim {
 namespace {
@@ -229,7 +229,7 @@ TEST_F(FrameWatchTest, AChangeOfTheLineFormatDuringAFrameIsNotReportedAsNoise) {
 
 TEST_F(FrameWatchTest, AByteThatTheMasterSendsWithWrongParityHasAParityError) {
   hal::doubles::VirtualClock clock;
-  Bus bus(clock);
+  Wires bus(clock);
   bus.observe(watch);
   Master master(bus, {kBaud, LineFormat::k8E1}, [](std::uint8_t /*byte*/, ByteStatus /*status*/) {});
   line_mode = master.mode();

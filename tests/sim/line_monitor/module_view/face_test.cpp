@@ -40,10 +40,10 @@ TEST(Face, ShowsOutputsInputsCountersAndLatches) {
   const Face face = face_of(bench);
   EXPECT_EQ(face.plate.outputs, 0x05);
   EXPECT_EQ(face.plate.inputs, 0x02);
-  EXPECT_EQ(face.gathered.latched_high, 0x82);
-  EXPECT_EQ(face.gathered.latched_low, 0x80);
-  EXPECT_EQ(face.gathered.counters[7], 3U);
-  EXPECT_EQ(face.gathered.counters[1], 0U);
+  EXPECT_EQ(face.records.latched_high, 0x82);
+  EXPECT_EQ(face.records.latched_low, 0x80);
+  EXPECT_EQ(face.records.counters[7], 3U);
+  EXPECT_EQ(face.records.counters[1], 0U);
 }
 
 TEST(Face, ShowsTheRemainingTimeOfATimedOutput) {
@@ -72,8 +72,8 @@ TEST(Face, WithoutPowerShowsSwitchesInputsAndStoredSettingsButNoFirmwareState) {
   EXPECT_EQ(face.plate.led, Led::Off);
   EXPECT_EQ(face.plate.outputs, 0);
   EXPECT_EQ(face.plate.inputs, 0x01);  // the level at the terminal does not depend on the supply
-  EXPECT_EQ(face.gathered, InputRecords());
-  EXPECT_EQ(face.guard, HostWatchdogState());
+  EXPECT_EQ(face.records, InputRecords());
+  EXPECT_EQ(face.host_watchdog, HostWatchdogState());
   EXPECT_EQ(face.stored.settings.address, 0x07);
 }
 
@@ -100,21 +100,21 @@ TEST(Face, ShowsWhenTheHostWatchdogExpiresAndThatItHasExpired) {
   ASSERT_EQ(bench.ask("@010002"), ">");
   ASSERT_EQ(bench.ask("~015S"), "!01");
   ASSERT_EQ(bench.ask("@010001"), ">");
-  EXPECT_FALSE(face_of(bench).guard.expires);
+  EXPECT_FALSE(face_of(bench).host_watchdog.expires);
   ASSERT_EQ(bench.ask("~01310A"), "!01");
-  const HostWatchdogState runs = face_of(bench).guard;
+  const HostWatchdogState runs = face_of(bench).host_watchdog;
   EXPECT_TRUE(runs.enabled);
   EXPECT_EQ(runs.timeout, 10);
   ASSERT_TRUE(runs.expires);
   EXPECT_GT(*runs.expires, bench.now());
   bench.run(milliseconds(100));
-  EXPECT_EQ(face_of(bench).guard, runs);  // `expires` is the time of expiry, not the remaining time
-  bench.line().bus().run_until(*runs.expires - milliseconds(1));
-  EXPECT_FALSE(face_of(bench).guard.timed_out);
+  EXPECT_EQ(face_of(bench).host_watchdog, runs);  // `expires` is the time of expiry, not the remaining time
+  bench.line().wires().run_until(*runs.expires - milliseconds(1));
+  EXPECT_FALSE(face_of(bench).host_watchdog.timed_out);
   bench.run(milliseconds(2));
   const Face expired = face_of(bench);
-  EXPECT_TRUE(expired.guard.timed_out);
-  EXPECT_FALSE(expired.guard.expires);
+  EXPECT_TRUE(expired.host_watchdog.timed_out);
+  EXPECT_FALSE(expired.host_watchdog.expires);
   EXPECT_EQ(expired.plate.led, Led::HostTimeout);
   EXPECT_EQ(expired.plate.outputs, 0x02);
 }
@@ -167,7 +167,7 @@ TEST(Face, ReadingAFaceDoesNotChangeTheModule) {
   }
   EXPECT_EQ(looked.heard_text(), left.heard_text());
   EXPECT_EQ(looked.module().memory().contents(), left.module().memory().contents());
-  EXPECT_EQ(looked.line().bus().next(), left.line().bus().next());
+  EXPECT_EQ(looked.line().wires().next(), left.line().wires().next());
   EXPECT_EQ(looked.line().faults_so_far(), nullptr);
 }
 

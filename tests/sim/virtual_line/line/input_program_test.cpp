@@ -31,7 +31,7 @@ class InputBench {
     line_.move_input(0, program_);
   }
 
-  void run_until(VirtualTime time) { line_.bus().run_until(time); }
+  void run_until(VirtualTime time) { line_.wires().run_until(time); }
   [[nodiscard]] bool level() { return (module().input_levels() >> program_.channel & 1U) != 0; }
   [[nodiscard]] std::uint32_t counter() {
     module().set_init(false);  // runs the main loop, which adds the edges to the counter
@@ -42,8 +42,8 @@ class InputBench {
   Moves moves_until(VirtualTime time) {
     Moves moves;
     bool was = level();
-    while (line_.bus().next() <= time) {
-      line_.bus().run_until(line_.bus().next());
+    while (line_.wires().next() <= time) {
+      line_.wires().run_until(line_.wires().next());
       if (level() != was) {
         was = level();
         moves.emplace_back(line_.clock().virtual_now(), was);

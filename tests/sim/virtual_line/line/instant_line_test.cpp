@@ -37,7 +37,7 @@ class InstantLine : public testing::TestWithParam<std::uint32_t> {
   void send(const std::string& text) { send(Frame(text.begin(), text.end())); }
   Frame heard_within(VirtualTime time) {
     heard_.clear();
-    line_.bus().run_for(time);
+    line_.wires().run_for(time);
     return heard_;
   }
 
@@ -64,7 +64,7 @@ TEST_P(InstantLine, TwoPiecesLessThanTwoMillisecondsApartAreOneFrame) {
     EXPECT_EQ(heard_within(microseconds(1900)), Frame());
     send(Frame(at, kReadOutputs.end()));
     EXPECT_EQ(heard_within(kAtOnce), kOutputsOff) << split;
-    line_.bus().run_for(milliseconds(1));
+    line_.wires().run_for(milliseconds(1));
   }
 }
 
@@ -92,11 +92,11 @@ TEST_P(InstantLine, ARequestAtAnotherBaudRateGetsNoReply) {
 
 TEST_P(InstantLine, TheHostWatchdogExpiresAfterItsTimeout) {
   send(with_crc({0x01, 0x06, 0x01, 0xE8, 0x00, 0x05}));  // 0.5 s
-  line_.bus().run_for(milliseconds(50));
+  line_.wires().run_for(milliseconds(50));
   send(with_crc({0x01, 0x05, 0x01, 0x04, 0xFF, 0x00}));  // enabled
-  line_.bus().run_for(milliseconds(450));
+  line_.wires().run_for(milliseconds(450));
   EXPECT_FALSE(line_.module(0).module().state().settings.timeout_status);
-  line_.bus().run_for(milliseconds(100));
+  line_.wires().run_for(milliseconds(100));
   EXPECT_TRUE(line_.module(0).module().state().settings.timeout_status);
 }
 

@@ -24,7 +24,7 @@ TEST(LineOfOneModule, IsPendingFromTheCallOfSendToTheEndOfTheReply) {
 
   for (int passed = 0; line.pending() && passed < 100; ++passed) {
     EXPECT_FALSE(replied);
-    line.bus().run_for(milliseconds(1));
+    line.wires().run_for(milliseconds(1));
   }
   EXPECT_TRUE(replied);
   EXPECT_FALSE(line.pending());

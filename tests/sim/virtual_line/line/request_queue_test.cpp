@@ -27,7 +27,7 @@ const Frame kOff2 = with_crc({0x02, 0x02, 0x01, 0x00});
 const Frame kToNobody = with_crc({0x09, 0x01, 0x00, 0x00, 0x00, 0x0D});
 
 /// Records the start of each frame of the master, and the end of the last byte from other stations.
-class MasterWatch : public BusObserver {
+class MasterWatch : public WireObserver {
  public:
   std::vector<VirtualTime> began;
   VirtualTime last_byte_of_others{0};
@@ -53,7 +53,7 @@ class Queue : public testing::TestWithParam<bool> {
  protected:
   Queue() {
     line_.come_up();
-    line_.bus().observe(watch_);
+    line_.wires().observe(watch_);
   }
 
   RequestQueue::Request request(const Frame& frame, const std::string& name, bool expects_reply = true) {
@@ -70,7 +70,7 @@ class Queue : public testing::TestWithParam<bool> {
   }
   void ask(const Frame& frame, const std::string& name) { line_.requests().ask(request(frame, name)); }
   [[nodiscard]] VirtualTime now() { return line_.clock().virtual_now(); }
-  void run(VirtualTime time) { line_.bus().run_for(time); }
+  void run(VirtualTime time) { line_.wires().run_for(time); }
 
   using Results = std::vector<std::pair<std::string, Frame>>;
 
@@ -100,7 +100,7 @@ TEST_P(Queue, ARequestBeginsOnlyAfterTheSilenceThatEndsThePreviousReply) {
   ask(kRead1, "a");
   ask(kRead2, "b");
   while (results_.empty()) {
-    line_.bus().run_next();
+    line_.wires().run_next();
   }
   const VirtualTime reply_ended = watch_.last_byte_of_others;
   run(milliseconds(500));
@@ -151,7 +151,7 @@ TEST_P(Queue, IfARequestChecksItsReplyADamagedReplyIsIgnoredOtherwiseItIsMarkedA
   const auto with_reply_in_another_format = [this](RequestQueue::Request asked) {
     line_.requests().ask(std::move(asked));
     do {
-      line_.bus().run_next();
+      line_.wires().run_next();
     } while (line_.master().sending());
     line_.master().set_format(LineFormat::k8E1);
     run(std::chrono::seconds(1));
@@ -234,7 +234,7 @@ TEST_P(Queue, ARequestWaitsForARequestOfAnotherProgramAndItsReply) {
 TEST_P(Queue, IfAModuleLosesPowerDuringItsReplyTheNextFrameOfTheMasterIsASeparateFrame) {
   line_.master().send(kRead2.data(), kRead2.size());
   while (watch_.last_byte_of_others == VirtualTime(0)) {
-    line_.bus().run_next();
+    line_.wires().run_next();
   }
   line_.module(1).power(false);
   const VirtualTime off = now();
@@ -254,17 +254,19 @@ TEST_P(Queue, ALongTransmissionDoesNotBlockARequestForEver) {
 /// A station that sends one byte in each `period`. Its constructor sends the first byte.
 class Babbler final : public Station {
  public:
-  Babbler(Bus& bus, VirtualTime period) : bus_(bus), end_(bus.attach(*this)), period_(period) { run(); }
+  Babbler(Wires& wires, VirtualTime period) : wires_(wires), end_(wires.attach(*this)), period_(period) {
+    run();
+  }
 
   void run() override {
     end_.drive(true);
     end_.put(0x55, {9600, LineFormat::k8N1});
-    end_.run_at(bus_.clock().virtual_now() + period_);
+    end_.run_at(wires_.clock().virtual_now() + period_);
   }
 
  private:
-  Bus& bus_;
-  BusEnd& end_;
+  Wires& wires_;
+  WireEnd& end_;
   VirtualTime period_;
 };
 
@@ -278,7 +280,7 @@ TEST_P(PacedQueue, AStationThatNeverStopsSendingDoesNotBlockARequestForEver) {
   line_.requests().ask(std::move(checked));
   ask(kToNobody, "raw");
   run(milliseconds(20));  // the first request has been sent
-  const Babbler babbler(line_.bus(), line_.rtu_silence() / 2);
+  const Babbler babbler(line_.wires(), line_.rtu_silence() / 2);
   run(RequestQueue::kReplyTimeout + milliseconds(80));
   EXPECT_EQ(results_, (Results{{"checked", {}}}));
   run(2 * RequestQueue::kReplyTimeout + milliseconds(100));

@@ -1,0 +1,95 @@
+#include "sim/virtual_line/wires/module_wire.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace ex9000::sim {
+
+Bytes ModuleWire::replaced(Bytes bytes) {
+  if (!begins_) {
+    return bytes;
+  }
+  reply_ = Reply{{bytes.begin(), bytes.end()}};
+  begins_(reply_);
+  return {reply_.bytes.data(), reply_.bytes.size()};
+}
+
+void ModuleWire::drive(bool on) {
+  drives_ = on;
+  if (on) {
+    reply_.lost = reply_.lost || late_.size() > kMostLate;
+    forced_for_reply_ = forced_;
+    delay_ = reply_.late_by;
+    if (!late_.empty()) {  // replies keep their order: a reply after a late one is late too
+      delay_ = std::max(delay_, late_.back().when - clock_.virtual_now());
+    }
+  }
+  hand_on(on ? What::On : What::Off, 0, {});
+  if (!on && ends_) {
+    ends_();
+  }
+}
+
+void ModuleWire::put(std::uint8_t byte, SerialMode mode) { hand_on(What::Byte, byte, reply_mode(mode)); }
+
+void ModuleWire::hand_on(What what, std::uint8_t byte, SerialMode mode) {
+  if (reply_.lost) {
+    return;
+  }
+  const VirtualTime now = clock_.virtual_now();
+  const Event event{now, now + delay_, what, byte, mode, reply_.late_by, reply_.delayed_by};
+  if (delay_ == VirtualTime(0) && late_.empty()) {
+    carry_out(event);
+    driving_late_ = driving_late_ && what != What::Off;  // `run` may have begun this reply as a late one
+  } else {
+    late_.push_back(event);
+  }
+}
+
+void ModuleWire::carry_out(const Event& event) {
+  switch (event.what) {
+    case What::On:
+      wire_.drive(true);
+      break;
+    case What::Byte:
+      wire_.put(event.byte, event.mode);
+      break;
+    case What::Off:
+      wire_.drive(false);
+      break;
+  }
+}
+
+void ModuleWire::run() {
+  while (!late_.empty() && late_.front().when <= clock_.virtual_now()) {
+    const Event due = late_.front();
+    late_.pop_front();
+    driving_late_ = due.what != What::Off;
+    carry_out(due);
+  }
+}
+
+void ModuleWire::end_delays(std::size_t fault) {
+  VirtualTime free = clock_.virtual_now();  // the time from which the next reply can be on the wires
+  std::optional<VirtualTime> delay;         // the delay of the previous reply that waits
+  for (Event& late : late_) {
+    if (late.what == What::On) {
+      late.late_by = late.delayed_by == fault ? VirtualTime(0) : late.late_by;
+      delay = std::max({late.late_by, free - late.sent, delay.value_or(VirtualTime(0))});
+    }
+    if (delay) {
+      late.when = late.sent + *delay;
+    }
+    free = std::max(free, late.when);
+  }
+  delay_ = delay.value_or(delay_);  // has an effect only if the UART still sends the last reply
+}
+
+void ModuleWire::abort() {
+  if (std::exchange(driving_late_, false)) {
+    wire_.drive(false);
+  }
+  late_.clear();
+}
+
+}  // namespace ex9000::sim

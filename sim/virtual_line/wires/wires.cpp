@@ -1,0 +1,266 @@
+#include "sim/virtual_line/wires/wires.hpp"
+
+#include <algorithm>
+
+namespace ex9000::sim {
+
+struct Wires::End final : WireEnd {
+  End(Wires& its_wires, std::size_t its_index) : wires(its_wires), index(its_index) {}
+
+  void drive(bool on) override { wires.drive(*this, on); }
+  void put(std::uint8_t byte, SerialMode mode) override {
+    wires.put(*this, byte, mode, levels_of(byte, mode.format));
+  }
+  void put_with_wrong_parity(std::uint8_t byte, SerialMode mode) override {
+    wires.put(*this, byte, mode, with_wrong_parity(levels_of(byte, mode.format), mode.format));
+  }
+  [[nodiscard]] VirtualTime takes(std::size_t bytes, SerialMode mode) const override {
+    constexpr std::int64_t kBitNanoseconds = 1'000'000'000;
+    return VirtualTime(static_cast<std::int64_t>(bytes * bits_of_character(mode.format)) * kBitNanoseconds /
+                       wires.bit_rate(mode.baud));
+  }
+  void listen(SerialMode mode) override { wires.listen(*this, mode); }
+  void run_at(VirtualTime when) override { wires.due_times_.set(index, when); }
+
+  Wires& wires;
+  std::size_t index;
+  bool driving = false;
+};
+
+Wires::Wires(VirtualClock& clock, std::uint32_t times_faster) : clock_(clock), times_faster_(times_faster) {}
+
+Wires::~Wires() = default;
+
+/// Returns the bit rate in virtual time: `baud` multiplied by `times_faster_`, at most 500 Mbit/s. At
+/// this limit half a bit lasts 1 ns; a sampler makes no progress if half a bit is shorter. No module reaches
+/// this limit.
+std::uint32_t Wires::bit_rate(std::uint32_t baud) const {
+  constexpr std::uint64_t kFastest = 500'000'000;
+  return static_cast<std::uint32_t>(std::min(std::uint64_t{baud} * times_faster_, kFastest));
+}
+
+/// Returns the bit rate in virtual time and the format as receivers read it. A receiver gets a byte without
+/// sampling only if the result is the same for the mode of the sender and for the mode of the receiver.
+SerialMode Wires::on_the_wires(SerialMode mode) const {
+  return {bit_rate(mode.baud), as_received(mode.format)};
+}
+
+WireEnd& Wires::attach(Station& station) {
+  receivers_.push_back({&station});
+  ends_.push_back(std::make_unique<End>(*this, due_times_.add()));
+  return *ends_.back();
+}
+
+void Wires::run_next() {
+  clock_.set(std::max(next(), clock_.virtual_now()));
+  const VirtualTime now = clock_.virtual_now();
+  if (std::min(next_byte_end_, next_sample_) <= now) {
+    run_wire();
+  }
+  if (due_times_.next() <= now) {
+    due_times_.run_due(now, [this](std::size_t station) { receivers_[station].station->run(); });
+  }
+}
+
+void Wires::run_until(VirtualTime until) {
+  while (next() <= until) {
+    run_next();
+  }
+  clock_.set(std::max(until, clock_.virtual_now()));
+}
+
+void Wires::drive(End& end, bool on) {
+  if (end.driving == on) {
+    return;
+  }
+  end.driving = on;
+  drivers_on_ += on ? 1U : -1U;
+  const VirtualTime now = clock_.virtual_now();
+  for (Wave& wave : waves_) {
+    wave.collided = wave.collided || drivers_on_ > 1;
+    if (!on && wave.station == end.index && wave.cut_off == kNever && wave.end > now) {
+      // The sender leaves the line idle for the rest of the byte, and the receivers sample the result.
+      wave.collided = true;
+      wave.cut_off = now;
+    }
+  }
+  begin_sampling();
+  for (WireObserver* observer : observers_) {
+    observer->driver(end.index, on, now);
+  }
+}
+
+/// `sent`: the levels that the station sends, with right or wrong parity.
+void Wires::put(End& end, std::uint8_t byte, SerialMode mode, Levels sent) {
+  Wave wave{clock_.virtual_now(), on_the_wires(mode), sent};
+  if (disturbance_ != nullptr) {
+    wave.levels = disturbance_->disturbed({sent, mode, wave.end, drivers_on_ > 1});
+  }
+  wave.disturbed = wave.levels != levels_of(byte, mode.format);
+  if (wave.disturbed) {
+    for (WireObserver* observer : observers_) {
+      observer->changed(end.index, wave.levels);
+    }
+  }
+  wave.station = end.index;
+  wave.nominal = mode;
+  wave.byte = byte;
+  wave.collided = drivers_on_ > 1 || carries();
+  for (Wave& other : waves_) {
+    other.collided = true;
+  }
+  waves_.push_back(wave);
+  ++carried_;
+  next_byte_end_ = std::min(next_byte_end_, wave.end);
+  if (!wave.arrives_whole() || has_other_listeners(wave.mode)) {
+    begin_sampling();
+  }
+}
+
+void Wires::listen(End& end, SerialMode mode) {
+  const SerialMode now = on_the_wires(mode);
+  Receiver& receiver = receivers_[end.index];
+  if (now == receiver.mode) {
+    return;
+  }
+  count_listener(receiver.mode, -1);
+  count_listener(now, 1);
+  receiver.mode = now;
+  receiver.samples = false;
+  receiver.sampler = UartSampler();
+  receiver.sampler.skip_to(clock_.virtual_now());
+  begin_sampling();
+}
+
+void Wires::count_listener(SerialMode mode, int change) {
+  const auto key = std::pair(mode.baud, mode.format);
+  if (mode.baud != 0 && (listeners_[key] += change) == 0) {
+    listeners_.erase(key);
+  }
+}
+
+bool Wires::has_other_listeners(SerialMode mode) const {
+  return listeners_.size() > 1 ||
+         (listeners_.size() == 1 && listeners_.begin()->first != std::pair(mode.baud, mode.format));
+}
+
+/// Returns whether the receiver has the mode of the byte, has listened since the start of the byte, and has
+/// sampled no part of it.
+bool Wires::has_heard_from_the_start(const Receiver& receiver, const Wave& wave) {
+  return wave.mode == receiver.mode && receiver.sampler.position() <= wave.start;
+}
+
+bool Wires::has_to_sample(const Receiver& receiver) const {
+  const auto gets_whole = [&](const Wave& wave) {
+    return wave.over || (wave.arrives_whole() && has_heard_from_the_start(receiver, wave));
+  };
+  return receiver.mode.baud != 0 &&
+         (receiver.sampler.busy() || !std::all_of(waves_.begin(), waves_.end(), gets_whole));
+}
+
+/// Starts the sampler of each receiver that cannot get every byte on the wires unchanged.
+void Wires::begin_sampling() {
+  const auto first = std::find_if(waves_.begin(), waves_.end(), [](const Wave& wave) { return !wave.over; });
+  if (first == waves_.end()) {
+    return;
+  }
+  for (Receiver& receiver : receivers_) {
+    if (!receiver.samples && has_to_sample(receiver)) {
+      receiver.samples = true;
+      // The sampler begins at the start of the first byte that has not ended, or at its own position if that
+      // is later. It does not have to sample older bytes: the receiver got them unchanged, has sampled them
+      // already, or did not listen.
+      receiver.sampler.skip_to(std::max(receiver.sampler.position(), first->start));
+      next_sample_ = std::min(next_sample_, receiver.sampler.next(receiver.mode, clock_.virtual_now()));
+    }
+  }
+}
+
+void Wires::end_sampling() {
+  next_sample_ = kNever;
+  for (Receiver& receiver : receivers_) {
+    receiver.samples = receiver.samples && has_to_sample(receiver);
+    if (receiver.samples) {
+      next_sample_ = std::min(next_sample_, receiver.sampler.next(receiver.mode, clock_.virtual_now()));
+    }
+  }
+}
+
+void Wires::run_wire() {
+  if (next_sample_ != kNever) {
+    run_samplers();
+  }
+  finish_bytes();
+  if (next_sample_ != kNever) {
+    end_sampling();
+  }
+  forget_waves();
+}
+
+void Wires::run_samplers() {
+  for (Receiver& receiver : receivers_) {
+    while (receiver.samples) {
+      const auto received = receiver.sampler.advance(waves_, receiver.mode, clock_.virtual_now());
+      if (!received) {
+        break;
+      }
+      receiver.station->receive(received->byte, received->status);
+    }
+  }
+}
+
+/// Marks the bytes that have ended, and delivers those that were not cut off.
+void Wires::finish_bytes() {
+  const VirtualTime now = clock_.virtual_now();
+  next_byte_end_ = kNever;
+  for (std::size_t next = 0; next < waves_.size();) {  // receivers may add bytes
+    Wave& wave = waves_[next++];
+    if (wave.over) {
+      continue;
+    }
+    if (wave.end > now) {
+      next_byte_end_ = std::min(next_byte_end_, wave.end);
+      continue;
+    }
+    wave.over = true;
+    --carried_;
+    if (wave.cut_off == kNever) {
+      deliver(Wave(wave));
+    }
+  }
+}
+
+void Wires::deliver(const Wave& over) {
+  const bool has_second_stop_bit = over.nominal.format == LineFormat::k8N2;
+  const VirtualTime ends =
+      has_second_stop_bit ? over.start + ends_[over.station]->takes(1, over.nominal) : clock_.virtual_now();
+  for (WireObserver* observer : observers_) {
+    observer->byte(over.station, over.byte, over.nominal, over.collided, over.start, ends);
+  }
+  if (!over.arrives_whole()) {
+    return;
+  }
+  for (const Receiver& receiver : receivers_) {
+    if (!receiver.samples && has_heard_from_the_start(receiver, over)) {
+      receiver.station->receive(over.byte, ByteStatus::Good);
+    }
+  }
+}
+
+/// Removes the bytes that have ended and that no sampler has to read.
+void Wires::forget_waves() {
+  if (next_sample_ == kNever && !carries()) {
+    waves_.clear();
+    return;
+  }
+  const auto is_read = [this](const Wave& wave) {
+    return std::any_of(receivers_.begin(), receivers_.end(), [&wave](const Receiver& receiver) {
+      return receiver.samples && receiver.sampler.position() < wave.end;
+    });
+  };
+  waves_.erase(std::remove_if(waves_.begin(), waves_.end(),
+                              [&](const Wave& wave) { return wave.over && !is_read(wave); }),
+               waves_.end());
+}
+
+}  // namespace ex9000::sim
