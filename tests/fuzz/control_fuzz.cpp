@@ -126,6 +126,11 @@ Words of_the_line(const Words& words) {
   return words.size() >= 3 && words[1] == "hall" ? Words(words.begin() + 2, words.end()) : Words();
 }
 
+/// xCOUNT, with at least `least` pulses.
+bool is_pulse_count(const std::string& word, unsigned long least) {
+  return word[0] == 'x' && is_number(word.substr(1), least, 1'000'000);
+}
+
 /// Returns whether the words are a valid command according to sim/docs/control-socket.md. `advance` is never
 /// valid here, because it requires stepped time.
 bool is_command(Watched& watched, const Words& words) {
@@ -159,7 +164,7 @@ bool is_command(Watched& watched, const Words& words) {
     return args == 2 && has_channel && is_switch(words[3]);
   }
   if (verb == "pulse") {
-    return has_channel && (args == 1 || (args == 2 && is_number(words[3], 1, 1'000'000)));
+    return has_channel && (args == 1 || (args == 2 && is_pulse_count(words[3], 1)));
   }
   if (verb == "reset" || verb == "hang" || verb == "timers" || verb == "filters") {
     return args == 0 && module.powered();
@@ -266,8 +271,8 @@ class RunTimeLimit {
   /// Returns whether the command may run. Of the commands with 100 to 99,999 pulses, only the first one in
   /// the input of the target may run. A command with 100,000 to 1,000,000 pulses may not run.
   bool permits(const Words& words) {
-    const bool pulses = words.size() == 4 && words[1] == "pulse" && is_number(words[3], 100, 1'000'000);
-    return !pulses || (std::stoul(words[3]) <= 99'999 && !std::exchange(used_, true));
+    const bool pulses = words.size() == 4 && words[1] == "pulse" && is_pulse_count(words[3], 100);
+    return !pulses || (std::stoul(words[3].substr(1)) <= 99'999 && !std::exchange(used_, true));
   }
 
  private:

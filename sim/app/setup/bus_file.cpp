@@ -10,6 +10,7 @@
 #include "sim/files_and_ports/files/regular_file.hpp"
 #include "sim/notation/module_notation.hpp"
 #include "sim/notation/module_settings.hpp"
+#include "sim/text/embedded_files.hpp"
 #include "sim/text/fail.hpp"
 #include "sim/text/words.hpp"
 
@@ -19,9 +20,9 @@ namespace {
 
 using YAML::Node;
 
-class Reader {
+class BusFileReader {
  public:
-  explicit Reader(const std::string& path) : path_(path) {}
+  explicit BusFileReader(const std::string& path) : path_(path) {}
 
   [[nodiscard]] Setup bus(const Node& root) const {
     Setup setup;
@@ -175,14 +176,16 @@ Setup parse_bus_file(const std::string& path, const std::string& text) {
   try {
     documents = YAML::LoadAll(text);
   } catch (const YAML::Exception& error) {
-    fail(path + ":" + std::to_string(error.mark.line + 1) + ": " + error.msg);
+    fail(path + ":" + std::to_string(error.mark.is_null() ? 1 : error.mark.line + 1) + ": " + error.msg);
   }
   if (documents.size() != 1) {
     fail(path + ": has " + std::to_string(documents.size()) +
          " documents; expected one; 'ex9000-sim --example' prints a bus file");
   }
-  return Reader(path).bus(documents.front());
+  return BusFileReader(path).bus(documents.front());
 }
+
+std::string example_bus_file() { return std::string(bus_file_examples().front().content); }
 
 Setup read_bus_file(const std::string& path) {
   const std::ifstream file = open_text_file(path);

@@ -178,7 +178,7 @@ TEST(ControlSocket, EachOfSeveralClientsGetsTheRepliesToItsCommands) {
   for (int round = 0; round < 20; ++round) {
     for (std::size_t i = 0; i < clients.size(); ++i) {
       const std::string channel = std::to_string(i);
-      clients[i]->send("1 input " + channel + " on\n2 pulse " + channel + " 3\n9 bogus" + channel + "\n");
+      clients[i]->send("1 input " + channel + " on\n2 pulse " + channel + " x3\n9 bogus" + channel + "\n");
     }
     for (std::size_t i = clients.size(); i-- > 0;) {
       ASSERT_EQ(clients[i]->line(), "ok");
