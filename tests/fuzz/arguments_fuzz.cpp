@@ -99,9 +99,6 @@ void parse_file(const std::string& text) {
   } catch (const std::invalid_argument& error) {
     const std::string what = error.what();
     const std::string place = "bus.json:";
-    if (what.rfind("bus.json: has ", 0) == 0) {
-      return;  // no YAML document, or several
-    }
     const auto end = what.find_first_not_of("0123456789", place.size());
     require(what.rfind(place, 0) == 0 && end > place.size() && what.compare(end, 2, ": ") == 0,
             "an error message about a bus file begins with the path and a line number");

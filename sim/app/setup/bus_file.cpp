@@ -1,5 +1,6 @@
 #include "sim/app/setup/bus_file.hpp"
 
+#include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
@@ -158,6 +159,29 @@ class BusFileReader {
   const std::string& path_;
 };
 
+/// Where the last document of a YAML stream begins. YAML::LoadAll would never end at a surplus bracket,
+/// because it takes each bracket for a document.
+struct DocumentStart final : YAML::EventHandler {
+  using Mark = YAML::Mark;
+  using Text = std::string;
+  using Style = YAML::EmitterStyle::value;
+
+  int line = 1;
+
+  void OnDocumentStart(const Mark& mark) override { line = mark.line + 1; }
+  void OnDocumentEnd() override {}
+  void OnNull(const Mark& /*mark*/, YAML::anchor_t /*anchor*/) override {}
+  void OnAlias(const Mark& /*mark*/, YAML::anchor_t /*anchor*/) override {}
+  void OnScalar(const Mark& /*mark*/, const Text& /*tag*/, YAML::anchor_t /*anchor*/,
+                const Text& /*value*/) override {}
+  void OnSequenceStart(const Mark& /*mark*/, const Text& /*tag*/, YAML::anchor_t /*anchor*/,
+                       Style /*style*/) override {}
+  void OnSequenceEnd() override {}
+  void OnMapStart(const Mark& /*mark*/, const Text& /*tag*/, YAML::anchor_t /*anchor*/,
+                  Style /*style*/) override {}
+  void OnMapEnd() override {}
+};
+
 }  // namespace
 
 bool is_bus_file(const std::string& argument) {
@@ -172,17 +196,19 @@ bool is_bus_file(const std::string& argument) {
 }
 
 Setup parse_bus_file(const std::string& path, const std::string& text) {
-  std::vector<Node> documents;
   try {
-    documents = YAML::LoadAll(text);
+    std::istringstream stream(text);
+    YAML::Parser parser(stream);
+    DocumentStart start;
+    const bool is_empty = !parser.HandleNextDocument(start);
+    if (is_empty || parser.HandleNextDocument(start)) {
+      fail(path + ":" + std::to_string(start.line) + ": expected " +
+           (is_empty ? "a bus file, as 'ex9000-sim --example' prints it" : "the end of the file"));
+    }
+    return BusFileReader(path).bus(YAML::Load(text));
   } catch (const YAML::Exception& error) {
     fail(path + ":" + std::to_string(error.mark.is_null() ? 1 : error.mark.line + 1) + ": " + error.msg);
   }
-  if (documents.size() != 1) {
-    fail(path + ": has " + std::to_string(documents.size()) +
-         " documents; expected one; 'ex9000-sim --example' prints a bus file");
-  }
-  return BusFileReader(path).bus(documents.front());
 }
 
 std::string example_bus_file() { return std::string(bus_file_examples().front().content); }

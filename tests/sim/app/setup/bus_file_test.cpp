@@ -143,8 +143,10 @@ TEST(BusFile, KeysMayComeInAnyOrderAndJsonIsYaml) {
 TEST(BusFile, AWrongFileIsRefusedWithALineNumberAndAKey) {
   const std::string known = "unknown key; expected one of ";
   for (const auto& [text, why] : std::vector<std::pair<std::string, std::string>>{
-           {"", " has 0 documents; expected one"},
-           {"---\nseed: 1\n---\nseed: 2\n", " has 2 documents"},
+           {"", "1: expected a bus file, as 'ex9000-sim --example' prints it"},
+           {"---\nseed: 1\n---\nseed: 2\n", "3: expected the end of the file"},
+           {"{seed: 1}\n}", "2: illegal flow end"},
+           {"{},\n{}", "1: expected the end of the file"},
            {"{\n\"lines\": [\n}\n", "3: "},
            {"lines: [1,2,,]", "1: "},
            {"a: b: c", "1: "},
