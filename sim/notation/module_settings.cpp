@@ -50,7 +50,7 @@ Settings& given(ModuleSpec& spec) {
 
 }  // namespace
 
-const std::array<Setting<ModuleSpec>, 11> kModuleSettings{{
+const std::vector<Setting<ModuleSpec>> kModuleSettings{
     {"address", Form::Text, "HH", "the address in hex, as in $AA2 (default: 01)",
      [](ModuleSpec& spec, const std::string& value) { given(spec).address = parse_hex_byte(value); }},
     {"protocol", Form::Choice, "ascii|modbus", "the protocol (default: modbus for -M models, else ascii)",
@@ -95,6 +95,6 @@ const std::array<Setting<ModuleSpec>, 11> kModuleSettings{{
      [](ModuleSpec& spec, const std::string& value) {
        spec.faults.push_back(parse_fault(value, 0));  // the line sets the position
      }},
-}};
+};
 
 }  // namespace ex9000::sim

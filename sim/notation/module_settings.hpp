@@ -1,7 +1,7 @@
 // The settings of a module: `,KEY=VALUE` after its model, and the keys of a module in a bus file.
 #pragma once
 
-#include <array>
+#include <vector>
 
 #include "sim/notation/setting.hpp"
 #include "sim/virtual_line/line/module_spec.hpp"
@@ -9,6 +9,6 @@
 namespace ex9000::sim {
 
 /// `Setting::take` requires that the model of the module is set.
-extern const std::array<Setting<ModuleSpec>, 11> kModuleSettings;
+extern const std::vector<Setting<ModuleSpec>> kModuleSettings;
 
 }  // namespace ex9000::sim

@@ -69,7 +69,7 @@ std::string parse_line_name(const std::string& text) {
 
 }  // namespace
 
-const std::array<Setting<Setup>, 7> kRunSettings{{
+const std::vector<Setting<Setup>> kRunSettings{
     {"log", Form::Optional, "text|json|off", "print each frame and event as a line of text, or as JSON",
      [](Setup& setup, const std::string& value) { setup.log = parse_log(value); }},
     {"capture", Form::Text, "FILE", "write the frames to this pcapng file for Wireshark, which it overwrites",
@@ -86,9 +86,9 @@ const std::array<Setting<Setup>, 7> kRunSettings{{
      [](Setup& setup, const std::string& value) {
        setup.seed = parse_whole_number(value, 0, std::numeric_limits<std::uint64_t>::max());
      }},
-}};
+};
 
-const std::array<Setting<LineSetup>, 7> kLineSettings{{
+const std::vector<Setting<LineSetup>> kLineSettings{
     {"port", Form::List, "PORT", "add a port for masters, for example tcp:5020; see 'help ports'",
      [](LineSetup& line, const std::string& value) {
        line.ports.push_back(parse_port(value));
@@ -112,6 +112,6 @@ const std::array<Setting<LineSetup>, 7> kLineSettings{{
      [](LineSetup& line, const std::string& value) { line.faults.push_back(parse_fault(value)); }},
     {"name", Form::Text, "NAME", "name the line in logs and commands (default in a bus file: line1, ...)",
      [](LineSetup& line, const std::string& value) { line.name = parse_line_name(value); }},
-}};
+};
 
 }  // namespace ex9000::sim

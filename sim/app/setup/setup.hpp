@@ -1,7 +1,6 @@
 // The configuration of a run, from a command line, from a bus file, or from both.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -76,8 +75,8 @@ struct Setup : Writing {
 
 /// The settings of a run and of a line. The command line has all of them as options; a bus file has those of
 /// a line in each object of `lines`.
-extern const std::array<Setting<Setup>, 7> kRunSettings;
-extern const std::array<Setting<LineSetup>, 7> kLineSettings;
+extern const std::vector<Setting<Setup>> kRunSettings;
+extern const std::vector<Setting<LineSetup>> kLineSettings;
 
 /// Gives a line without ports a pseudo-terminal, and the lines of a bus file names; then checks values
 /// against each other. Throws std::invalid_argument with a one-line message if they cannot be combined, if a
