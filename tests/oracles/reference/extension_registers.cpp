@@ -7,29 +7,32 @@
 
 namespace ex9000::reference {
 
-ExtensionRow extension_row(const ModelRow& model, unsigned address) {
+std::vector<ExtensionRow> extension_rows(const ModelRow& model) {
   const unsigned inputs = model.inputs;
-  const ExtensionRow rows[] = {
-      {Extension::InputFilters, "0x0240", 0x0240, inputs, true, false},
-      {Extension::Inversion, "0x0250", 0x0250, inputs != 0 ? 1U : 0U, true, false},
-      {Extension::RestartedBy, "0x0251", 0x0251, 1, true, false},
-      {Extension::ResponseDelay, "0x0252", 0x0252, 1, true, false},
+  return {
+      {Extension::InputFilters, "0x0240", 0x0240, inputs, true, false, 2000},
+      {Extension::Inversion, "0x0250", 0x0250, inputs != 0 ? 1U : 0U, true, false, (1U << inputs) - 1},
+      {Extension::Setting, "0x0251", 0x0251, 1, true, false, 1, &Stored::restarted_by_requests},
+      {Extension::Setting, "0x0252", 0x0252, 1, true, false, kLongestDelay, &Stored::delay},
       {Extension::WideCounters, "0x0260", 0x0260, 2 * inputs, false, true},
-      {Extension::TimedOutputs, "0x0280", 0x0280, model.outputs, true, false},
-      {Extension::Version, "0x0300", 0x0300, 1, false, false},
-      {Extension::ResetReason, "0x0301", 0x0301, 1, false, false},
+      {Extension::TimedOutputs, "0x0280", 0x0280, model.outputs, true, false, 0xFFFF},
+      {Extension::Version, "0x0300", 0x0300, 1},
+      {Extension::ResetReason, "0x0301", 0x0301, 1},
       {Extension::Uptime, "0x0302", 0x0302, 2, false, true},
-      {Extension::Timeouts, "0x0304", 0x0304, 1, true, false},
-      {Extension::Stores, "0x0305", 0x0305, 1, false, false},
-      {Extension::SettingsSource, "0x0306", 0x0306, 1, false, false},
-      {Extension::Tallies, "0x0308", 0x0308, 8, false, false},
+      {Extension::Timeouts, "0x0304", 0x0304, 1, true, false, 0},
+      {Extension::Stores, "0x0305", 0x0305, 1},
+      {Extension::SettingsSource, "0x0306", 0x0306, 1},
+      {Extension::Tallies, "0x0308", 0x0308, 8},
   };
-  for (const ExtensionRow& row : rows) {
+}
+
+ExtensionRow extension_row(const ModelRow& model, unsigned address) {
+  for (const ExtensionRow& row : extension_rows(model)) {
     if (address >= row.first && address < row.first + row.count) {
       return row;
     }
   }
-  return {Extension::None, "", 0, 0, false, false};
+  return {};
 }
 
 /// Returns a line tally; index 0 is register 0x0308. The tallies of overruns and lost frames are 0, because
@@ -51,10 +54,8 @@ unsigned Module::extension_value(unsigned address) {
       return stored_.filters[address - row.first];
     case Extension::Inversion:
       return stored_.inversion;
-    case Extension::RestartedBy:
-      return stored_.restarted_by_requests ? 1 : 0;
-    case Extension::ResponseDelay:
-      return stored_.delay;
+    case Extension::Setting:
+      return stored_.*row.setting;
     case Extension::WideCounters:
       return wide_counters_[(address - row.first) / 2];
     case Extension::TimedOutputs:
@@ -95,24 +96,6 @@ unsigned Module::extension_word(unsigned address) {
   return row.wide && (address - row.first) % 2 == 0 ? value >> 16 : value & 0xFFFFU;
 }
 
-/// Returns whether a register that can be written accepts the value.
-bool Module::extension_accepts(unsigned address, unsigned value) const {
-  switch (extension_row(row_, address).row) {
-    case Extension::InputFilters:
-      return value <= 2000;
-    case Extension::Inversion:
-      return value >> row_.inputs == 0;
-    case Extension::RestartedBy:
-      return value <= 1;
-    case Extension::ResponseDelay:
-      return value <= kLongestDelay;
-    case Extension::Timeouts:
-      return value == 0;
-    default:
-      return true;
-  }
-}
-
 void Module::set_extension(unsigned address, unsigned value) {
   const ExtensionRow row = extension_row(row_, address);
   switch (row.row) {
@@ -122,11 +105,8 @@ void Module::set_extension(unsigned address, unsigned value) {
     case Extension::Inversion:
       set_inversion(value);
       break;
-    case Extension::RestartedBy:
-      stored_.restarted_by_requests = value == 1;
-      break;
-    case Extension::ResponseDelay:
-      stored_.delay = value;
+    case Extension::Setting:
+      stored_.*row.setting = value;
       break;
     case Extension::TimedOutputs:
       set_timed_output(address - row.first, value);
@@ -180,7 +160,7 @@ std::string Module::extension_command(const std::string& body) {
     throw Refused{"~AAXRRRRVVVV to a read-only register"};
   }
   const unsigned value = *digits & 0xFFFFU;
-  if (!extension_accepts(address, value)) {
+  if (value > row.highest) {
     throw Refused{std::string("~AAXRRRRVVVV ") + row.name + " out of range"};
   }
   if (row.row == Extension::TimedOutputs && stored_.timed_out) {

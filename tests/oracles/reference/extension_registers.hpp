@@ -1,16 +1,18 @@
 // The table of extension registers of the reference: extensions.md.
 #pragma once
 
+#include <vector>
+
 #include "tests/oracles/reference/models.hpp"
+#include "tests/oracles/reference/module.hpp"
 
 namespace ex9000::reference {
 
-/// The kinds of extension registers: the rows of the table.
+/// The kinds of extension registers.
 enum class Extension {
   InputFilters,
   Inversion,
-  RestartedBy,
-  ResponseDelay,
+  Setting,  ///< a stored number without another effect when it is written
   WideCounters,
   TimedOutputs,
   Version,
@@ -24,13 +26,18 @@ enum class Extension {
 };
 
 struct ExtensionRow {
-  Extension row;
-  const char* name;
-  unsigned first;
-  unsigned count;  ///< of 16-bit registers
-  bool written;    ///< the registers can also be written
-  bool wide;       ///< values of 32 bits, each in two registers
+  Extension row = Extension::None;
+  const char* name = "";
+  unsigned first = 0;
+  unsigned count = 0;    ///< of 16-bit registers
+  bool written = false;  ///< the registers can also be written
+  bool wide = false;     ///< values of 32 bits, each in two registers
+  unsigned highest = 0;  ///< of the values that can be written
+  unsigned Stored::*setting = nullptr;
 };
+
+/// Returns the table for a model. A row without registers has the count 0.
+std::vector<ExtensionRow> extension_rows(const ModelRow& model);
 
 /// Returns the row of the table that contains this register. Returns a row with Extension::None if the model
 /// has no such register.

@@ -1,10 +1,26 @@
 // Addresses and values for requests to extension registers, in and out of range: extensions.md.
 #include <optional>
+#include <vector>
 
 #include "tests/oracles/reference/extension_registers.hpp"
 #include "tests/oracles/reference/generator.hpp"
 
 namespace ex9000::reference {
+
+namespace {
+
+/// Returns the address of a setting that is a number.
+unsigned setting_address(const ModelRow& model, Random& random) {
+  std::vector<unsigned> addresses;
+  for (const ExtensionRow& row : extension_rows(model)) {
+    if (row.setting != nullptr && row.count != 0) {
+      addresses.push_back(row.first);
+    }
+  }
+  return addresses.at(random.below(static_cast<unsigned>(addresses.size())));
+}
+
+}  // namespace
 
 unsigned extension_address(const Module& module, Random& random) {
   const std::optional<unsigned> settling = module.settling_input();
@@ -31,7 +47,7 @@ unsigned extension_address(const Module& module, Random& random) {
     case 3:
     case 4:
     case 5:
-      return 0x0251 + random.below(2);
+      return setting_address(module.row(), random);
     default:
       return 0x0300 + random.below(0x10);
   }
@@ -41,16 +57,15 @@ unsigned extension_content(const Module& module, unsigned address, Random& rando
   if (random.once_in(8)) {
     return random.below(0x10000);
   }
-  switch (extension_row(module.row(), address).row) {
+  const ExtensionRow row = extension_row(module.row(), address);
+  switch (row.row) {
     case Extension::InputFilters:
       return random.one_of({0U, 1U, 20U, 100U, 500U, 1000U, 2000U, 2000U, 2001U});
     case Extension::Inversion:
       return random.once_in(3) ? module.stored().inversion
                                : random.below(1U << module.row().inputs) << random.below(2);
-    case Extension::RestartedBy:
-      return random.below(3);
-    case Extension::ResponseDelay:
-      return random.between(0, kLongestDelay + 1);
+    case Extension::Setting:
+      return random.between(0, row.highest + 1);
     case Extension::TimedOutputs:
       return random.one_of({0U, 1U, 2U, 5U, 10U, 20U, 50U, 100U, 1000U, 0xFFFFU});
     case Extension::Timeouts:

@@ -349,7 +349,7 @@ void Module::judge_registers(unsigned first, const std::vector<unsigned>& values
         }
         break;
       default:
-        if (!extension_accepts(first + i, value)) {
+        if (value > extension_row(row_, first + i).highest) {
           throw Exception{0x03, "register " + register_name(row_, first + i) + " 03"};
         }
         break;

@@ -2,7 +2,6 @@
 #include "tests/oracles/reference/module.hpp"
 
 #include <algorithm>
-#include <tuple>
 
 namespace ex9000::reference {
 
@@ -15,11 +14,6 @@ constexpr std::chrono::milliseconds kTick{3};
 /// The longest silence that ends a Modbus frame: 32.08 ms at 1200 baud (wire.md 7), rounded up. The time
 /// between an ASCII frame and its judgement is shorter.
 constexpr std::chrono::milliseconds kLongestSilence{33};
-
-auto members(const Stored& s) {
-  return std::tie(s.address, s.baud_code, s.format, s.modbus, s.name, s.power_on, s.safe, s.enabled,
-                  s.timeout, s.timed_out, s.restarted_by_requests, s.delay, s.filters, s.inversion);
-}
 
 /// Returns the level after the data bits: the parity bit, or the first stop bit if there is no parity.
 bool ninth_bit(std::uint8_t byte, LineFormat format) {
@@ -69,8 +63,6 @@ const char* name_of(LineFormat format) {
       return "8O1";
   }
 }
-
-bool operator==(const Stored& a, const Stored& b) { return members(a) == members(b); }
 
 Module::Module(const ModelRow& row, Extensions extensions) : row_(row), extensions_(extensions) {
   // wire.md 2, factory settings.
@@ -185,7 +177,7 @@ void Module::restart_host_watchdog_by_host_ok() {
 /// Restarts the host watchdog if it is enabled and register 0x0251 is 1. Call this for each correctly
 /// received request with this module's own address, before the module executes the request.
 void Module::restart_host_watchdog_by_request() {
-  if (stored_.restarted_by_requests) {
+  if (stored_.restarted_by_requests == 1) {
     rule(!expiry_       ? "request does not start a host watchdog that does not run"
          : runs_modbus_ ? "Modbus request restarts the host watchdog"
                         : "ASCII request restarts the host watchdog");

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -51,15 +52,21 @@ struct Stored {
   bool enabled = false;     ///< host watchdog enabled
   unsigned timeout = 0xFF;  ///< of the host watchdog, in units of 0.1 s
   bool timed_out = false;   ///< the timeout status
-  /// Register 0x0251: whether every correctly received request with this module's own address restarts the
-  /// host watchdog.
-  bool restarted_by_requests = false;
+  /// Register 0x0251, 1: every correctly received request with this module's own address restarts the host
+  /// watchdog.
+  unsigned restarted_by_requests = 0;
   unsigned delay = 0;                  ///< the response delay in ms
   std::array<unsigned, 16> filters{};  ///< the filter times of the inputs, in ms
   unsigned inversion = 0;              ///< bit n is input n
 };
 
-bool operator==(const Stored& a, const Stored& b);
+inline bool operator==(const Stored& a, const Stored& b) {
+  const auto members = [](const Stored& s) {
+    return std::tie(s.address, s.baud_code, s.format, s.modbus, s.name, s.power_on, s.safe, s.enabled,
+                    s.timeout, s.timed_out, s.restarted_by_requests, s.delay, s.filters, s.inversion);
+  };
+  return members(a) == members(b);
+}
 
 /// The module's reaction to a request.
 struct Answer {
@@ -220,7 +227,6 @@ class Module {
   [[nodiscard]] unsigned tally(unsigned index) const;
   unsigned extension_value(unsigned address);
   unsigned extension_word(unsigned address);
-  [[nodiscard]] bool extension_accepts(unsigned address, unsigned value) const;
   void set_extension(unsigned address, unsigned value);
   std::string delay_command(const std::string& body);
   std::string extension_command(const std::string& body);

@@ -272,32 +272,8 @@ const char* const kExtensionRules[] = {
     "~AARDVV",
     "~AARD with a wrong form",
     "~AARDVV out of range",
-    "~AAXRRRR 0x0240",
-    "~AAXRRRR 0x0250",
-    "~AAXRRRR 0x0251",
-    "~AAXRRRR 0x0252",
-    "~AAXRRRR 0x0260",
-    "~AAXRRRR 0x0280",
-    "~AAXRRRR 0x0300",
-    "~AAXRRRR 0x0301",
-    "~AAXRRRR 0x0302",
-    "~AAXRRRR 0x0304",
-    "~AAXRRRR 0x0305",
-    "~AAXRRRR 0x0306",
-    "~AAXRRRR 0x0308",
     "~AAXRRRR low word",
-    "~AAXRRRRVVVV 0x0252",
-    "~AAXRRRRVVVV 0x0252 out of range",
-    "~AAXRRRRVVVV 0x0251",
-    "~AAXRRRRVVVV 0x0251 out of range",
-    "~AAXRRRRVVVV 0x0240",
-    "~AAXRRRRVVVV 0x0240 out of range",
-    "~AAXRRRRVVVV 0x0250",
-    "~AAXRRRRVVVV 0x0250 out of range",
-    "~AAXRRRRVVVV 0x0280",
     "~AAXRRRRVVVV blocked by the timeout status",
-    "~AAXRRRRVVVV 0x0304",
-    "~AAXRRRRVVVV 0x0304 out of range",
     "~AAXRRRRVVVV to a read-only register",
     "~AAX register that the model does not have",
     "~AAX with a wrong form",
@@ -305,55 +281,12 @@ const char* const kExtensionRules[] = {
     "broadcast ignored: extension register",
     "broadcast to timed outputs",
     "FC01 coil 0x08CA",
-    "FC03 0x0240",
-    "FC03 0x0250",
-    "FC03 0x0251",
-    "FC03 0x0252",
-    "FC03 0x0260",
-    "FC03 0x0280",
-    "FC03 0x0300",
-    "FC03 0x0301",
-    "FC03 0x0302",
-    "FC03 0x0304",
-    "FC03 0x0305",
-    "FC03 0x0306",
-    "FC03 0x0308",
-    "FC04 0x0240",
-    "FC04 0x0250",
-    "FC04 0x0251",
-    "FC04 0x0252",
-    "FC04 0x0260",
-    "FC04 0x0280",
-    "FC04 0x0300",
-    "FC04 0x0301",
-    "FC04 0x0302",
-    "FC04 0x0304",
-    "FC04 0x0305",
-    "FC04 0x0306",
-    "FC04 0x0308",
     "FC05 coil 0x08CA",
-    "FC06 0x0252",
-    "FC06 0x0251",
-    "FC06 0x0240",
-    "FC06 0x0250",
-    "FC06 0x0280",
-    "FC06 0x0304",
     "register 0x01E5 03 with a line format",
     "register 0x01E5 8N2",
     "register 0x01E5 8E1",
     "register 0x01E5 8O1",
-    "register 0x0252 03",
-    "register 0x0251 03",
-    "register 0x0240 03",
-    "register 0x0250 03",
     "register 0x0280 04",
-    "register 0x0304 03",
-    "FC10 0x0252",
-    "FC10 0x0251",
-    "FC10 0x0240",
-    "FC10 0x0250",
-    "FC10 0x0280",
-    "FC10 0x0304",
     "FC10 several rows of extension registers",
     // wire.md 5, 6 and 12
     "the input filter accepts the level",
@@ -410,9 +343,23 @@ const char* const kExtensionRules[] = {
 Rules::Rules(Extensions extensions) : list_(std::begin(kRules), std::end(kRules)) {
   if (extensions == Extensions::Present) {
     list_.insert(list_.end(), std::begin(kExtensionRules), std::end(kExtensionRules));
+    for (const ExtensionRow& row : extension_rows(kModelRows[0])) {
+      add_rules_of(row);
+    }
   }
-  for (const char* const rule : list_) {
+  for (const std::string& rule : list_) {
     counts_[rule] = 0;
+  }
+}
+
+void Rules::add_rules_of(const ExtensionRow& row) {
+  const std::string name = row.name;
+  list_.insert(list_.end(), {"~AAXRRRR " + name, "FC03 " + name, "FC04 " + name});
+  if (row.written) {
+    list_.insert(list_.end(), {"~AAXRRRRVVVV " + name, "FC06 " + name, "FC10 " + name});
+    if (row.highest < 0xFFFF) {
+      list_.insert(list_.end(), {"~AAXRRRRVVVV " + name + " out of range", "register " + name + " 03"});
+    }
   }
 }
 
@@ -429,9 +376,9 @@ void Rules::reached(const std::string& rule) {
 
 std::vector<std::string> Rules::missing() const {
   std::vector<std::string> missing;
-  for (const char* const rule : list_) {
+  for (const std::string& rule : list_) {
     if (counts_.at(rule) == 0) {
-      missing.emplace_back(rule);
+      missing.push_back(rule);
     }
   }
   return missing;
@@ -439,7 +386,7 @@ std::vector<std::string> Rules::missing() const {
 
 std::string Rules::table() const {
   std::string table;
-  for (const char* const rule : list_) {
+  for (const std::string& rule : list_) {
     const std::string count = std::to_string(counts_.at(rule));
     table += std::string(count.size() < 10 ? 10 - count.size() : 0, ' ') + count + "  " + rule + "\n";
   }

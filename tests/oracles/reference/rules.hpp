@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/oracles/reference/extension_registers.hpp"
 #include "tests/oracles/reference/models.hpp"
 
 namespace ex9000::reference {
@@ -26,7 +27,10 @@ class Rules {
   [[nodiscard]] std::size_t size() const { return list_.size(); }
 
  private:
-  std::vector<const char*> list_;
+  /// Adds the rules of reading and writing a row of extension registers.
+  void add_rules_of(const ExtensionRow& row);
+
+  std::vector<std::string> list_;
   std::map<std::string, std::uint64_t> counts_;
 };
 
