@@ -30,10 +30,9 @@ struct Expected {
 };
 
 Expected expected_of(const Model& model, const std::uint8_t* memory, bool answers) {
-  const StoringModel storing = storing_model(model);
-  if (!answers || place_that_counts(storing, memory) == kStoredMemory) {
+  if (!answers || place_that_counts(model, memory) == kStoredMemory) {
     const bool blank = std::all_of(kStoredPlaces.begin(), kStoredPlaces.end(), [&](std::size_t place) {
-      return StoredCopy(storing, memory, place).is_blank();
+      return StoredCopy(model, memory, place).is_blank();
     });
     return {Settings::factory(model), !answers || !blank};
   }
@@ -49,7 +48,7 @@ class Trial {
     constexpr std::array<std::uint8_t, kStoredPlaces.size()> kSealed{0x10, 0x20};
     for (std::size_t place = 0; place < kStoredPlaces.size(); ++place) {
       if ((flags & kSealed[place]) != 0) {
-        StoredCopy::seal(storing_model(model), memory.data(), kStoredPlaces[place]);
+        StoredCopy::seal(model, memory.data(), kStoredPlaces[place]);
       }
     }
     session_.around().init_asserted = (flags & 4U) != 0;

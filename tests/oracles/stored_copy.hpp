@@ -1,44 +1,18 @@
 // One copy of the settings in the EEPROM, read without the firmware's code. This file is an independent
 // implementation of the layout of firmware/settings/record.hpp, of the check, and of the rules for the
-// settings that commands can store (wire.md sections 4, 7, 8 and 12).
+// settings that commands can store (wire.md sections 4, 7, 8 and 12). It uses only the types of the firmware.
 #pragma once
 
 #include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <string>
 #include <string_view>
 
+#include "firmware/model/model.hpp"
+#include "firmware/settings/settings.hpp"
+
 namespace ex9000 {
-
-/// The properties of a model on which the check, the factory values and the possible settings depend.
-struct StoringModel {
-  std::string_view designation;
-  unsigned outputs;
-  bool speaks_modbus;
-  unsigned longest_name;
-  std::string_view factory_name;
-  unsigned inputs;
-};
-
-/// The settings in a copy.
-struct CopiedSettings {
-  std::uint8_t address;
-  std::uint8_t baud_code;
-  std::uint8_t format;
-  bool modbus;
-  std::uint8_t watchdog_timeout;
-  bool watchdog_enabled;
-  bool timeout_status;
-  std::string name;
-  std::uint16_t power_on_value;
-  std::uint16_t safe_value;
-  std::array<std::uint16_t, 16> filters{};  ///< in ms
-  std::uint16_t inverted = 0;
-  bool fed_by_requests = false;
-  std::uint8_t response_delay = 0;
-};
 
 /// The addresses at which copies begin.
 constexpr std::array<std::size_t, 2> kStoredPlaces{0x000, 0x080};
@@ -49,11 +23,11 @@ constexpr std::size_t kStoredPage = 32;
 class StoredCopy {
  public:
   /// `place`: one of kStoredPlaces.
-  StoredCopy(const StoringModel& model, const std::uint8_t* memory, std::size_t place)
+  StoredCopy(const Model& model, const std::uint8_t* memory, std::size_t place)
       : model_(model), bytes_(memory + place) {}
 
   /// Sets the layout number and the check of the copy at `place`. A length of more than 120 becomes 120.
-  static void seal(const StoringModel& model, std::uint8_t* memory, std::size_t place) {
+  static void seal(const Model& model, std::uint8_t* memory, std::size_t place) {
     std::uint8_t* bytes = memory + place;
     bytes[0] = kLayout;
     bytes[1] = std::min<std::uint8_t>(bytes[1], kLongest);
@@ -80,19 +54,19 @@ class StoredCopy {
     return ahead != 0 && ahead < 0x8000;
   }
   /// Returns the settings of a good copy.
-  [[nodiscard]] CopiedSettings settings() const {
-    CopiedSettings settings{byte(kAddress, 0x01),
-                            byte(kBaudCode, 0x06),
-                            byte(kFormat, 0x00),
-                            byte(kProtocol, model_.speaks_modbus ? 1 : 0) != 0,
-                            byte(kTimeout, 0xFF),
-                            byte(kEnabled, 0) != 0,
-                            byte(kStatus, 0) != 0,
-                            std::string(model_.factory_name),
-                            0,
-                            0};
+  [[nodiscard]] Settings settings() const {
+    Settings settings;
+    settings.address = byte(kAddress, 0x01);
+    settings.baud_code = byte(kBaudCode, 0x06);
+    settings.format = byte(kFormat, 0x00);
+    settings.protocol =
+        byte(kProtocol, model_.modbus_code != 0 ? 1 : 0) != 0 ? Protocol::ModbusRtu : Protocol::Ascii;
+    settings.watchdog_timeout = byte(kTimeout, 0xFF);
+    settings.watchdog_enabled = byte(kEnabled, 0) != 0;
+    settings.timeout_status = byte(kStatus, 0) != 0;
+    settings.name = Name(model_.factory_name);
     if (reaches(kName, 8)) {
-      settings.name.assign(reinterpret_cast<const char*>(bytes_ + kName), bytes_[kNameLength]);
+      settings.name = Name(Bytes{bytes_ + kName, std::min<std::size_t>(bytes_[kNameLength], 7)});
     }
     settings.power_on_value = static_cast<std::uint16_t>(reaches(kPowerOn, 2) ? word(kPowerOn) : 0);
     settings.safe_value = static_cast<std::uint16_t>(reaches(kSafe, 2) ? word(kSafe) : 0);
@@ -101,6 +75,19 @@ class StoredCopy {
   }
   /// Returns the size of a good copy in bytes.
   [[nodiscard]] std::size_t size() const { return check_at() + 4; }
+  /// Returns the number of bytes that a copy without unknown settings uses for `settings`. The settings in
+  /// the copy end with the last setting that differs from its factory value, but not before the end of the
+  /// safe value.
+  static std::size_t bytes_of(const Settings& settings) {
+    const std::size_t end = settings.response_delay != 0    ? kResponseDelay + 1
+                            : settings.fed_by_requests      ? kFedByRequests + 1
+                            : settings.inverted_inputs != 0 ? kInverted + 2
+                            : settings.input_filters.any()  ? kFilters + 32
+                                                            : kSafe + 2;
+    return end - kAddress;
+  }
+  /// Returns the number of bytes of all settings that this firmware supports.
+  static constexpr std::size_t bytes_of_all() { return kEnd - kAddress; }
 
  private:
   static constexpr std::uint8_t kLayout = 1;
@@ -122,12 +109,13 @@ class StoredCopy {
   static constexpr std::size_t kInverted = kFilters + 32;
   static constexpr std::size_t kFedByRequests = kInverted + 2;
   static constexpr std::size_t kResponseDelay = kFedByRequests + 1;
+  static constexpr std::size_t kEnd = kResponseDelay + 1;
 
-  void read_extensions(CopiedSettings& settings) const {
-    for (std::size_t channel = 0; channel < settings.filters.size() && reaches(kFilters, 32); ++channel) {
-      settings.filters[channel] = static_cast<std::uint16_t>(word(kFilters + 2 * channel));
+  void read_extensions(Settings& settings) const {
+    for (unsigned channel = 0; channel < kMaxInputs && reaches(kFilters, 32); ++channel) {
+      settings.input_filters.set(channel, static_cast<std::uint16_t>(word(kFilters + 2 * channel)));
     }
-    settings.inverted = static_cast<std::uint16_t>(reaches(kInverted, 2) ? word(kInverted) : 0);
+    settings.inverted_inputs = static_cast<std::uint16_t>(reaches(kInverted, 2) ? word(kInverted) : 0);
     settings.fed_by_requests = byte(kFedByRequests, 0) != 0;
     settings.response_delay = byte(kResponseDelay, 0);
   }
@@ -176,32 +164,33 @@ class StoredCopy {
     if (reaches(kName, 8) && bytes_[kNameLength] > 7) {
       return false;
     }
-    const CopiedSettings found = settings();
-    const auto printable = [](char c) { return c >= 0x20 && c <= 0x7E; };
-    const bool name = !found.name.empty() && found.name.size() <= model_.longest_name &&
-                      std::all_of(found.name.begin(), found.name.end(), printable);
-    const bool protocol =
-        !found.modbus || (model_.speaks_modbus && found.address >= 1 && found.address <= 247);
+    const Settings found = settings();
+    const Bytes name = found.name.bytes();
+    const bool named =
+        name.size != 0 && name.size <= model_.longest_name &&
+        std::all_of(name.begin(), name.end(), [](unsigned char c) { return c >= 0x20 && c <= 0x7E; });
+    const bool protocol = found.protocol == Protocol::Ascii ||
+                          (model_.modbus_code != 0 && found.address >= 1 && found.address <= 247);
     const bool watchdog = !found.watchdog_enabled || found.watchdog_timeout != 0;
     const unsigned beyond = ~((1U << model_.outputs) - 1U);
     const unsigned beyond_inputs = ~((1U << model_.inputs) - 1U);
-    bool extensions =
-        (found.inverted & beyond_inputs) == 0 && found.response_delay <= 30 && byte(kFedByRequests, 0) <= 1;
-    for (std::size_t channel = 0; channel < found.filters.size(); ++channel) {
-      extensions = extensions && found.filters[channel] <= (channel < model_.inputs ? 2000 : 0);
+    bool extensions = (found.inverted_inputs & beyond_inputs) == 0 && found.response_delay <= 30 &&
+                      byte(kFedByRequests, 0) <= 1;
+    for (unsigned channel = 0; channel < kMaxInputs; ++channel) {
+      extensions = extensions && found.input_filters.of(channel) <= (channel < model_.inputs ? 2000 : 0);
     }
     // Bits 7 and 6 of the baud code are the line format; all four formats exist.
     const unsigned rate = found.baud_code % 0x40U;
-    return extensions && name && protocol && watchdog && rate >= 0x03 && rate <= 0x0A &&
+    return extensions && named && protocol && watchdog && rate >= 0x03 && rate <= 0x0A &&
            (found.format & 0x3FU) == 0 && ((found.power_on_value | found.safe_value) & beyond) == 0;
   }
 
-  const StoringModel& model_;
+  const Model& model_;
   const std::uint8_t* bytes_;
 };
 
 /// Returns the place of the newest good copy, which the module uses; kStoredMemory if no copy is good.
-inline std::size_t place_that_counts(const StoringModel& model, const std::uint8_t* memory) {
+inline std::size_t place_that_counts(const Model& model, const std::uint8_t* memory) {
   std::size_t counts = kStoredMemory;
   for (const std::size_t place : kStoredPlaces) {
     const StoredCopy copy(model, memory, place);

@@ -37,13 +37,12 @@ constexpr std::size_t pages_of(std::size_t bytes) { return (bytes + kStoredPage 
 
 /// Returns the number of page writes when a module with `contents` stores `settings`.
 std::size_t CutBench::pages_of_a_store(const Contents& contents, const Settings& settings) const {
-  const StoringModel storing = storing_model(model_);
-  const std::size_t place = place_that_counts(storing, contents.data());
-  const std::size_t present = place == kStoredMemory ? 0 : StoredCopy(storing, contents.data(), place).size();
+  const std::size_t place = place_that_counts(model_, contents.data());
+  const std::size_t present = place == kStoredMemory ? 0 : StoredCopy(model_, contents.data(), place).size();
   // The firmware does not shorten a record of newer firmware.
-  return present > kSupportedSettings + kAroundSettings
+  return present > StoredCopy::bytes_of_all() + kAroundSettings
              ? pages_of(present)
-             : pages_of(bytes_of_settings(settings) + kAroundSettings);
+             : pages_of(StoredCopy::bytes_of(settings) + kAroundSettings);
 }
 
 CutBench::CutBench(const Image& image, const Model& model) : model_(model), bench_(image) {

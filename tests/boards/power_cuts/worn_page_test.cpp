@@ -31,7 +31,7 @@ constexpr Stuck kStuck[] = {{23, 0xFF, 0x00}, {4, 0x80, 0x80},  {25, 0xFF, 0xFF}
 
 /// Returns the number of pages of a record with these settings. A record of 19 bytes of settings, the
 /// minimum, has one page.
-unsigned pages_of(const Settings& settings) { return bytes_of_settings(settings) > 19 ? 2 : 1; }
+unsigned pages_of(const Settings& settings) { return StoredCopy::bytes_of(settings) > 19 ? 2 : 1; }
 
 class WornPageOf : public testing::TestWithParam<ImageName> {
  protected:
@@ -76,14 +76,13 @@ class WornPageOf : public testing::TestWithParam<ImageName> {
 };
 
 TEST_P(WornPageOf, StoresEachCommandCompletelyOrRefusesIt) {
-  const StoringModel storing = storing_model(model_);
   unsigned refused = 0;
   unsigned accepted = 0;
   unsigned number = 0;
   for (const Beginning beginning : {Beginning::Factory, Beginning::Full}) {
     for (const StoringCommand& command : storing_commands(model_)) {
       const State state = begin_at(beginning, model_, command);
-      const bool second_counts = place_that_counts(storing, state.contents.data()) == kStoredPlaces[1];
+      const bool second_counts = place_that_counts(model_, state.contents.data()) == kStoredPlaces[1];
       // The worn-out byte has no effect if the store does not write to it, or if its stuck bits have the
       // values that the store writes.
       for (const bool of_the_one_that_counts : {false, true}) {

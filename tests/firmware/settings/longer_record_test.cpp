@@ -20,7 +20,7 @@ TEST(ALongerRecord, IsReadUpToTheLastKnownSetting) {
 }
 
 TEST(ALongerRecord, KeepsUnknownSettingsAfterEachSave) {
-  for (unsigned length = kSupportedSettings + 1; length <= 120; ++length) {
+  for (unsigned length = StoredCopy::bytes_of_all() + 1; length <= 120; ++length) {
     FakeEeprom memory;
     put_longer(memory, 0, numbered(5), 7, static_cast<std::uint8_t>(length));
     Boot run(memory);

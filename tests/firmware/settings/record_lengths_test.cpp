@@ -9,12 +9,12 @@
 #include <string_view>
 
 #include "tests/firmware/settings/record_bench.hpp"
+#include "tests/support/stored_settings.hpp"
 
 namespace ex9000 {
 namespace {
 
-/// The size in bytes of all settings that this firmware supports.
-constexpr std::size_t kSupported = 55;
+constexpr std::size_t kSupported = StoredCopy::bytes_of_all();
 
 /// Returns a record with `length` bytes of settings, which may be fewer or more than this firmware supports.
 /// The settings up to the safe value are those of `stored`. The other supported settings have their factory
@@ -23,7 +23,7 @@ Record with_length(const Stored& stored, std::size_t length) {
   Record record = record_of(stored);
   Record settings(record.begin() + kSettingsAt, record.begin() + kCheckAt);
   for (std::size_t more = settings.size(); more < length; ++more) {
-    settings.push_back(more < kSupported ? std::uint8_t{0} : static_cast<std::uint8_t>(0xC1U ^ more));
+    settings.push_back(more < kSupported ? std::uint8_t{0} : unknown_byte(more));
   }
   settings.resize(length);
   record.resize(kSettingsAt);
@@ -90,11 +90,11 @@ TEST(Record, EndsAfterTheLastExtensionThatDiffersFromItsFactoryValue) {
   Stored stored = factory();
   EXPECT_EQ(record_of(stored).size(), kRecordSize);
   stored.settings.fed_by_requests = true;
-  EXPECT_EQ(record_of(stored).size(), kSettingsAt + kSupported - 1 + 4);
+  EXPECT_EQ(record_of(stored).size(), kRecordSize + 35);
   stored.settings.response_delay = 30;
-  EXPECT_EQ(record_of(stored).size(), kSettingsAt + kSupported + 4);
+  EXPECT_EQ(record_of(stored).size(), kRecordSize + 36);
   stored.settings.fed_by_requests = false;
-  EXPECT_EQ(record_of(stored).size(), kSettingsAt + kSupported + 4);
+  EXPECT_EQ(record_of(stored).size(), kRecordSize + 36);
   Stored of_inputs{Settings::factory(model("EX9052D-M")), 1};
   of_inputs.settings.input_filters.set(0, 1);
   EXPECT_EQ(record_of(of_inputs, model("EX9052D-M")).size(), kRecordSize + 32);

@@ -102,9 +102,9 @@ TEST(RecordLog, ARecordOfNewerFirmwareKeepsItsUnknownSettings) {
   ASSERT_TRUE(run.stored() == numbered(5));
   ASSERT_TRUE(run.save(numbered(6)));
   EXPECT_TRUE(loaded(chip) == numbered(6));
-  const auto unknown = memory.begin() + 4 + kSupportedSettings;
+  const auto unknown = memory.begin() + 4 + StoredCopy::bytes_of_all();
   EXPECT_TRUE(std::equal(unknown, memory.begin() + 100,
-                         chip.cells.begin() + 33 * kRecordRoom + 4 + kSupportedSettings));
+                         chip.cells.begin() + 33 * kRecordRoom + 4 + StoredCopy::bytes_of_all()));
 }
 
 // --- firmware/extensions.md: register 0x0306 ---
