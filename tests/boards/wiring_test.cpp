@@ -98,47 +98,39 @@ std::string output_label(const Model& model, unsigned channel) {
   return is_relay ? "RL" + std::to_string(channel + 1) : "DO" + std::to_string(channel);
 }
 
-/// Returns the names of the terminals for the model's outputs and inputs, by pin.
-std::map<std::string, std::string> terminals_of(const Model& model) {
-  std::map<std::string, std::string> terminals;
-  const std::vector<std::string> outputs = names_of(kOutputs);
-  const std::vector<std::string> inputs = names_of(kInputs);
-  for (unsigned channel = 0; channel < model.outputs; ++channel) {
-    EXPECT_TRUE(terminals.emplace(outputs.at(channel), output_label(model, channel)).second);
-  }
-  for (unsigned channel = 0; channel < model.inputs; ++channel) {
-    EXPECT_TRUE(terminals.emplace(inputs.at(channel), "DI" + std::to_string(channel)).second);
+using Terminals = std::map<std::string, std::set<std::string>>;  ///< by pin
+
+/// Returns the terminals in the column `head` of the table.
+Terminals terminals_in(const std::string& head) {
+  const Table table = table_of("pin");
+  const auto column = std::find(table[0].begin(), table[0].end(), head) - table[0].begin();
+  Terminals terminals;
+  for (auto row = table.begin() + 1; row != table.end(); ++row) {
+    const std::vector<std::string> names = split(row->at(static_cast<std::size_t>(column)), ',');
+    EXPECT_TRUE(terminals.emplace(row->at(0), std::set<std::string>(names.begin(), names.end())).second)
+        << row->at(0) << " is listed twice";
   }
   return terminals;
 }
 
-const char* const kNone = "–";
-
-std::size_t column_of(const Row& head, std::string_view model) {
-  std::size_t found = 0;
-  for (std::size_t column = 1; column < head.size(); ++column) {
-    const std::vector<std::string> models = split(head[column], ',');
-    if (std::find(models.begin(), models.end(), model) != models.end()) {
-      EXPECT_EQ(found, 0U) << model << " is listed twice";
-      found = column;
-    }
-  }
-  return found;
-}
-
 TEST(Wiring, TheReadmeListsThePinOfEveryTerminalOfEveryModel) {
-  const Table table = table_of("pin");
+  const std::vector<std::string> output_pins = names_of(kOutputs);
+  const std::vector<std::string> input_pins = names_of(kInputs);
+  Terminals outputs;
+  Terminals inputs;
   for (const Model& model : kModels) {
-    const std::size_t column = column_of(table[0], model.designation);
-    ASSERT_NE(column, 0U) << model.designation;
-    std::map<std::string, std::string> written;
-    for (auto row = table.begin() + 1; row != table.end(); ++row) {
-      if (row->at(column) != kNone) {
-        EXPECT_TRUE(written.emplace(row->at(0), row->at(column)).second) << row->at(0) << " is listed twice";
-      }
+    std::set<std::string> used;
+    for (unsigned channel = 0; channel < model.outputs; ++channel) {
+      outputs[output_pins.at(channel)].insert(output_label(model, channel));
+      EXPECT_TRUE(used.insert(output_pins.at(channel)).second) << model.designation;
     }
-    EXPECT_EQ(written, terminals_of(model)) << model.designation;
+    for (unsigned channel = 0; channel < model.inputs; ++channel) {
+      inputs[input_pins.at(channel)].insert("DI" + std::to_string(channel));
+      EXPECT_TRUE(used.insert(input_pins.at(channel)).second) << model.designation;
+    }
   }
+  EXPECT_EQ(terminals_in("output"), outputs);
+  EXPECT_EQ(terminals_in("input"), inputs);
 }
 
 TEST(Wiring, TheReadmeListsThePinsOfTheCommonSignals) {
@@ -226,6 +218,8 @@ TEST(Wiring, EveryHeaderPositionInTheTextMatchesItsPin) {
 #endif
 
 #ifdef EX9000_BOARD_HAS_POSITIONS
+const char* const kNone = "–";
+
 TEST(Wiring, EveryPositionInTheTablesMatchesItsPin) {
   for (const auto& [head, pin_column] : std::map<std::string, std::size_t>{{"pin", 0}, {"signal", 1}}) {
     const Table table = table_of(head);
