@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "tests/oracles/reference/models.hpp"
+
 namespace ex9000 {
 namespace {
 
@@ -41,15 +43,8 @@ TEST(FactorySettings, AnMModelUsesModbusAndOtherModelsUseAscii) {
 }
 
 TEST(FactorySettings, HaveTheNameOfSection1) {
-  const std::vector<std::pair<std::string, std::string>> names{
-      {"EX9042D", "9042D"},     {"EX9042D-M", "9042M"},    {"EX9043D", "9043D"},   {"EX9043D-M", "9043M"},
-      {"EX9052D", "9052"},      {"EX9052D-M", "9052M"},    {"EX9044D", "9044"},    {"EX9050D", "9050"},
-      {"EX9068D-M", "9068D-M"}, {"EX9068AD-M", "9068D-M"}, {"EX9055D", "9055"},    {"EX9060D", "9060"},
-      {"EX9063D", "9063"},      {"EX9065D", "9065"},       {"EX9066D", "9066"},    {"EX9067D", "9067"},
-      {"EX9068D", "9068"},      {"EX9044D-M", "9044M"},    {"EX9060D-M", "9060M"}, {"EX9053D", "9053"},
-      {"EX9053D-M", "9053M"}};
-  for (const auto& [designation, name] : names) {
-    EXPECT_EQ(text_of(Settings::factory(model(designation)).name), name) << designation;
+  for (const reference::ModelRow& row : reference::kModelRows) {
+    EXPECT_EQ(text_of(Settings::factory(model(row.designation)).name), row.name) << row.designation;
   }
 }
 

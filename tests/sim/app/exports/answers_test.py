@@ -12,7 +12,7 @@ import unittest
 import yaml
 
 from line import Line
-from program import describe, models_with_modbus
+from program import ROOT, describe, models_with_modbus
 
 # These dictionaries map the terms of the tools to the terms of Line: coil, discrete_input, holding and input.
 ESPHOME = {"coil": "coil", "discrete_input": "discrete_input", "holding": "holding", "read": "input"}
@@ -24,16 +24,12 @@ WIREN_BOARD = {"coil": "coil", "discrete": "discrete_input", "holding": "holding
 HOME_ASSISTANT = {"tcp": "rtuovertcp", "modbus-tcp": "tcp"}
 NODE_RED_CLIENTS = {"tcp": "TELNET", "modbus-tcp": "DEFAULT"}
 
-# The number of outputs and the number of inputs of each -M model (wire.md section 1).
+# The number of outputs and the number of inputs of each model, from section 1 of wire.md. A row of its table begins
+# with the model, the inputs and the outputs.
 CHANNELS = {
-    "EX9042D-M": (13, 0),
-    "EX9043D-M": (16, 0),
-    "EX9044D-M": (8, 4),
-    "EX9052D-M": (0, 8),
-    "EX9053D-M": (0, 16),
-    "EX9060D-M": (4, 4),
-    "EX9068D-M": (8, 0),
-    "EX9068AD-M": (8, 0),
+    model: (int(outputs or 0), int(inputs or 0))
+    for model, inputs, outputs in re.findall(r"^\| (EX\w+(?:-M)?) \| (\d*)[^|]* \| (\d*)[^|]* \|",
+                                             (ROOT / "firmware/wire.md").read_text(encoding="utf-8"), re.MULTILINE)
 }
 
 
