@@ -59,9 +59,9 @@ TEST(ALongerRecord, IsWrittenPageByPageAndOnlyUpToItsEnd) {
   EXPECT_EQ(memory.writes, (std::vector<std::uint16_t>{0x80, 0xA0, 0xC0, 0xE0}));
   memory.writes.clear();
   FakeEeprom shorter;
-  put_longer(shorter, 0, numbered(5), 7, 56);  // 64 bytes
+  put_longer(shorter, 0, numbered(5), 7, 88);  // 96 bytes
   EXPECT_TRUE(Boot(shorter).save(numbered(6)));
-  EXPECT_EQ(shorter.writes, (std::vector<std::uint16_t>{0x80, 0xA0}));
+  EXPECT_EQ(shorter.writes, (std::vector<std::uint16_t>{0x80, 0xA0, 0xC0}));
 }
 
 TEST(ALongerRecord, IsInvalidIfAnyByteIsWrong) {
