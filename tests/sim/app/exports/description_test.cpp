@@ -4,9 +4,12 @@
 
 #include <gtest/gtest.h>
 
+#include <iterator>
 #include <set>
 #include <string>
 #include <utility>
+
+#include "tests/oracles/reference/models.hpp"
 
 namespace ex9000::sim {
 namespace {
@@ -37,7 +40,7 @@ Json in_table(const Json& registers, const char* id, const char* table) {
 
 TEST(Description, HasEveryModelAndTheFirmwaresVersion) {
   EXPECT_EQ(description(all_models()).at("firmware"), "D01.00");
-  EXPECT_EQ(description(all_models()).at("models").size(), 21U);
+  EXPECT_EQ(description(all_models()).at("models").size(), std::size(reference::kModelRows));
   EXPECT_EQ(described("EX9060D").at("model"), "EX9060D");
 }
 
