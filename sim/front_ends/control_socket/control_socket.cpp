@@ -4,13 +4,11 @@
 #include <sys/un.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/read_until.hpp>
 #include <boost/asio/write.hpp>
 #include <utility>
 
-#include "sim/files_and_ports/ports/listening.hpp"
 #include "sim/text/fail.hpp"
 
 namespace ex9000::sim {
@@ -69,35 +67,23 @@ ControlSocket::ControlSocket(boost::asio::io_context& io, std::string path, Carr
       claim_(path_),
       carry_out_(std::move(carry_out)),
       quit_(std::move(quit)),
-      acceptor_(io),
-      next_try_(io) {
+      listener_(io) {
   if (path_.empty() || path_.size() >= sizeof(sockaddr_un::sun_path)) {
     fail(path_ + ": expected a path of 1 to " + std::to_string(sizeof(sockaddr_un::sun_path) - 1) +
          " characters");
   }
   remove_stale(io, path_, claim_);
-  boost::system::error_code error;
-  acceptor_.open(Local(), error);
-  if (!error) {
-    acceptor_.bind(Local::endpoint(path_), error);
-  }
-  if (!error) {
-    struct stat status {};
-    if (lstat(path_.c_str(), &status) == 0) {
-      device_ = status.st_dev;
-      inode_ = status.st_ino;
-    }
-    acceptor_.listen(Local::acceptor::max_listen_connections, error);
-  }
-  if (error) {
-    remove();
+  if (const auto error = listener_.listen(Local::endpoint(path_))) {
     fail(path_ + ": " + error.message() + "; name a path that can be written");
+  }
+  struct stat status {};
+  if (lstat(path_.c_str(), &status) == 0) {
+    device_ = status.st_dev;
+    inode_ = status.st_ino;
   }
 }
 
-ControlSocket::~ControlSocket() { remove(); }
-
-void ControlSocket::remove() const {
+ControlSocket::~ControlSocket() {
   struct stat status {};
   if (lstat(path_.c_str(), &status) == 0 && status.st_dev == device_ && status.st_ino == inode_) {
     unlink(path_.c_str());
@@ -105,16 +91,13 @@ void ControlSocket::remove() const {
 }
 
 void ControlSocket::start() {
-  keep_accepting(acceptor_, next_try_, [this](Local::socket socket) { admit(std::move(socket)); });
+  listener_.start([this](Local::socket socket) { admit(std::move(socket)); });
 }
 
 void ControlSocket::admit(Local::socket socket) {
-  clients_.erase(std::remove_if(clients_.begin(), clients_.end(),
-                                [](const std::weak_ptr<Client>& client) { return client.expired(); }),
-                 clients_.end());
   const auto client = std::make_shared<Client>(Client{std::move(socket), "", ""});
-  if (clients_.size() < kMostClients) {
-    clients_.push_back(client);
+  if (clients_.all().size() < kMostClients) {
+    clients_.add(client);
     read(client);
   } else {
     send(client, "error: there are " + std::to_string(kMostClients) + " clients already; close one of them",

@@ -5,13 +5,12 @@
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/local/stream_protocol.hpp>
-#include <boost/asio/steady_timer.hpp>
 #include <functional>
 #include <memory>
 #include <string>
-#include <vector>
 
 #include "sim/files_and_ports/ports/claim.hpp"
+#include "sim/files_and_ports/ports/listening.hpp"
 #include "sim/front_ends/control_socket/control.hpp"
 
 namespace ex9000::sim {
@@ -44,7 +43,6 @@ class ControlSocket {
  private:
   struct Client;
 
-  void remove() const;
   void admit(boost::asio::local::stream_protocol::socket socket);
   void read(const std::shared_ptr<Client>& client);
   /// The action after the reply has been sent.
@@ -55,9 +53,8 @@ class ControlSocket {
   Claim claim_;
   CarryOut carry_out_;
   std::function<void()> quit_;
-  boost::asio::local::stream_protocol::acceptor acceptor_;
-  boost::asio::steady_timer next_try_;
-  std::vector<std::weak_ptr<Client>> clients_;
+  Listener<boost::asio::local::stream_protocol> listener_;
+  Clients<Client> clients_;
   dev_t device_ = 0;  ///< device of the socket file
   ino_t inode_ = 0;   ///< inode of the socket file
 };

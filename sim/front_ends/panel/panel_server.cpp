@@ -8,7 +8,6 @@
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket.hpp>
 #include <chrono>
-#include <set>
 #include <string_view>
 #include <utility>
 
@@ -75,56 +74,46 @@ std::string_view type_of(std::string_view file) {
 
 }  // namespace
 
-class PanelServer::Listener : public std::enable_shared_from_this<PanelServer::Listener> {
+class PanelServer::Connections {
  public:
-  Listener(boost::asio::io_context& io, std::optional<std::uint16_t> port, std::string models, Panel& panel)
-      : acceptor_(io), next_try_(io), next_look_(io), models_(std::move(models)), panel_(panel) {
-    error_code error = listen_at(acceptor_, here(port.value_or(kDefaultPort)));
+  Connections(boost::asio::io_context& io, std::optional<std::uint16_t> port, std::string models,
+              Panel& panel)
+      : listener_(io), next_look_(io), models_(std::move(models)), panel_(panel) {
+    error_code error = listener_.listen(here(port.value_or(kDefaultPort)));
     if (error && !port) {
-      error = listen_at(acceptor_, here(0));
+      error = listener_.listen(here(0));
     }
     if (error) {
       unavailable(std::to_string(port.value_or(kDefaultPort)) + ": " +
                   why_not_listening(error, "name another port"));
     }
-    port_ = acceptor_.local_endpoint().port();
   }
 
-  [[nodiscard]] std::uint16_t port() const { return port_; }
+  [[nodiscard]] std::uint16_t port() const { return listener_.endpoint().port(); }
   void start() {
-    keep_accepting(acceptor_, next_try_,
-                   [self = shared_from_this()](tcp::socket socket) { self->admit(std::move(socket)); });
+    listener_.start([this](tcp::socket socket) { admit(std::move(socket)); });
   }
-  /// Stops accepting connections and closes the open ones. After this call, the panel may be destroyed.
-  void stop();
 
  private:
   class Client;
 
   void admit(tcp::socket socket);
-  [[nodiscard]] std::size_t pages() const;
+  /// The number of connections that are pages or are becoming pages.
+  [[nodiscard]] std::size_t pages();
   void look();
 
-  tcp::acceptor acceptor_;
-  boost::asio::steady_timer next_try_;
+  Listener<tcp> listener_;
   boost::asio::steady_timer next_look_;
   std::string models_;
   Panel& panel_;
-  std::uint16_t port_ = 0;
-  std::set<Client*> clients_;  ///< each Client adds and removes itself
-  bool stopped_ = false;
+  Clients<Client> clients_;
 };
 
 /// A connection: a single request, or a page that gets messages until it disconnects.
-class PanelServer::Listener::Client : public std::enable_shared_from_this<Client> {
+class PanelServer::Connections::Client : public std::enable_shared_from_this<Client> {
  public:
-  Client(std::shared_ptr<Listener> listener, tcp::socket socket)
-      : listener_(std::move(listener)), socket_(beast::tcp_stream(std::move(socket))) {
-    listener_->clients_.insert(this);
-  }
-  ~Client() { listener_->clients_.erase(this); }
-  Client(const Client&) = delete;
-  Client& operator=(const Client&) = delete;
+  Client(Connections& server, tcp::socket socket)
+      : server_(server), socket_(beast::tcp_stream(std::move(socket))) {}
 
   void read_request() {
     parser_.header_limit(kLongestHeader);
@@ -137,7 +126,6 @@ class PanelServer::Listener::Client : public std::enable_shared_from_this<Client
   }
 
   [[nodiscard]] bool is_page() const { return viewer_ != nullptr; }
-  /// Returns whether the connection is a page or is becoming one.
   [[nodiscard]] bool takes_a_page() const { return takes_a_page_; }
 
   /// Sends the next message for the page if there is one and the previous message has been sent.
@@ -154,26 +142,20 @@ class PanelServer::Listener::Client : public std::enable_shared_from_this<Client
                           self->outgoing_.clear();
                           if (error) {
                             self->end_page();
-                            self->part();
+                            error_code ignored;
+                            self->stream().socket().close(ignored);
                           } else if (self->answering_) {
                             self->answer_page_request();
                           }
                         });
   }
 
-  /// Closes the connection.
-  void part() {
-    viewer_.reset();
-    error_code ignored;
-    stream().socket().close(ignored);
-  }
-
  private:
   beast::tcp_stream& stream() { return socket_.next_layer(); }
 
   void have_request(const error_code& error) {
-    if (listener_->stopped_ || error == http::error::end_of_stream ||
-        error == boost::asio::error::operation_aborted || error == beast::error::timeout) {
+    if (error == http::error::end_of_stream || error == boost::asio::error::operation_aborted ||
+        error == beast::error::timeout) {
       return;
     }
     if (error == http::error::header_limit) {
@@ -209,7 +191,7 @@ class PanelServer::Listener::Client : public std::enable_shared_from_this<Client
     } else if (live) {
       accept_page(request);
     } else if (request.target() == "/models.json") {
-      answer(http::status::ok, "application/json", listener_->models_);
+      answer(http::status::ok, "application/json", server_.models_);
     } else if (const EmbeddedFile* file = page_file(view_of(request.target()))) {
       answer(http::status::ok, type_of(file->name), file->content);
     } else {
@@ -280,7 +262,7 @@ class PanelServer::Listener::Client : public std::enable_shared_from_this<Client
   }
 
   void accept_page(const Request& request) {
-    takes_a_page_ = listener_->pages() < kMostPages;
+    takes_a_page_ = server_.pages() < kMostPages;
     stream().expires_never();
     websocket::stream_base::timeout timeout{};
     timeout.handshake_timeout = kRequestTimeout;
@@ -290,7 +272,7 @@ class PanelServer::Listener::Client : public std::enable_shared_from_this<Client
     socket_.read_message_max(kLongestPageRequest);
     socket_.auto_fragment(false);
     socket_.async_accept(request, [self = shared_from_this()](const error_code& error) {
-      if (error || self->listener_->stopped_) {
+      if (error) {
         return;
       }
       if (!self->takes_a_page_) {
@@ -298,8 +280,8 @@ class PanelServer::Listener::Client : public std::enable_shared_from_this<Client
         self->close(websocket::close_code::try_again_later, "too many pages are open already");
       } else {
         self->buffer_.clear();
-        self->viewer_ = self->listener_->panel_.viewer();
-        self->listener_->look();
+        self->viewer_ = self->server_.panel_.viewer();
+        self->server_.look();
         self->read_page_request();
       }
     });
@@ -342,11 +324,11 @@ class PanelServer::Listener::Client : public std::enable_shared_from_this<Client
       close(websocket::close_code::policy_error, "the message is not a valid request");
       return;
     }
-    listener_->look();
+    server_.look();
     read_page_request();
   }
 
-  std::shared_ptr<Listener> listener_;
+  Connections& server_;
   websocket::stream<beast::tcp_stream> socket_;
   beast::flat_buffer buffer_{kLongestHeader + kLongestPageRequest};
   http::request_parser<http::empty_body> parser_;
@@ -358,65 +340,52 @@ class PanelServer::Listener::Client : public std::enable_shared_from_this<Client
   bool answering_ = false;  ///< a request waits until the present message has been sent
 };
 
-void PanelServer::Listener::admit(tcp::socket socket) {
-  if (stopped_) {
-    return;
-  }
-  error_code ignored;
-  socket.set_option(tcp::no_delay(true), ignored);
-  if (clients_.size() - pages() < kMostRequests) {
-    std::make_shared<Client>(shared_from_this(), std::move(socket))->read_request();
+void PanelServer::Connections::admit(tcp::socket socket) {
+  if (clients_.all().size() - pages() < kMostRequests) {
+    const auto client = std::make_shared<Client>(*this, std::move(socket));
+    clients_.add(client);
+    client->read_request();
   } else {
-    socket.non_blocking(true, ignored);
+    error_code ignored;
     socket.write_some(boost::asio::buffer(kTooManyRequestsResponse), ignored);
   }
 }
 
-std::size_t PanelServer::Listener::pages() const {
-  return static_cast<std::size_t>(std::count_if(clients_.begin(), clients_.end(),
-                                                [](const Client* client) { return client->takes_a_page(); }));
+std::size_t PanelServer::Connections::pages() {
+  const auto clients = clients_.all();
+  return static_cast<std::size_t>(std::count_if(clients.begin(), clients.end(),
+                                                [](const auto& client) { return client->takes_a_page(); }));
 }
 
 /// If a page is open, captures the present state, sends each page its next message, and does this again after
 /// kLookEvery at the latest.
-void PanelServer::Listener::look() {
-  if (std::none_of(clients_.begin(), clients_.end(),
-                   [](const Client* client) { return client->is_page(); })) {
+void PanelServer::Connections::look() {
+  const auto clients = clients_.all();
+  if (std::none_of(clients.begin(), clients.end(), [](const auto& client) { return client->is_page(); })) {
     return;
   }
   panel_.look();
-  for (Client* client : clients_) {
+  for (const auto& client : clients) {
     client->tell();
   }
   next_look_.expires_after(kLookEvery);
-  next_look_.async_wait([self = shared_from_this()](const error_code& error) {
+  next_look_.async_wait([this](const error_code& error) {
     if (!error) {
-      self->look();
+      look();
     }
   });
 }
 
-void PanelServer::Listener::stop() {
-  stopped_ = true;
-  error_code ignored;
-  acceptor_.close(ignored);
-  next_look_.cancel(ignored);
-  next_try_.cancel(ignored);
-  for (Client* client : clients_) {
-    client->part();
-  }
-}
-
 PanelServer::PanelServer(boost::asio::io_context& io, std::optional<std::uint16_t> port, std::string models,
                          Panel& panel)
-    : listener_(std::make_shared<Listener>(io, port, std::move(models), panel)) {}
+    : connections_(std::make_unique<Connections>(io, port, std::move(models), panel)) {}
 
-PanelServer::~PanelServer() { listener_->stop(); }
+PanelServer::~PanelServer() = default;
 
 std::string PanelServer::address() const {
-  return "http://127.0.0.1:" + std::to_string(listener_->port()) + "/";
+  return "http://127.0.0.1:" + std::to_string(connections_->port()) + "/";
 }
 
-void PanelServer::start() { listener_->start(); }
+void PanelServer::start() { connections_->start(); }
 
 }  // namespace ex9000::sim

@@ -24,7 +24,8 @@ class PanelServer {
  public:
   /// Listens on `port`. If `port` is nullopt, listens on 9042, or on any free port if 9042 is not available.
   /// If `port` is 0, listens on any free port. Throws std::runtime_error with a one-line message if
-  /// listening fails. `models` is the content of /models.json. `io` and `panel` must outlive this object.
+  /// listening fails. `models` is the content of /models.json. `io` and `panel` must outlive this object, and
+  /// `io` must not run after it.
   PanelServer(boost::asio::io_context& io, std::optional<std::uint16_t> port, std::string models,
               Panel& panel);
   ~PanelServer();
@@ -37,9 +38,9 @@ class PanelServer {
   void start();
 
  private:
-  class Listener;
+  class Connections;
 
-  std::shared_ptr<Listener> listener_;
+  std::unique_ptr<Connections> connections_;
 };
 
 }  // namespace ex9000::sim
