@@ -35,9 +35,7 @@ unsigned word(const Buffer& bytes, std::size_t at) { return bytes[at] * 256U + b
 /// A client with the requests that have no reply yet.
 class Client {
  public:
-  explicit Client(sim::Line& line)
-      : session_(
-            line, [this](const Buffer& bytes) { return take(bytes); }, [] {}) {}
+  explicit Client(sim::Line& line) : session_(line, [this] { take(); }) {}
 
   void send(const std::uint8_t* bytes, std::size_t size) {
     sent_.insert(sent_.end(), bytes, bytes + size);
@@ -75,16 +73,23 @@ class Client {
     }
   }
 
-  bool take(const Buffer& reply) {
-    require(reply.size() > kHeader && reply.size() <= 260, "a reply has a header and a PDU");
-    require(word(reply, 2) == 0 && word(reply, 4) == reply.size() - 6, "the header is correct");
-    require(!asked_.empty(), "a reply belongs to a request");
-    const Asked asked = asked_.front();
-    asked_.pop_front();
-    require(asked.transaction == word(reply, 0) && asked.unit == reply[6],
-            "replies keep the order of requests");
-    check(asked, reply);
-    return true;
+  void take() {
+    Buffer& replies = session_.replies;
+    while (!replies.empty()) {
+      require(replies.size() > kHeader, "a reply has a header and a PDU");
+      const std::size_t size = word(replies, 4) + kHeader - 1;
+      require(word(replies, 2) == 0 && size > kHeader && size <= 260 && size <= replies.size(),
+              "the header is correct");
+      const auto end = replies.begin() + static_cast<std::ptrdiff_t>(size);
+      const Buffer reply(replies.begin(), end);
+      replies.erase(replies.begin(), end);
+      require(!asked_.empty(), "a reply belongs to a request");
+      const Asked asked = asked_.front();
+      asked_.pop_front();
+      require(asked.transaction == word(reply, 0) && asked.unit == reply[6],
+              "replies keep the order of requests");
+      check(asked, reply);
+    }
   }
 
   static void check(const Asked& asked, const Buffer& reply) {

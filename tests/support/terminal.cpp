@@ -11,7 +11,6 @@
 #include <cstring>
 #include <stdexcept>
 
-#include "sim/files_and_ports/ports/termios_rates.hpp"
 #include "tests/support/any_rate.hpp"
 
 namespace ex9000::system {
@@ -38,7 +37,7 @@ void Terminal::set_baud(std::uint32_t baud) {
   termios settings{};
   tcgetattr(fd_, &settings);
   cfmakeraw(&settings);
-  cfsetspeed(&settings, sim::termios_speed(baud).value());
+  cfsetspeed(&settings, baud);
   if (tcsetattr(fd_, TCSANOW, &settings) != 0) {
     fail("tcsetattr");
   }
@@ -48,7 +47,7 @@ bool Terminal::set_even_parity(std::uint32_t baud) {
   termios settings{};
   tcgetattr(fd_, &settings);
   cfmakeraw(&settings);
-  cfsetspeed(&settings, sim::termios_speed(baud).value());
+  cfsetspeed(&settings, baud);
   settings.c_cflag |= CLOCAL | CREAD | PARENB;
   return tcsetattr(fd_, TCSANOW, &settings) == 0;
 }

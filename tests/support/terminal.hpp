@@ -11,7 +11,7 @@ namespace ex9000::system {
 class Terminal {
  public:
   /// Opens `tty` in raw mode at `baud` bits per second. Throws std::runtime_error if that fails. `baud` must
-  /// be a rate that sim::termios_speed knows.
+  /// be a rate that cfsetspeed knows.
   Terminal(const std::string& tty, std::uint32_t baud);
   ~Terminal();
   Terminal(const Terminal&) = delete;

@@ -31,9 +31,8 @@ class Arrivals {
   /// Takes bytes for the line. `damaged`: those with wrong parity or a framing error. Returns false if the
   /// port must wait for `resume` before it delivers more bytes of this sender.
   virtual bool bytes(const Port& port, Bytes bytes, const Positions& damaged, Sender sender) = 0;
-  /// Takes `size` bytes that a gateway turns into requests, or 0 if a client of it accepts replies again.
-  /// Calls `process` exactly once, now or later, when the line has reached its present time. Returns false
-  /// if the gateway must wait for `resume`.
+  /// Takes `size` bytes that a gateway turns into requests. Calls `process` exactly once, now or later, when
+  /// the line has reached its present time. Returns false if the gateway must wait for `resume`.
   virtual bool requests(std::size_t size, std::function<void()> process) = 0;
   /// A master has left, so no more of its bytes need to be sent. Only TCP reports this: the bytes of a
   /// program that has closed a pseudo-terminal are sent, as by a serial port.

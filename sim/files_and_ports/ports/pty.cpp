@@ -15,7 +15,6 @@
 #include <utility>
 
 #include "sim/files_and_ports/files/new_file.hpp"
-#include "sim/files_and_ports/ports/termios_rates.hpp"
 #include "sim/text/fail.hpp"
 #include "sim/text/system_error.hpp"
 
@@ -58,9 +57,7 @@ class Slave {
       return false;
     }
     cfmakeraw(&settings);
-    if (const auto speed = termios_speed(baud)) {
-      cfsetspeed(&settings, *speed);
-    }
+    cfsetspeed(&settings, baud);
     return tcsetattr(file_.get(), TCSANOW, &settings) == 0;
   }
   void forget_unread() const { tcflush(file_.get(), TCIFLUSH); }

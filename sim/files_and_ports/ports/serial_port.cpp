@@ -14,7 +14,7 @@
 #include <utility>
 
 #include "sim/files_and_ports/files/file_descriptor.hpp"
-#include "sim/files_and_ports/ports/termios_rates.hpp"
+#include "sim/files_and_ports/ports/termios_format.hpp"
 #include "sim/text/fail.hpp"
 #include "sim/text/system_error.hpp"
 #include "sim/text/values.hpp"
@@ -55,10 +55,9 @@ void set_up(int fd, hal::SerialMode mode) {
   settings.c_iflag = has_parity(mode.format) ? INPCK | PARMRK : 0;
   settings.c_cflag &= ~static_cast<tcflag_t>(kTermiosFormat | CRTSCTS);
   settings.c_cflag |= CLOCAL | CREAD | termios_format(mode.format);
-  const auto speed = termios_speed(mode.baud);
   termios taken{};  // tcsetattr succeeds even if it applies only a part of the settings
-  if (!speed || cfsetspeed(&settings, *speed) != 0 || tcsetattr(fd, TCSANOW, &settings) != 0 ||
-      tcgetattr(fd, &taken) != 0 || cfgetospeed(&taken) != *speed ||
+  if (cfsetspeed(&settings, mode.baud) != 0 || tcsetattr(fd, TCSANOW, &settings) != 0 ||
+      tcgetattr(fd, &taken) != 0 || cfgetospeed(&taken) != cfgetospeed(&settings) ||
       ((taken.c_cflag ^ settings.c_cflag) & kTermiosFormat) != 0) {
     tcsetattr(fd, TCSANOW, &before);
     fail("cannot be set to " + mode_text(mode.baud, mode.format) +

@@ -7,17 +7,12 @@ void MbapSession::receive(Bytes bytes) {
   pass_on();
 }
 
-void MbapSession::resume() {
-  blocked_ = false;
-  pass_on();
-}
-
 void MbapSession::pass_on() {
   if (passing_on_) {
     return;  // `ask_on_line` below has called `answer`; the loop continues
   }
   passing_on_ = true;
-  while (!waiting_ && !blocked_) {
+  while (!waiting_) {
     const std::optional<MbapFrame> request = reader_.next();
     if (!request) {
       break;
@@ -38,8 +33,9 @@ void MbapSession::pass_on() {
 
 void MbapSession::answer(const MbapFrame& request, const std::optional<std::vector<std::uint8_t>>& pdu) {
   waiting_ = false;
-  if (pdu && !send_(mbap_bytes({request.transaction, request.unit, *pdu}))) {
-    blocked_ = true;
+  if (pdu) {
+    const std::vector<std::uint8_t> bytes = mbap_bytes({request.transaction, request.unit, *pdu});
+    replies.insert(replies.end(), bytes.begin(), bytes.end());
   }
   pass_on();
   answered_();

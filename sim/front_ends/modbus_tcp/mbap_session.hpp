@@ -19,39 +19,35 @@ namespace ex9000::sim {
 /// destructor drops requests that have not been sent. None of the functions blocks.
 class MbapSession {
  public:
-  /// Sends a reply to the client. Returns false if the client accepts no more at present.
-  using Send = std::function<bool(const std::vector<std::uint8_t>& bytes)>;
-
   /// `line` must outlive this object. `answered` is called after each answer of `ask_on_line`. `timeout`: see
   /// there.
-  MbapSession(Line& line, Send send, std::function<void()> answered, VirtualTime timeout = kGatewayTimeout)
-      : line_(line), send_(std::move(send)), answered_(std::move(answered)), timeout_(timeout) {}
+  MbapSession(Line& line, std::function<void()> answered, VirtualTime timeout = kGatewayTimeout)
+      : line_(line), answered_(std::move(answered)), timeout_(timeout) {}
   MbapSession(const MbapSession&) = delete;
   MbapSession& operator=(const MbapSession&) = delete;
 
   void receive(Bytes bytes);
-  /// Continues after `send` has returned false.
-  void resume();
+
+  /// The bytes for the client. The caller removes what it has sent.
+  std::vector<std::uint8_t> replies;
 
   /// Returns how many bytes wait to become requests.
   [[nodiscard]] std::size_t unread() const { return reader_.size(); }
   /// Returns whether the session has found a header with a wrong protocol or length. Later bytes of the
   /// client are ignored.
   [[nodiscard]] bool broken() const { return reader_.broken(); }
-  /// Returns whether all complete requests have been answered and the session does not wait for `resume`.
-  [[nodiscard]] bool idle() const { return !waiting_ && !blocked_ && !passing_on_; }
+  /// Returns whether all complete requests have been answered.
+  [[nodiscard]] bool idle() const { return !waiting_ && !passing_on_; }
 
  private:
   void pass_on();
   void answer(const MbapFrame& request, const std::optional<std::vector<std::uint8_t>>& pdu);
 
   Line& line_;
-  Send send_;
   std::function<void()> answered_;
   VirtualTime timeout_;
   MbapReader reader_;
   bool waiting_ = false;  ///< a request has not been answered yet
-  bool blocked_ = false;  ///< `send` has returned false, and `resume` has not been called yet
   bool passing_on_ = false;
   std::shared_ptr<MbapSession*> lives_ = std::make_shared<MbapSession*>(this);
 };

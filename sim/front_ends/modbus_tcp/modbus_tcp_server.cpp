@@ -1,8 +1,7 @@
 #include "sim/front_ends/modbus_tcp/modbus_tcp_server.hpp"
 
-#include <boost/asio/socket_base.hpp>
-#include <functional>
 #include <utility>
+#include <vector>
 
 #include "sim/front_ends/modbus_tcp/mbap_session.hpp"
 
@@ -13,9 +12,6 @@ namespace {
 /// The server does not read from a client while at least this many bytes of the client wait to become
 /// requests. The limit is not lower than SteppedLine::kMostBytes, the largest N of `advance ... after N`.
 constexpr std::size_t kMostUnread = 65536;
-/// The size of the send buffer of each client, in bytes. When the buffer of a client that does not read is
-/// full, the server passes on no more requests of this client.
-constexpr int kMostUnsent = 65536;
 
 }  // namespace
 
@@ -24,83 +20,59 @@ class ModbusTcpServer::Client final : public TcpServer::Client {
   Client(ModbusTcpServer& server, Socket socket)
       : TcpServer::Client(server, std::move(socket)),
         server_(server),
-        session_(
-            server.line_,
-            [this](const std::vector<std::uint8_t>& reply) {
-              replies_.insert(replies_.end(), reply.begin(), reply.end());
-              return send_replies();
-            },
-            [this] { go_on(); }, server.timeout_) {
-    boost::system::error_code ignored;
-    socket_.set_option(boost::asio::socket_base::send_buffer_size(kMostUnsent), ignored);
-  }
+        session_(server.line_, [this] { go_on(); }, server.timeout_) {}
 
  private:
+  /// A client that does not accept its replies can send no more requests.
   [[nodiscard]] bool may_read() const override {
-    return !server_.paused_ && !session_.broken() && session_.unread() < kMostUnread;
+    return !server_.paused_ && !session_.broken() && session_.unread() < kMostUnread &&
+           session_.replies.empty();
   }
-  void receive(Bytes bytes) override {
-    deliver(bytes.size, [this, piece = std::vector<std::uint8_t>(bytes.begin(), bytes.end())] {
-      session_.receive({piece.data(), piece.size()});
-    });
-  }
+  void receive(Bytes bytes) override;
   void end() override { go_on(); }
-
-  void deliver(std::size_t size, const std::function<void()>& action);
-  bool send_replies();
   void go_on();
 
   ModbusTcpServer& server_;
-  std::size_t arriving_ = 0;           ///< calls of `deliver` whose `action` has not run yet
-  std::vector<std::uint8_t> replies_;  ///< bytes that the client has not accepted yet
-  bool writing_ = false;               ///< an asynchronous wait is pending
+  std::size_t arriving_ = 0;  ///< calls of `receive` whose bytes the session has not got yet
+  bool writing_ = false;      ///< waits until the client accepts more replies
   MbapSession session_;
 };
 
-/// When the line is ready, runs `action`, unless the client has been removed meanwhile.
-void ModbusTcpServer::Client::deliver(std::size_t size, const std::function<void()>& action) {
+void ModbusTcpServer::Client::receive(Bytes bytes) {
   ++arriving_;
-  server_.paused_ = !server_.arrivals().requests(size, [this, self = shared_from_this(), action] {
+  const auto process = [this, self = shared_from_this(),
+                        piece = std::vector<std::uint8_t>(bytes.begin(), bytes.end())] {
     --arriving_;
     if (connected()) {
-      action();
+      session_.receive({piece.data(), piece.size()});
       go_on();
     }
-  });
+  };
+  server_.paused_ = !server_.arrivals().requests(bytes.size, process);
 }
 
-/// Writes the replies that the client accepts now, and the rest when the client accepts more. Returns whether
-/// all replies have been written.
-bool ModbusTcpServer::Client::send_replies() {
-  if (writing_ || !connected()) {
-    return false;
-  }
-  const auto written = write(replies_);
-  if (!written) {
-    return false;
-  }
-  const auto begin = replies_.begin();
-  replies_.erase(begin, begin + static_cast<std::ptrdiff_t>(*written));
-  if (replies_.empty()) {
-    return true;
-  }
-  writing_ = true;
-  socket_.async_wait(Socket::wait_write,
-                     [this, self = shared_from_this()](const boost::system::error_code& /*error*/) {
-                       writing_ = false;
-                       if (send_replies()) {
-                         deliver(0, [this] { session_.resume(); });
-                       }
-                     });
-  return false;
-}
-
-/// Reads from the client again if it can send more requests. Otherwise, disconnects it when all its replies
-/// have been written.
+/// Writes the replies that the client accepts. Then reads from the client again if it can send more requests;
+/// otherwise, disconnects it when all its requests have been answered.
 void ModbusTcpServer::Client::go_on() {
-  if (!ended() && !session_.broken()) {
+  if (!connected() || writing_) {
+    return;
+  }
+  const auto written = write(session_.replies);
+  if (!written) {
+    return;
+  }
+  const auto begin = session_.replies.begin();
+  session_.replies.erase(begin, begin + static_cast<std::ptrdiff_t>(*written));
+  if (!session_.replies.empty()) {
+    writing_ = true;
+    socket_.async_wait(Socket::wait_write,
+                       [this, self = shared_from_this()](const boost::system::error_code& /*error*/) {
+                         writing_ = false;
+                         go_on();
+                       });
+  } else if (!ended() && !session_.broken()) {
     read();
-  } else if (connected() && arriving_ == 0 && session_.idle() && replies_.empty()) {
+  } else if (arriving_ == 0 && session_.idle()) {
     if (session_.broken()) {
       server_.notice_(
           "the Modbus TCP gateway closes a connection: a client has sent a header whose protocol is not 0 or "
