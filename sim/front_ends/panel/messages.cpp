@@ -52,9 +52,10 @@ Message plate_layout(const Model& model) {
   for (unsigned channel = 0; channel < model.outputs; ++channel) {
     outputs.push_back(output_terminal(model, channel));
   }
-  return {{"model", model.designation},      {"description", model.description},
-          {"modbus", model.speaks_modbus()}, {"inputs", std::move(inputs)},
-          {"outputs", std::move(outputs)},   {"initTerminal", has_init_terminal(model)}};
+  return {{"model", model.designation},
+          {"inputs", std::move(inputs)},
+          {"outputs", std::move(outputs)},
+          {"initTerminal", has_init_terminal(model)}};
 }
 
 Message message_of(const Plate& plate) {

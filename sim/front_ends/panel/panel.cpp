@@ -74,7 +74,6 @@ struct Panel::Watched {
   std::size_t first_module = 0;  ///< position across all lines, from 0
   std::vector<Module> modules;
   RecentTraffic recent;
-  ChangeTracked<SerialMode> mode;
   ChangeTracked<std::vector<Faults::Info>> faults;
 
   /// Captures the present state. `look` is the number of this look.
@@ -87,7 +86,6 @@ struct Panel::Watched {
       module.host_watchdog.set(face.host_watchdog, look);
       module.stored.set(face.stored, look);
     }
-    mode.set(line->master().mode(), look);
     const Faults* so_far = line->faults_so_far();
     faults.set(so_far == nullptr ? std::vector<Faults::Info>() : so_far->list(), look);
   }
@@ -225,41 +223,33 @@ class Panel::Viewer final : public PanelViewer {
       for (const PortSummary& port : watched.summary.ports) {
         ports.push_back(port.address);
       }
-      lines.push_back({{"name", watched.summary.name},
-                       {"instant", watched.summary.instant},
-                       {"ports", std::move(ports)}});
+      lines.push_back({{"name", watched.summary.name}, {"ports", std::move(ports)}});
     }
     return {{"version", kFirmwareVersion},   {"run", panel_.run_},        {"speed", panel_.speed_},
             {"usualFaults", usual_faults()}, {"lines", std::move(lines)}, {"modules", std::move(modules)}};
   }
 
+  /// Adds `part` to the message if it has changed. `more`: see message_of.
+  template <class Value, class... More>
+  void add(Message& message, const char* key, const ChangeTracked<Value>& part, More... more) const {
+    if (const Value* news = part.news_since(sent_look_)) {
+      message[key] = message_of(*news, more...);
+    }
+  }
+
   [[nodiscard]] Message news_of(const Module& module) const {
     Message message;
-    if (const Plate* plate = module.plate.news_since(sent_look_)) {
-      message["plate"] = message_of(*plate);
-    }
-    if (const InputRecords* records = module.records.news_since(sent_look_)) {
-      message["records"] = message_of(*records, module.module->model().inputs);
-    }
-    if (const HostWatchdogState* host_watchdog = module.host_watchdog.news_since(sent_look_)) {
-      message["hostWatchdog"] = message_of(*host_watchdog);
-    }
-    if (const Stored* stored = module.stored.news_since(sent_look_)) {
-      message["stored"] = message_of(*stored);
-    }
+    add(message, "plate", module.plate);
+    add(message, "records", module.records, module.module->model().inputs);
+    add(message, "hostWatchdog", module.host_watchdog);
+    add(message, "stored", module.stored);
     return message;
   }
 
   [[nodiscard]] Message news_of(const Watched& watched) const {
     Message message;
     message["now"] = std::chrono::duration_cast<std::chrono::microseconds>(watched.now).count();
-    if (const SerialMode* mode = watched.mode.news_since(sent_look_)) {
-      message["baud"] = mode->baud;
-      message["format"] = line_format_text(mode->format);
-    }
-    if (const auto* faults = watched.faults.news_since(sent_look_)) {
-      message["faults"] = message_of(*faults, watched.first_module);
-    }
+    add(message, "faults", watched.faults, watched.first_module);
     return message;
   }
 

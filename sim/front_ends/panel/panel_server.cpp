@@ -159,12 +159,12 @@ class PanelServer::Connections::Client : public std::enable_shared_from_this<Cli
       return;
     }
     if (error == http::error::header_limit) {
-      answer(http::status::request_header_fields_too_large, "text/plain",
+      answer(http::status::request_header_fields_too_large,
              "the header is too long; expected up to 8192 bytes\n");
     } else if (error == http::error::body_limit && reads(parser_.get())) {
-      answer(http::status::payload_too_large, "text/plain", "requests with a body are not supported\n");
+      answer(http::status::payload_too_large, "requests with a body are not supported\n");
     } else if (error && error != http::error::body_limit) {
-      answer(http::status::bad_request, "text/plain", "the request is not valid HTTP\n");
+      answer(http::status::bad_request, "the request is not valid HTTP\n");
     } else {
       serve(parser_.get());
     }
@@ -176,26 +176,26 @@ class PanelServer::Connections::Client : public std::enable_shared_from_this<Cli
     const bool has_origin = origin != request.end();
     const bool live = request.target() == "/live";
     if (request.count(http::field::host) != 1 || !is_loopback_host(host)) {
-      answer(http::status::forbidden, "text/plain",
+      answer(http::status::forbidden,
              "the header Host is missing, wrong or repeated; expected 127.0.0.1 or localhost\n");
     } else if (request.count(http::field::origin) > 1 ||
                (has_origin && !is_origin_of(view_of(origin->value()), host)) || (live && !has_origin)) {
-      answer(http::status::forbidden, "text/plain",
+      answer(http::status::forbidden,
              "the header Origin is missing, wrong or repeated; expected the origin of the panel's page\n");
     } else if (!is_fetched_by_us(request)) {
-      answer(http::status::forbidden, "text/plain", "requests from other sites are not allowed\n");
+      answer(http::status::forbidden, "requests from other sites are not allowed\n");
     } else if (!reads(request)) {
-      answer(http::status::method_not_allowed, "text/plain", "only GET and HEAD are supported\n");
+      answer(http::status::method_not_allowed, "only GET and HEAD are supported\n");
     } else if (live && !websocket::is_upgrade(request)) {
-      answer(http::status::upgrade_required, "text/plain", "this path requires a WebSocket\n");
+      answer(http::status::upgrade_required, "this path requires a WebSocket\n");
     } else if (live) {
       accept_page(request);
     } else if (request.target() == "/models.json") {
-      answer(http::status::ok, "application/json", server_.models_);
+      answer(http::status::ok, server_.models_, "application/json");
     } else if (const EmbeddedFile* file = page_file(view_of(request.target()))) {
-      answer(http::status::ok, type_of(file->name), file->content);
+      answer(http::status::ok, file->content, type_of(file->name));
     } else {
-      answer(http::status::not_found, "text/plain", "no such page\n");
+      answer(http::status::not_found, "no such page\n");
     }
   }
 
@@ -213,7 +213,7 @@ class PanelServer::Connections::Client : public std::enable_shared_from_this<Cli
     });
   }
 
-  void answer(http::status status, std::string_view type, std::string_view text) {
+  void answer(http::status status, std::string_view text, std::string_view type = "text/plain") {
     response_.result(status);
     response_.version(11);
     response_.keep_alive(false);
