@@ -46,25 +46,19 @@ void remove_stale(const std::string& link, const Claim& claim) {
 
 /// Opens the slave for a short time, to set it up or to discard its unread bytes. If Visits watches the
 /// device, Visits reports this like a master that opens and closes the slave.
-class Slave {
- public:
-  explicit Slave(const std::string& device)
-      : file_(open(device.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC)) {}
+FileDescriptor open_slave(const std::string& device) {
+  return FileDescriptor(open(device.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
+}
 
-  [[nodiscard]] bool set_up(std::uint32_t baud) const {
-    termios settings{};
-    if (!file_.is_open() || tcgetattr(file_.get(), &settings) != 0) {
-      return false;
-    }
-    cfmakeraw(&settings);
-    cfsetspeed(&settings, baud);
-    return tcsetattr(file_.get(), TCSANOW, &settings) == 0;
+bool set_up(const FileDescriptor& slave, std::uint32_t baud) {
+  termios settings{};
+  if (!slave.is_open() || tcgetattr(slave.get(), &settings) != 0) {
+    return false;
   }
-  void forget_unread() const { tcflush(file_.get(), TCIFLUSH); }
-
- private:
-  FileDescriptor file_;
-};
+  cfmakeraw(&settings);
+  cfsetspeed(&settings, baud);
+  return tcsetattr(slave.get(), TCSANOW, &settings) == 0;
+}
 
 }  // namespace
 
@@ -78,7 +72,7 @@ Pty::Pty(std::string link, std::uint32_t baud, const std::optional<PtyAccess>& a
     throw std::runtime_error(link_ + ": cannot create a pseudo-terminal: " + reason());
   }
   device_ = name.data();
-  if (!Slave(device_).set_up(baud)) {
+  if (!set_up(open_slave(device_), baud)) {
     throw std::runtime_error(link_ + ": cannot set up " + device_ + ": " + reason());
   }
   if (access && access->group && chown(device_.c_str(), geteuid(), *access->group) != 0) {
@@ -110,7 +104,7 @@ bool Pty::take_visit() {
   }
   if (unread_) {
     unread_ = false;
-    Slave(device_).forget_unread();
+    tcflush(open_slave(device_).get(), TCIFLUSH);
   }
   // tcsetattr() fails with EINVAL if nothing of a request takes effect. A pseudo-terminal drops parity, so a
   // second program that asks for the settings of the first and for parity would fail. CLOCAL has no effect on

@@ -1,10 +1,10 @@
 #include "sim/files_and_ports/ports/tcp_port.hpp"
 
-#include <netinet/tcp.h>
-#include <sys/socket.h>
+#include <poll.h>
 
 #include <algorithm>
 #include <boost/asio/steady_timer.hpp>
+#include <chrono>
 #include <utility>
 
 namespace ex9000::sim {
@@ -23,8 +23,8 @@ class TcpPort::Client final : public TcpServer::Client {
   [[nodiscard]] bool may_read() const override { return !paused_; }
   void receive(Bytes bytes) override {
     paused_ = !port_.arrivals().bytes(port_, bytes, {}, sender());
-    if (paused_) {
-      linger();
+    if (paused_ && linger_.expiry() <= std::chrono::steady_clock::now()) {
+      linger();  // unless it waits already, from an earlier pause
     }
   }
   void end() override { linger(); }
@@ -58,10 +58,8 @@ void TcpPort::Client::linger() {
 }
 
 bool TcpPort::Client::peer_has_closed() {
-  tcp_info info{};
-  socklen_t size = sizeof info;
-  return getsockopt(socket_.native_handle(), IPPROTO_TCP, TCP_INFO, &info, &size) == 0 &&
-         (info.tcpi_state == TCP_CLOSE_WAIT || info.tcpi_state == TCP_CLOSE);
+  pollfd client{socket_.native_handle(), POLLRDHUP, 0};
+  return poll(&client, 1, 0) == 1;
 }
 
 PortSummary TcpPort::summary() const {

@@ -26,5 +26,9 @@ export function setAttribute(element, name, value) {
   }
 }
 
+/// A terminal of a module in a list of terminals.
+export const terminal = (label, ...shown) => make("li", {}, make("span", {class: "screw", "aria-hidden": "true"}),
+  make("span", {class: "label", "aria-hidden": "true"}, label), ...shown);
+
 export const bit = (word, channel) => (word >> channel & 1) !== 0;
 export const hexByte = (value) => value.toString(16).toUpperCase().padStart(2, "0");

@@ -1,7 +1,7 @@
 // An input of a module: its counter, its latches, and its LED. The LED is a button that switches, holds or pulses the
 // input.
 
-import {make, setAttribute, setText} from "/element.js";
+import {make, setAttribute, setText, terminal} from "/element.js";
 import {Switch} from "/switch.js";
 
 export class Input {
@@ -18,8 +18,7 @@ export class Input {
     this.count = make("span", {class: "count"}, "0");
     this.high = make("span", {class: "latch", role: "img"}, "H");
     this.low = make("span", {class: "latch", role: "img"}, "L");
-    this.item = make("li", {}, make("span", {class: "screw", "aria-hidden": "true"}),
-      make("span", {class: "label", "aria-hidden": "true"}, label), this.level.element,
+    this.item = terminal(label, this.level.element,
       make("span", {class: "counter"}, make("span", {class: "hidden"}, `counter of ${label}: `), this.count),
       make("span", {class: "latches"}, this.high, this.low));
     this.listenToPointer(this.level.element);

@@ -2,7 +2,7 @@
 // (see drawer.js).
 
 import {Drawer} from "/drawer.js";
-import {bit, hexByte, make, setAttribute, setText} from "/element.js";
+import {bit, hexByte, make, setAttribute, setText, terminal} from "/element.js";
 import {Input} from "/input.js";
 import {Switch} from "/switch.js";
 
@@ -78,8 +78,7 @@ export class Plate {
   makeOutput(label) {
     const led = make("span", {class: "led output", role: "img", "aria-label": `${label} off`});
     const left = make("span", {class: "left", hidden: ""});
-    return {label, led, left, item: make("li", {}, make("span", {class: "screw", "aria-hidden": "true"}),
-      make("span", {class: "label", "aria-hidden": "true"}, label), led, left)};
+    return {label, led, left, item: terminal(label, led, left)};
   }
 
   /// Call this when the connection is lost.
