@@ -163,8 +163,8 @@ class Program:
 # Parts of the simulator that use sockets, files, ports or signals of the operating system. Mutation does not change
 # them, because tests that run the program as a process cover most of them. The names have no folder and no extension.
 PROCESS = set(
-    "claim control_socket line_ports listening main panel_server port program pty pty_port "
-    "running_line running_program serial_port stop_signals tcp_port".split()
+    "claim control_socket line_ports listening main panel_server port program pty_port "
+    "running_line running_program serial_port stop_signals tcp_port tcp_server".split()
 )
 # The sources in PROCESS that only the whole program links.
 WHOLE = {"main", "panel_server", "program", "running_program"}

@@ -1,45 +1,156 @@
 #include "sim/files_and_ports/ports/pty_port.hpp"
 
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/ioctl.h>
+#include <termios.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
+#include <cstdlib>
+#include <filesystem>
+#include <stdexcept>
+#include <system_error>
 #include <utility>
 
+#include "sim/files_and_ports/files/new_file.hpp"
+#include "sim/files_and_ports/ports/terminal_rate.hpp"
 #include "sim/text/fail.hpp"
+#include "sim/text/system_error.hpp"
 #include "sim/text/words.hpp"
 
 namespace ex9000::sim {
 
-PtyPort::PtyPort(boost::asio::io_context& io, const std::string& link, std::uint32_t baud,
-                 const std::optional<PtyAccess>& access)
-    : pty_(link, baud, access),
-      visits_(boost::asio::use_service<Visits>(io)),
-      watch_(watch()),
-      descriptor_(io, pty_.master_fd()) {}
+namespace {
 
-int PtyPort::watch() {
-  const auto visited = [this] {
-    if (pty_.take_visit() && arrivals_ != nullptr) {
-      let_line_go(*arrivals_);
-    }
-    read();
-  };
-  return with_place(pty_.link() + ": ", [&] { return visits_.watch(pty_.device(), visited); });
+/// Returns the target of a symbolic link; empty if `link` is not one.
+std::string link_target(const std::string& link) {
+  std::error_code error;
+  return std::filesystem::read_symlink(link, error).string();
 }
 
-/// Releases the file descriptor without closing it, because the pseudo-terminal owns it.
+/// If a link to a pseudo-terminal exists at the path `link`, removes it. Throws if another simulator uses the
+/// path, or if any other file exists at the path.
+void remove_stale(const std::string& link, const Claim& claim) {
+  if (!claim.held()) {
+    unavailable(link + ": another simulator uses this path; end that simulator or name another path");
+  }
+  if (!is_there(link)) {
+    return;
+  }
+  if (link_target(link).rfind("/dev/pts/", 0) != 0) {
+    throw std::invalid_argument(
+        link + ": exists and is not a link to a pseudo-terminal; remove it or name another path");
+  }
+  unlink(link.c_str());
+}
+
+/// Opens the slave for a short time, to set it up or to discard its unread bytes. If Visits watches the
+/// device, Visits reports this like a master that opens and closes the slave.
+FileDescriptor open_slave(const std::string& device) {
+  return FileDescriptor(open(device.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
+}
+
+bool set_up(const FileDescriptor& slave, std::uint32_t baud) {
+  termios settings{};
+  if (!slave.is_open() || tcgetattr(slave.get(), &settings) != 0) {
+    return false;
+  }
+  cfmakeraw(&settings);
+  cfsetspeed(&settings, baud);
+  return tcsetattr(slave.get(), TCSANOW, &settings) == 0;
+}
+
+}  // namespace
+
+PtyPort::PtyPort(boost::asio::io_context& io, std::string link, std::uint32_t baud,
+                 const std::optional<PtyAccess>& access)
+    : link_(std::move(link)), claim_(link_), visits_(boost::asio::use_service<Visits>(io)), descriptor_(io) {
+  remove_stale(link_, claim_);
+  master_ = FileDescriptor(posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC | O_NONBLOCK));
+  std::array<char, 64> name{};
+  if (!master_.is_open() || grantpt(master_.get()) != 0 || unlockpt(master_.get()) != 0 ||
+      ptsname_r(master_.get(), name.data(), name.size()) != 0) {
+    throw std::runtime_error(link_ + ": cannot create a pseudo-terminal: " + reason());
+  }
+  device_ = name.data();
+  if (!set_up(open_slave(device_), baud)) {
+    throw std::runtime_error(link_ + ": cannot set up " + device_ + ": " + reason());
+  }
+  if (access && access->group && chown(device_.c_str(), geteuid(), *access->group) != 0) {
+    fail(link_ + ": the group " + std::to_string(*access->group) + " is refused: " + reason() +
+         "; name a group of the user that runs the simulator");
+  }
+  if (access && chmod(device_.c_str(), access->mode) != 0) {
+    throw std::runtime_error(link_ + ": cannot set the mode of " + device_ + ": " + reason());
+  }
+  watch_ = with_place(link_ + ": ", [&] { return visits_.watch(device_, [this] { visited(); }); });
+  if (symlink(device_.c_str(), link_.c_str()) != 0) {
+    const std::string why = reason();
+    visits_.ignore(watch_);
+    throw std::invalid_argument(link_ + ": " + why + "; name a path that can be written");
+  }
+}
+
 PtyPort::~PtyPort() {
+  descriptor_.release();  // it does not own the file descriptor
   visits_.ignore(watch_);
-  descriptor_.release();
+  if (link_target(link_) == device_) {
+    unlink(link_.c_str());
+  }
 }
 
 PortSummary PtyPort::summary() const {
-  return {"pty", pty_.link(), "pseudo-terminal " + shell_word(pty_.link()) + " (" + pty_.device() + ")"};
+  return {"pty", link_, "pseudo-terminal " + shell_word(link_) + " (" + device_ + ")"};
 }
+
+std::optional<std::uint32_t> PtyPort::baud() const { return terminal_rate(master_.get()); }
 
 void PtyPort::start(Arrivals& arrivals) {
   arrivals_ = &arrivals;
+  descriptor_.assign(master_.get());
   read();
+}
+
+/// A master has opened or closed the slave.
+void PtyPort::visited() {
+  if (!is_open_at_a_master()) {
+    end_visit();
+  } else if (arrivals_ != nullptr) {
+    let_line_go(*arrivals_);
+  }
+  read();
+}
+
+bool PtyPort::is_open_at_a_master() const {
+  pollfd master{master_.get(), 0, 0};
+  return poll(&master, 1, 0) == 0 || (master.revents & POLLHUP) == 0;
+}
+
+/// Clears CLOCAL, so that the next master can set it, and discards the bytes that no master has read, like a
+/// serial port: the next master must not receive a reply to the previous master. Does not discard them if the
+/// next master has opened the slave before this call.
+void PtyPort::end_visit() {
+  if (unread_) {
+    unread_ = false;
+    tcflush(open_slave(device_).get(), TCIFLUSH);
+  }
+  // tcsetattr() fails with EINVAL if nothing of a request takes effect. A pseudo-terminal drops parity, so a
+  // second program that asks for the settings of the first and for parity would fail. CLOCAL has no effect on
+  // a pseudo-terminal, and nearly all programs set it. Unlike tcsetattr(), this call changes nothing else,
+  // even if a master opens the slave at this moment.
+  const int off = 0;
+  ioctl(master_.get(), TIOCSSOFTCAR, &off);
+}
+
+std::size_t PtyPort::send(const std::vector<std::uint8_t>& bytes) {
+  if (!is_open_at_a_master()) {
+    return 0;
+  }
+  unread_ = true;
+  const ssize_t written = write(master_.get(), bytes.data(), bytes.size());
+  return bytes.size() - (written < 0 ? 0 : static_cast<std::size_t>(written));
 }
 
 void PtyPort::resume() {
@@ -70,7 +181,7 @@ void PtyPort::read_waiting() {
 /// master has the pseudo-terminal open, otherwise a negative number.
 ssize_t PtyPort::take() {
   visits_.take();  // a new master must be detected before the program replies to its bytes
-  const ssize_t size = ::read(pty_.master_fd(), bytes_.data(), bytes_.size());
+  const ssize_t size = ::read(master_.get(), bytes_.data(), bytes_.size());
   if (size > 0) {
     paused_ = !arrivals_->bytes(*this, {bytes_.data(), static_cast<std::size_t>(size)}, {}, nullptr);
     return size;
