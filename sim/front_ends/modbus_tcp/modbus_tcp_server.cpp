@@ -20,7 +20,8 @@ class ModbusTcpServer::Client final : public TcpServer::Client {
   Client(ModbusTcpServer& server, Socket socket)
       : TcpServer::Client(server, std::move(socket)),
         server_(server),
-        session_(server.line_, [this] { go_on(); }, server.timeout_) {}
+        session_(
+            server.line_, [this] { go_on(); }, server.timeout_) {}
 
  private:
   /// A client that does not accept its replies can send no more requests.

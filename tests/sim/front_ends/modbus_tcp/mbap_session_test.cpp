@@ -22,8 +22,7 @@ using std::chrono::seconds;
 /// A client that sends further requests before it has received all replies, and checks each reply.
 class PollingClient {
  public:
-  PollingClient(Line& line, unsigned number)
-      : random_(number), session_(line, [this] { take(); }) {}
+  PollingClient(Line& line, unsigned number) : random_(number), session_(line, [this] { take(); }) {}
 
   void ask() {
     static constexpr std::uint8_t kUnits[] = {1, 2, 9, 250};
