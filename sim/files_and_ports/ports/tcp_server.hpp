@@ -39,8 +39,6 @@ class TcpServer : public Port {
   class Client : public std::enable_shared_from_this<Client> {
    public:
     Client(TcpServer& server, Socket socket) : socket_(std::move(socket)), server_(server) {}
-    Client(const Client&) = delete;
-    Client& operator=(const Client&) = delete;
     virtual ~Client() = default;
 
     [[nodiscard]] bool connected() const { return socket_.is_open(); }
