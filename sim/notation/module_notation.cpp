@@ -97,7 +97,7 @@ ModuleSpec factory_fresh(const Model& model) {
 
 void take_module_setting(ModuleSpec& spec, const std::string& name, const std::string& place,
                          const std::string& value) {
-  for (const Setting<ModuleSpec>& setting : kModuleSettings) {
+  for (const Setting<ModuleSpec>& setting : module_settings) {
     if (setting.name == name) {
       with_place(place, [&] {
         if (setting.form != Form::List && spec.places.count(name) != 0) {
@@ -108,7 +108,7 @@ void take_module_setting(ModuleSpec& spec, const std::string& name, const std::s
       return;
     }
   }
-  fail(place + "unknown key; expected one of " + names_of(kModuleSettings));
+  fail(place + "unknown key; expected one of " + names_of(module_settings));
 }
 
 void check(const ModuleSpec& spec) {

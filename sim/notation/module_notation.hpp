@@ -16,7 +16,7 @@ ModuleSpec parse_module_spec(const std::string& text);
 
 /// Returns a module of this model with factory settings.
 ModuleSpec factory_fresh(const Model& model);
-/// Takes the value of the setting that kModuleSettings calls `name`. An error begins with `place`.
+/// Takes the value of the setting that module_settings calls `name`. An error begins with `place`.
 void take_module_setting(ModuleSpec& spec, const std::string& name, const std::string& place,
                          const std::string& value);
 /// Checks that the address is a Modbus address if the protocol is Modbus RTU.

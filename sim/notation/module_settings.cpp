@@ -50,7 +50,7 @@ Settings& given(ModuleSpec& spec) {
 
 }  // namespace
 
-const std::vector<Setting<ModuleSpec>> kModuleSettings{
+const std::vector<Setting<ModuleSpec>> module_settings{
     {"address", Form::Text, "HH", "the address in hex, as in $AA2 (default: 01)",
      [](ModuleSpec& spec, const std::string& value) { given(spec).address = parse_hex_byte(value); }},
     {"protocol", Form::Choice, "ascii|modbus", "the protocol (default: modbus for -M models, else ascii)",

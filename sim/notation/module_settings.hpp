@@ -9,6 +9,6 @@
 namespace ex9000::sim {
 
 /// `Setting::take` requires that the model of the module is set.
-extern const std::vector<Setting<ModuleSpec>> kModuleSettings;
+extern const std::vector<Setting<ModuleSpec>> module_settings;
 
 }  // namespace ex9000::sim

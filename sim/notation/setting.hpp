@@ -23,12 +23,12 @@ enum class Form : std::uint8_t {
 template <class Object>
 struct Setting {
   std::string_view name;  ///< `--NAME`, and the key in a bus file
-  Form form;
+  Form form = Form::Text;
   std::string_view
       value;  ///< stands for the value in help: a word in capitals, or the choices, separated by |
   std::string_view does;  ///< for help and documents: a verb phrase, then the default
   /// Parses and stores a value. Throws std::invalid_argument with a one-line message.
-  void (*take)(Object& object, const std::string& value);
+  void (*take)(Object& object, const std::string& value) = nullptr;
 };
 
 /// Stores a value. An error begins with `place`.

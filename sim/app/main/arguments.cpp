@@ -47,14 +47,14 @@ LineSetup line_of(const std::vector<std::string>& modules, const Options& option
   for (const std::string& module : modules) {
     line.modules.push_back(parse_module_spec(module));
   }
-  options.apply(kLineSettings, line);
+  options.apply(line_settings, line);
   return line;
 }
 
 /// Rejects everything about a line beside a bus file, which has all of it.
 void reject_beside(const std::string& bus_file, const std::vector<std::string>& modules,
                    const Options& options) {
-  for (const Setting<LineSetup>& setting : kLineSettings) {
+  for (const Setting<LineSetup>& setting : line_settings) {
     if (options.has(setting.name)) {
       fail("--" + std::string(setting.name) + ": cannot be combined with a bus file; add it to the bus file");
     }
@@ -78,7 +78,7 @@ Setup setup_of(const std::vector<std::string>& modules, const Options& options) 
   } else {
     setup.lines.push_back(line_of(modules, options));
   }
-  options.apply(kRunSettings, setup);
+  options.apply(run_settings, setup);
   complete(setup);
   return setup;
 }
@@ -94,7 +94,7 @@ CLI::App* add_play(CLI::App& app, PlayTexts& texts) {
   play->footer(help::of_play());
   play->add_option("FILE", texts.file, "the file, or a folder of such files")->required();
   play->add_option("MODULE", texts.modules, "for a scenario: the modules, or a bus file");
-  for (const Setting<Setup>& setting : kRunSettings) {
+  for (const Setting<Setup>& setting : run_settings) {
     if (is_for_play(setting)) {
       texts.options.add(*play, setting);
     }
@@ -106,8 +106,8 @@ play::Task task_of(const PlayTexts& texts) {
   play::Task task;
   task.path = texts.file;
   Setup writing;
-  texts.options.apply(kRunSettings, writing);
-  task.writing = writing;
+  texts.options.apply(run_settings, writing);
+  task.writing = static_cast<const Writing&>(writing);
   if (!texts.modules.empty()) {
     task.bus = setup_of(texts.modules, texts.options);
   }
@@ -194,14 +194,14 @@ std::string one_line(std::string text) {
 
 Parsed parse_arguments(int argc, const char* const* argv) {
   CLI::App app(kDescription, "ex9000-sim");
-  app.footer(help::kExamples);
+  app.footer(help::examples);
   app.set_help_flag("-h,--help", "print this help");
   std::vector<std::string> modules;
   Options options;
   app.add_option("MODULE", modules, "the modules on the line, or a bus file; see 'help modules'")
       ->type_name("");
-  options.add(app, kLineSettings);
-  options.add(app, kRunSettings);
+  options.add(app, line_settings);
+  options.add(app, run_settings);
   bool models = false;
   bool example = false;
   bool schema = false;

@@ -20,7 +20,7 @@ std::string of_modules() {
       << "A module is MODEL[@ADDR][,KEY=VALUE]..., for example 9052d-m@0A,edge=rising. MODEL is a name from\n"
          "--models, in upper or lower case, with or without EX. ADDR is the address in hex (default: "
          "01).\n\n";
-  for (const Setting<ModuleSpec>& setting : kModuleSettings) {
+  for (const Setting<ModuleSpec>& setting : module_settings) {
     const std::string shape = std::string(setting.name) + "=" + std::string(setting.value);
     text << "  " << std::left << std::setw(kColumn) << shape
          << (shape.size() < kColumn ? "" : "\n" + std::string(kColumn + 2, ' ')) << setting.does << "\n";
@@ -69,7 +69,7 @@ constexpr Topic kTopics[] = {{"modules", of_modules}, {"ports", of_ports},     {
 
 }  // namespace
 
-const char* const kExamples = R"(
+const char* const examples = R"(
 Examples:
   ex9000-sim EX9042D-M@01 EX9052D-M@02 --log
   ex9000-sim EX9042D-M@01,eeprom=pump.bin --port tcp:5020 --control pump.ctl

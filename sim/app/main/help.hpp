@@ -10,7 +10,7 @@ namespace ex9000::sim::help {
 constexpr std::size_t kColumn = 30;
 
 /// Printed after the options.
-extern const char* const kExamples;
+extern const char* const examples;
 /// The steps of transcripts and scenarios.
 std::string of_play();
 

@@ -29,6 +29,10 @@ bool stands_alone(const Settings& settings, const std::string& word, const std::
   return false;
 }
 
+[[noreturn]] void value_missing(const CLI::Option& option, const std::string& word, const std::string& next) {
+  fail(word + ": the value is missing before " + next + "; expected " + word + " " + option.get_type_name());
+}
+
 }  // namespace
 
 std::string Options::shape_of(Form form, std::string_view value) {
@@ -47,8 +51,8 @@ std::vector<std::string> complete_words(const CLI::App& app, int argc, const cha
     const std::string word = argv[i];
     const std::string next = i + 1 < argc ? argv[i + 1] : "";
     bool takes_next = false;
-    if (stands_alone(kRunSettings, word, next, Setup(), takes_next) ||
-        stands_alone(kLineSettings, word, next, LineSetup(), takes_next)) {
+    if (stands_alone(run_settings, word, next, Setup(), takes_next) ||
+        stands_alone(line_settings, word, next, LineSetup(), takes_next)) {
       words.back() += "=" + (takes_next ? next : "on");
       i += takes_next ? 1 : 0;
       continue;
@@ -56,8 +60,7 @@ std::vector<std::string> complete_words(const CLI::App& app, int argc, const cha
     for (const CLI::App* each : apps) {
       const CLI::Option* option = word.rfind("--", 0) == 0 ? each->get_option_no_throw(word) : nullptr;
       if (option != nullptr && option->get_items_expected_min() > 0 && next.rfind("--", 0) == 0) {
-        fail(word + ": the value is missing before " + next.substr(0, next.find('=')) + "; expected " + word +
-             " " + option->get_type_name());
+        value_missing(*option, word, next.substr(0, next.find('=')));
       }
     }
   }

@@ -186,7 +186,7 @@ Run parse_frame(const std::string& text) {
     }
     std::string rest = text.substr(lead.size());
     if (!rest.empty() && rest[0] != ' ' && rest[0] != '\t') {
-      fail("'" + text + "': expected a blank after " + lead);
+      fail(std::string("'").append(text).append("': expected a blank after ").append(lead));
     }
     rest.erase(0, 1);
     if (lead == "<=") {

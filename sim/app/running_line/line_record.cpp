@@ -49,7 +49,7 @@ void LineRecord::hear_modules() {
   const StationNames names = stations_of(line_);
   for (std::size_t i = 0; i < line_.size(); ++i) {
     line_.module(i).tell(
-        [this, name = names.of(i + 1)](const std::string& text) { event(name + ": " + text); });
+        [this, place = names.of(i + 1) + ": "](const std::string& text) { event(place + text); });
   }
 }
 

@@ -89,7 +89,7 @@ Control::Reply RunningProgram::carry_out(const std::string& command) {
   for (const auto& running : lines_) {
     running->pacer().reach_present();
   }
-  const Control::Reply reply = control_->carry_out(command);
+  Control::Reply reply = control_->carry_out(command);
   for (const auto& running : lines_) {
     running->pacer().follow();
   }

@@ -28,7 +28,7 @@ class BusFileReader {
   [[nodiscard]] Setup bus(const Node& root) const {
     Setup setup;
     setup.file = path_;
-    read(root, kRunSettings, setup, "lines",
+    read(root, run_settings, setup, "lines",
          [&](const Node& line) { setup.lines.push_back(read_line(line)); });
     if (setup.lines.empty()) {
       refuse(root, "lines: a bus file requires at least one line; 'ex9000-sim --example' prints an example");
@@ -40,7 +40,7 @@ class BusFileReader {
   [[nodiscard]] LineSetup read_line(const Node& node) const {
     LineSetup line;
     line.places["port"] = place(node) + "port: ";  // for a pseudo-terminal that the file does not name
-    read(node, kLineSettings, line, "modules",
+    read(node, line_settings, line, "modules",
          [&](const Node& module) { line.modules.push_back(read_module(module)); });
     if (line.modules.empty()) {
       refuse(node, "modules: a line requires at least one module, for example EX9042D-M@01");
@@ -57,7 +57,7 @@ class BusFileReader {
       module =
           with_place(place(model) + "model: ", [&] { return factory_fresh(model_called(text_of(model))); });
     };
-    read(node, kModuleSettings, module, "model", take_model);
+    read(node, module_settings, module, "model", take_model);
     if (module.model == nullptr) {
       refuse(node, "model: is missing; expected a model's name, for example EX9042D-M");
     }

@@ -65,12 +65,12 @@ Json list_of(const char* what, const char* description) {
 std::string bus_file_schema() {
   Json schema{{"$schema", "https://json-schema.org/draft/2020-12/schema"},
               {"title", "A bus file of ex9000-sim"}};
-  schema.update(object_of(kRunSettings, "lines", list_of("line", "the lines")));
+  schema.update(object_of(run_settings, "lines", list_of("line", "the lines")));
   const Json module =
-      object_of(kModuleSettings, "model",
+      object_of(module_settings, "model",
                 {{"type", "string"}, {"description", "the model, as --models lists it; EX may be left out"}});
   schema["$defs"] = {
-      {"line", object_of(kLineSettings, "modules", list_of("module", "the modules"))},
+      {"line", object_of(line_settings, "modules", list_of("module", "the modules"))},
       {"module",
        {{"anyOf", {{{"type", "string"}, {"description", "MODEL[@ADDR][,KEY=VALUE]..."}}, module}}}}};
   constexpr int kIndent = 2;

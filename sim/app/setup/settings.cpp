@@ -69,7 +69,7 @@ std::string parse_line_name(const std::string& text) {
 
 }  // namespace
 
-const std::vector<Setting<Setup>> kRunSettings{
+const std::vector<Setting<Setup>> run_settings{
     {"log", Form::Optional, "text|json|off", "print each frame and event as a line of text, or as JSON",
      [](Setup& setup, const std::string& value) { setup.log = parse_log(value); }},
     {"capture", Form::Text, "FILE", "write the frames to this pcapng file for Wireshark, which it overwrites",
@@ -88,7 +88,7 @@ const std::vector<Setting<Setup>> kRunSettings{
      }},
 };
 
-const std::vector<Setting<LineSetup>> kLineSettings{
+const std::vector<Setting<LineSetup>> line_settings{
     {"port", Form::List, "PORT", "add a port for masters, for example tcp:5020; see 'help ports'",
      [](LineSetup& line, const std::string& value) {
        line.ports.push_back(parse_port(value));

@@ -75,8 +75,8 @@ struct Setup : Writing {
 
 /// The settings of a run and of a line. The command line has all of them as options; a bus file has those of
 /// a line in each object of `lines`.
-extern const std::vector<Setting<Setup>> kRunSettings;
-extern const std::vector<Setting<LineSetup>> kLineSettings;
+extern const std::vector<Setting<Setup>> run_settings;
+extern const std::vector<Setting<LineSetup>> line_settings;
 
 /// Gives a line without ports a pseudo-terminal, and the lines of a bus file names; then checks values
 /// against each other. Throws std::invalid_argument with a one-line message if they cannot be combined, if a

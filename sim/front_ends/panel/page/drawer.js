@@ -4,8 +4,8 @@
 
 import {bit, hexByte, make, setAttribute, setText} from "/element.js";
 
-/// Returns [name, textOf] of each row in the list of settings. `textOf(settings, plate, hostWatchdog)` returns the text of the
-/// row. `inputs` contains the label of each input.
+/// Returns [name, textOf] of each row in the list of settings. `textOf(settings, plate, hostWatchdog)` returns the text
+/// of the row. `inputs` contains the label of each input.
 function settingRows(inputs) {
   const listed = (labels) => labels.filter(Boolean).join(", ") || "none";
   const rowsOfInputs = [

@@ -143,7 +143,8 @@ export class Plate {
       text = `${(left / 1e6).toFixed(1)} s of ${(total / 1e6).toFixed(1)} s`;
     }
     setText(this.hostWatchdog.value, text);
-    setAttribute(this.hostWatchdog.box, "data-state", hostWatchdog.timedOut ? "expired" : hostWatchdog.enabled ? "runs" : "off");
+    const state = hostWatchdog.timedOut ? "expired" : hostWatchdog.enabled ? "runs" : "off";
+    setAttribute(this.hostWatchdog.box, "data-state", state);
     const share = hostWatchdog.enabled && total ? Math.round(100 * left / total) : 0;
     if (share !== this.share) {
       this.share = share;

@@ -335,7 +335,7 @@ TEST(BusFile, OptionsOfTheRunOverrideItsKeysAndOptionsOfALineAreRefused) {
   EXPECT_EQ(with.setup->seed, 9U);
   EXPECT_TRUE(with.setup->log);
   EXPECT_FALSE(with.setup->panel);
-  for (const Setting<LineSetup>& setting : kLineSettings) {
+  for (const Setting<LineSetup>& setting : line_settings) {
     const std::string option = "--" + std::string(setting.name);
     EXPECT_EQ(file.error({option + "=1"}),
               option + ": cannot be combined with a bus file; add it to the bus file\n");
