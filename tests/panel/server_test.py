@@ -257,7 +257,7 @@ class Start(unittest.TestCase):
         self.assertEqual(second.returncode, 1)
         self.assertEqual(
             second.stderr,
-            f"ex9000-sim: --panel {first.port}: the port is in use; name another port, or end the program that uses "
+            f"ex9000-sim: --panel: {first.port}: the port is in use; name another port, or end the program that uses "
             "it\n",
         )
         usual = [Simulator("EX9042D", "--port", "tcp:0", panel=None) for _ in range(2)]
