@@ -69,8 +69,7 @@ TEST_P(ScriptMaster, GetsEveryExpectedReplyOverModbusTcp) {
   std::vector<std::string> arguments = modules("115200");
   arguments.insert(arguments.end(), {"--port", "modbus-tcp:0"});
   SimulatorProcess simulator(arguments);
-  expect_to_pass(
-      {"--port", "modbus-tcp:127.0.0.1:" + std::to_string(simulator.tcp_port()), "--baud", "115200"});
+  expect_to_pass({"--modbus-tcp", "127.0.0.1:" + std::to_string(simulator.tcp_port()), "--baud", "115200"});
 }
 
 TEST_P(ScriptMaster, GetsEveryExpectedReplyOnAnInstantLine) {

@@ -10,6 +10,7 @@
 #include "sim/app/main/help.hpp"
 #include "sim/app/main/options.hpp"
 #include "sim/app/setup/bus_file.hpp"
+#include "sim/app/setup/schema.hpp"
 #include "sim/notation/module_notation.hpp"
 #include "sim/text/fail.hpp"
 

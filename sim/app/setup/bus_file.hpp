@@ -20,7 +20,5 @@ Setup parse_bus_file(const std::string& path, const std::string& text);
 
 /// Returns app/setup/example.yaml.
 std::string example_bus_file();
-/// Returns the JSON Schema of bus files.
-std::string bus_file_schema();
 
 }  // namespace ex9000::sim

@@ -1,7 +1,9 @@
+#include "sim/app/setup/schema.hpp"
+
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "sim/app/setup/bus_file.hpp"
+#include "sim/app/setup/setup.hpp"
 #include "sim/notation/module_settings.hpp"
 
 namespace ex9000::sim {

@@ -12,7 +12,7 @@ from bill_of_materials import COMPONENTS, bill_of_materials
 
 VERSIONS = {component.package: "1.0+x-1" for component in COMPONENTS}
 # The first folder of an included path, and the component to which this folder belongs.
-FOLDERS = {"boost": "Boost", "CLI": "CLI11", "nlohmann": "nlohmann-json"}
+FOLDERS = {"boost": "Boost", "CLI": "CLI11", "nlohmann": "nlohmann-json", "yaml-cpp": "yaml-cpp"}
 SYSTEM = {"sys", "netinet", "asm", "linux", "arpa"}  # folders of the C library and of the kernel
 
 

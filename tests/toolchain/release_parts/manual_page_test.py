@@ -40,7 +40,7 @@ class ManualPage(unittest.TestCase):
         shown = re.sub(".\b", "", done.stdout)  # bold: `x`, backspace, `x`; underlined: `_`, backspace, `x`
         only_in_help = {"-h,--help", "[MODULE...]", "[SUBCOMMAND]", "REQUIRED", "TEXT", "Usage:"}
         only_in_help |= {"Positionals:", "Options:", "Subcommands:", "Examples:"}
-        missing = {word for word in printed("--help").split() if word not in shown}
+        missing = {word for word in printed("--help").split() if word.lower() not in shown.lower()}
         self.assertEqual(missing - only_in_help, set())
 
 

@@ -11,6 +11,8 @@
 #include <vector>
 
 #include "sim/app/main/arguments.hpp"
+#include "sim/app/setup/schema.hpp"
+#include "sim/notation/module_settings.hpp"
 #include "tests/support/directory.hpp"
 #include "tests/support/refusal.hpp"
 
@@ -342,6 +344,16 @@ TEST(BusFile, OptionsOfTheRunOverrideItsKeysAndOptionsOfALineAreRefused) {
   }
   for (const std::string& other : {std::string("EX9042D"), file.path()}) {
     EXPECT_EQ(file.error({other}), ": a bus file has all modules; leave out the other arguments\n");
+  }
+}
+
+TEST(BusFile, TheSchemaHasEachKeyOfALineAndOfAModule) {
+  const std::string schema = bus_file_schema();
+  for (const Setting<LineSetup>& setting : line_settings) {
+    EXPECT_NE(schema.find("\"" + std::string(setting.name) + "\": {"), std::string::npos) << setting.name;
+  }
+  for (const Setting<ModuleSpec>& setting : module_settings) {
+    EXPECT_NE(schema.find("\"" + std::string(setting.name) + "\": {"), std::string::npos) << setting.name;
   }
 }
 
