@@ -168,10 +168,10 @@ PROCESS = set(
 )
 # The sources in PROCESS that only the whole program links.
 WHOLE = {"main", "panel_server", "program", "running_program"}
-# The generated source with the templates of the exports, and the header that declares its function. The preset
-# host-debug must have been built.
-TEMPLATES = "build/host-debug/sim/export_templates.cpp"
-HEADER_OF = {TEMPLATES: "sim/text/embedded_files"}
+# The generated sources with files of the tree, and the header that declares their functions. The preset host-debug must
+# have been built.
+EMBEDDED = {name: f"build/host-debug/sim/{name}.cpp" for name in ("export_templates", "bus_file_examples")}
+HEADER_OF = {source: "sim/text/embedded_files" for source in EMBEDDED.values()}
 # Sources that are compiled separately, because they take long to compile and few tests reach them. sim/CMakeLists.txt
 # lists more such sources after ON_THEIR_OWN.
 ALONE = {"line_record", "play_record"}
@@ -203,7 +203,8 @@ def folders():
         units += [Unit(f"{name}-{stem_of(each)}", (f"sim/{folder}/{each}",)) for each in alone]
         libraries = tuple(re.findall(r"ex9000_(\w+)", parts.get("PUBLIC", "")))
         found[name] = Folder(tuple(units), libraries)
-    found["export_templates"] = Folder((Unit("export_templates", (TEMPLATES,)),), ())
+    for name, source in EMBEDDED.items():
+        found[name] = Folder((Unit(name, (source,)),), ())
     return found
 
 

@@ -13,6 +13,7 @@ from programs import ROOT
 
 BUILD = ROOT / "build/mutation"
 COMPILE = ["clang++", "-std=c++17", "-w", "-fno-ident"]
+LINKED = ["-lgtest", "-lgtest_main", "-l:libyaml-cpp.a", "-pthread"]
 MOST_MEMORY = 4 << 30  # limit in bytes; a program that exceeds it fails
 
 
@@ -109,7 +110,7 @@ class Workshop:
             members = place.with_suffix(".map")
             command = ["clang++", *tests, f"-Wl,-Map={members}", "-Wl,--start-group", *archives, "-Wl,--end-group"]
             linked = subprocess.run(
-                [*map(str, command), "-o", str(place), "-lgtest", "-lgtest_main", "-pthread", *program.options],
+                [*map(str, command), "-o", str(place), *LINKED, *program.options],
                 cwd=ROOT,
                 capture_output=True,
                 check=False,
@@ -208,7 +209,7 @@ class Bench:
         objects = [self.object_of(unit) for unit in self.workshop.program(program)]
         for image in program.images:
             self.make(image)
-        command = ["clang++", *objects, "-o", place, "-lgtest", "-lgtest_main", "-pthread", *program.options]
+        command = ["clang++", *objects, "-o", place, *LINKED, *program.options]
         if not run(command):
             raise SystemExit(f"mutate: {program.name} does not link with {self.file}")
         return self.workshop.passes(program, place, self.folder)
