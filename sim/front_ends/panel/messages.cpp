@@ -1,110 +1,12 @@
 #include "sim/front_ends/panel/messages.hpp"
 
-#include <chrono>
 #include <utility>
 
 #include "sim/line_monitor/frames/frame_errors.hpp"
 #include "sim/line_monitor/frames/frame_meaning.hpp"
-#include "sim/line_monitor/module_view/terminals.hpp"
 #include "sim/text/values.hpp"
 
 namespace ex9000::sim {
-
-namespace {
-
-std::int64_t microseconds(VirtualTime time) {
-  return std::chrono::duration_cast<std::chrono::microseconds>(time).count();
-}
-
-std::string_view protocol_text(Protocol protocol) { return protocol == Protocol::Ascii ? "ascii" : "modbus"; }
-
-Message message_of(const Settings& settings) {
-  Message filters = Message::array();
-  for (unsigned channel = 0; channel < kMaxInputs; ++channel) {
-    filters.push_back(settings.input_filters.of(channel));
-  }
-  return {{"address", settings.address},
-          {"baud", baud_rate(settings.baud_code)},
-          {"format", line_format_text(line_format(settings.baud_code))},
-          {"protocol", protocol_text(settings.protocol)},
-          {"checksum", (settings.format & kFormatChecksum) != 0},
-          {"edge", (settings.format & kFormatRisingEdge) != 0 ? "rising" : "falling"},
-          {"name", name_text(settings)},
-          {"powerOn", settings.power_on_value},
-          {"safe", settings.safe_value},
-          {"watchdog", settings.watchdog_enabled},
-          {"timeout", settings.watchdog_timeout},
-          {"timedOut", settings.timeout_status},
-          {"responseDelay", settings.response_delay},
-          {"fedByRequests", settings.fed_by_requests},
-          {"inverted", settings.inverted_inputs},
-          {"filters", filters}};
-}
-
-}  // namespace
-
-Message plate_layout(const Model& model) {
-  Message inputs = Message::array();
-  for (unsigned channel = 0; channel < model.inputs; ++channel) {
-    inputs.push_back(input_terminal(channel));
-  }
-  Message outputs = Message::array();
-  for (unsigned channel = 0; channel < model.outputs; ++channel) {
-    outputs.push_back(output_terminal(model, channel));
-  }
-  return {{"model", model.designation},
-          {"inputs", std::move(inputs)},
-          {"outputs", std::move(outputs)},
-          {"initTerminal", has_init_terminal(model)}};
-}
-
-Message message_of(const Plate& plate) {
-  Message message{{"switch", plate.switched_on},
-                  {"powered", plate.powered},
-                  {"init", plate.init},
-                  {"listening", plate.listening}};
-  if (plate.listening) {
-    message["initMode"] = plate.init_mode;
-    message["address"] = plate.address;
-    message["baud"] = plate.mode.baud;
-    message["format"] = line_format_text(plate.mode.format);
-    message["protocol"] = protocol_text(plate.protocol);
-    message["checksum"] = plate.checksum;
-  }
-  message["led"] = led_text(plate.led);
-  message["outputs"] = plate.outputs;
-  message["inputs"] = plate.inputs;
-  message["timers"] = plate.timers;
-  message["resets"] = plate.watchdog_resets;
-  return message;
-}
-
-Message message_of(const InputRecords& records, unsigned inputs) {
-  const auto counters = records.counters.begin();
-  return {{"high", records.latched_high},
-          {"low", records.latched_low},
-          {"counters", std::vector<std::uint32_t>(counters, counters + inputs)}};
-}
-
-Message message_of(const HostWatchdogState& host_watchdog) {
-  return {{"enabled", host_watchdog.enabled},
-          {"timedOut", host_watchdog.timed_out},
-          {"timeout", host_watchdog.timeout},
-          {"expires", host_watchdog.expires ? Message(microseconds(*host_watchdog.expires)) : Message()},
-          {"resetStatus", host_watchdog.reset_status}};
-}
-
-Message message_of(const Stored& stored) {
-  Message copies = Message::array();
-  for (const Stored::Copy& copy : stored.copies) {
-    copies.push_back(
-        {{"bytes", hex_text(copy.bytes)}, {"sequence", copy.sequence ? Message(*copy.sequence) : Message()}});
-  }
-  return {{"copies", std::move(copies)},
-          {"current", stored.current ? Message(*stored.current) : Message()},
-          {"blank", stored.blank},
-          {"settings", message_of(stored.settings)}};
-}
 
 Message message_of(const std::vector<Faults::Info>& faults, std::size_t first) {
   Message message = Message::array();

@@ -1,6 +1,7 @@
 // The JSON messages between the program and the page in sim/front_ends/panel/page.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -8,22 +9,15 @@
 #include <vector>
 
 #include "sim/front_ends/panel/recent_traffic.hpp"
-#include "sim/line_monitor/module_view/face.hpp"
 #include "sim/virtual_line/faults/faults.hpp"
 
 namespace ex9000::sim {
 
 using Message = nlohmann::ordered_json;
 
-/// Returns the constant data that the page requires to draw a module's plate.
-Message plate_layout(const Model& model);
-
-// Each part of a module's Face is a separate Message, because the parts change independently.
-Message message_of(const Plate& plate);
-/// Returns a message that contains the latches and the first `inputs` counters.
-Message message_of(const InputRecords& records, unsigned inputs);
-Message message_of(const HostWatchdogState& host_watchdog);
-Message message_of(const Stored& stored);
+inline std::int64_t microseconds(VirtualTime time) {
+  return std::chrono::duration_cast<std::chrono::microseconds>(time).count();
+}
 
 /// Returns the list of a line's faults. `first` is the position of the line's first module across all lines,
 /// from 0.

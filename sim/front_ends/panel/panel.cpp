@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <map>
 #include <optional>
 #include <random>
 #include <set>
@@ -10,11 +11,10 @@
 #include <utility>
 
 #include "firmware/model/model.hpp"
-#include "sim/front_ends/panel/change_tracked.hpp"
 #include "sim/front_ends/panel/console.hpp"
+#include "sim/front_ends/panel/face.hpp"
 #include "sim/front_ends/panel/messages.hpp"
 #include "sim/front_ends/panel/recent_traffic.hpp"
-#include "sim/line_monitor/module_view/face.hpp"
 #include "sim/notation/fault_notation.hpp"
 #include "sim/text/values.hpp"
 #include "sim/text/words.hpp"
@@ -51,19 +51,25 @@ std::string random_id() {
   return id;
 }
 
-}  // namespace
+/// A part of the state, and the number of the look at which it last changed. A look captures the present
+/// state for all viewers.
+struct Tracked {
+  Message value;
+  std::uint64_t changed = 0;  ///< 0: there is no value yet
 
-bool operator==(const Faults::Info& a, const Faults::Info& b) {
-  return a.number == b.number && a.text == b.text && a.module == b.module && a.in_progress == b.in_progress &&
-         a.occurrences_so_far == b.occurrences_so_far;
-}
+  void set(Message present, std::uint64_t look) {
+    if (changed == 0 || value != present) {
+      value = std::move(present);
+      changed = look;
+    }
+  }
+};
+
+}  // namespace
 
 struct Panel::Module {
   const SimulatedModule* module = nullptr;
-  ChangeTracked<Plate> plate;
-  ChangeTracked<InputRecords> records;
-  ChangeTracked<HostWatchdogState> host_watchdog;
-  ChangeTracked<Stored> stored;
+  std::map<std::string, Tracked> face;  ///< the parts of `face_of`
 };
 
 struct Panel::Watched {
@@ -74,20 +80,20 @@ struct Panel::Watched {
   std::size_t first_module = 0;  ///< position across all lines, from 0
   std::vector<Module> modules;
   RecentTraffic recent;
-  ChangeTracked<std::vector<Faults::Info>> faults;
+  Tracked faults;
 
   /// Captures the present state. `look` is the number of this look.
   void capture(std::uint64_t look) {
     now = present();
     for (Module& module : modules) {
-      const Face face = face_of(*module.module, line->clock().virtual_now());
-      module.plate.set(face.plate, look);
-      module.records.set(face.records, look);
-      module.host_watchdog.set(face.host_watchdog, look);
-      module.stored.set(face.stored, look);
+      const Message face = face_of(*module.module, line->clock().virtual_now());
+      for (const auto& [key, part] : face.items()) {
+        module.face[key].set(part, look);
+      }
     }
     const Faults* so_far = line->faults_so_far();
-    faults.set(so_far == nullptr ? std::vector<Faults::Info>() : so_far->list(), look);
+    faults.set(message_of(so_far == nullptr ? std::vector<Faults::Info>() : so_far->list(), first_module),
+               look);
   }
 };
 
@@ -229,27 +235,25 @@ class Panel::Viewer final : public PanelViewer {
             {"usualFaults", usual_faults()}, {"lines", std::move(lines)}, {"modules", std::move(modules)}};
   }
 
-  /// Adds `part` to the message if it has changed. `more`: see message_of.
-  template <class Value, class... More>
-  void add(Message& message, const char* key, const ChangeTracked<Value>& part, More... more) const {
-    if (const Value* news = part.news_since(sent_look_)) {
-      message[key] = message_of(*news, more...);
+  /// Adds `part` to the message if it has changed.
+  void add(Message& message, const std::string& key, const Tracked& part) const {
+    if (part.changed > sent_look_) {
+      message[key] = part.value;
     }
   }
 
   [[nodiscard]] Message news_of(const Module& module) const {
     Message message;
-    add(message, "plate", module.plate);
-    add(message, "records", module.records, module.module->model().inputs);
-    add(message, "hostWatchdog", module.host_watchdog);
-    add(message, "stored", module.stored);
+    for (const auto& [key, part] : module.face) {
+      add(message, key, part);
+    }
     return message;
   }
 
   [[nodiscard]] Message news_of(const Watched& watched) const {
     Message message;
-    message["now"] = std::chrono::duration_cast<std::chrono::microseconds>(watched.now).count();
-    add(message, "faults", watched.faults, watched.first_module);
+    message["now"] = microseconds(watched.now);
+    add(message, "faults", watched.faults);
     return message;
   }
 
