@@ -1,6 +1,8 @@
 #include "sim/notation/actions.hpp"
 
+#include <algorithm>
 #include <iomanip>
+#include <iterator>
 #include <limits>
 #include <sstream>
 #include <string_view>
@@ -24,7 +26,7 @@ struct Place {
   [[nodiscard]] SimulatedModule& module() const { return in_use.line.module(index); }
   [[nodiscard]] SimulatedModule& powered_module() const {
     if (!module().powered()) {
-      fail("the module has no power; use 'power on', or end the fault that switches the supply off");
+      throw NotNow("the module has no power; use 'power on', or end the fault that switches the supply off");
     }
     return module();
   }
@@ -93,7 +95,7 @@ std::string end_fault(Line& line, const std::string& which) {
   } else if (!fault) {
     fail("expected fault off K|all");
   } else if (!line.faults().remove(*fault)) {
-    fail("no fault " + which + " on this line; 'faults' lists the faults");
+    throw NotNow("no fault " + which + " on this line");
   }
   return "";
 }
@@ -283,12 +285,8 @@ std::string on_line(const LinesInUse& lines, const Words& words) {
 bool is_number(const std::string& word) { return word.find_first_not_of("0123456789") == std::string::npos; }
 
 bool is_of_a_line(const std::string& word) {
-  for (const Action& action : kLineActions) {
-    if (action.name == word) {
-      return true;
-    }
-  }
-  return word == "line";
+  const auto is_it = [&](const Action& action) { return action.name == word; };
+  return word == "line" || std::any_of(std::begin(kLineActions), std::end(kLineActions), is_it);
 }
 
 }  // namespace
@@ -299,6 +297,12 @@ std::string act(const LinesInUse& lines, const Words& words) {
          joined(action_shapes(), ", "));
   }
   return is_number(words[0]) ? on_module(lines, words) : on_line(lines, words);
+}
+
+bool only_reads(const std::string& name) {
+  const auto reads = [&](const Action& action) { return action.name == name && !action.changes; };
+  return std::any_of(std::begin(kModuleActions), std::end(kModuleActions), reads) ||
+         std::any_of(std::begin(kLineActions), std::end(kLineActions), reads);
 }
 
 Pulses parse_pulses(const Words& args) {

@@ -25,8 +25,11 @@ using LinesInUse = std::vector<LineInUse>;
 
 /// Carries out `N ACTION` on module N, counted from 1 across all lines, `line NAME ACTION`, or `ACTION` on
 /// the only line. Returns the result; empty if there is none. Throws std::invalid_argument with a one-line
-/// message, and has changed nothing then.
+/// message, NotNow if the action is possible at another time, and has changed nothing then.
 std::string act(const LinesInUse& lines, const Words& words);
+
+/// Whether this is the name of an action that changes nothing.
+bool only_reads(const std::string& name);
 
 /// Parses `C [xCOUNT]`: a channel of the model, and up to a million pulses (default 1), for which the program
 /// needs tens of milliseconds.

@@ -119,8 +119,8 @@ void read_when(Reader& reader, const std::string& word, Schedule& schedule) {
     schedule.probability = parse_probability(reader.next("a number after 'with probability'"));
   } else if (word == "after") {
     schedule.when = When::AfterWrites;
-    schedule.count = parse_whole_number(reader.next("a count after 'after'"), 1,
-                                        std::numeric_limits<std::uint64_t>::max());
+    constexpr std::uint64_t kMostWrites = 999'999'999;
+    schedule.count = parse_whole_number(reader.next("a count after 'after'"), 1, kMostWrites);
     reader.expect(schedule.count == 1 ? "write" : "writes");
   } else {
     fail("'" + word +

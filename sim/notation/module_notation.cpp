@@ -4,7 +4,6 @@
 #include <cctype>
 #include <iterator>
 #include <numeric>
-#include <sstream>
 #include <string_view>
 #include <utility>
 
@@ -120,24 +119,24 @@ void check(const ModuleSpec& spec) {
 
 ModuleSpec parse_module_spec(const std::string& text) {
   return with_place((text.empty() ? "an empty argument" : text) + ": ", [&] {
-    std::istringstream parts(text);
-    std::string name;
-    std::getline(parts, name, ',');
+    const Words parts = parts_of(text, ',');
+    const std::string& name = parts[0];
     const auto at = name.find('@');
     ModuleSpec spec = factory_fresh(model_called(name.substr(0, at)));
     if (at != std::string::npos) {
       take_module_setting(spec, "address", "address: ", name.substr(at + 1));
     }
-    for (std::string option; std::getline(parts, option, ',');) {
-      const auto equals = option.find('=');
-      const std::string key = option.substr(0, equals);
+    for (auto option = parts.begin() + 1; option != parts.end(); ++option) {
+      if (option->empty()) {
+        fail("nothing follows a comma; leave the comma out, or add KEY=VALUE");
+      }
+      const auto equals = option->find('=');
+      const std::string key = option->substr(0, equals);
       take_module_setting(spec, key,
-                          key + "=: ", equals == std::string::npos ? "" : option.substr(equals + 1));
-    }
-    if (text.back() == ',') {
-      fail("ends with a comma; leave it out, or add KEY=VALUE");
+                          key + "=: ", equals == std::string::npos ? "" : option->substr(equals + 1));
     }
     check(spec);
+    prefix_places(spec.places, text + ": ");
     return spec;
   });
 }

@@ -9,6 +9,11 @@ namespace ex9000::sim {
 
 [[noreturn]] inline void fail(const std::string& what) { throw std::invalid_argument(what); }
 
+/// An action that is right, but not possible in the present state of a line or a module.
+struct NotNow : std::invalid_argument {
+  using std::invalid_argument::invalid_argument;
+};
+
 /// Throws an error that may be over at the next start of the program, although nothing in its configuration
 /// has changed: a port or a file that another program uses, an address or a device that is not there yet.
 [[noreturn]] inline void unavailable(const std::string& what) { throw std::runtime_error(what); }

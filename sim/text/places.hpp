@@ -12,6 +12,13 @@ namespace ex9000::sim {
 /// `bus.yaml:2: baud: `.
 using Places = std::map<std::string, std::string, std::less<>>;
 
+/// Puts `where` before each place.
+inline void prefix_places(Places& places, const std::string& where) {
+  for (auto& [name, place] : places) {
+    place.insert(0, where);
+  }
+}
+
 /// The place of a setting; if it is not given, the option that would give it.
 inline std::string place_of(const Places& places, std::string_view name) {
   const auto place = places.find(name);

@@ -62,9 +62,7 @@ std::optional<std::uint64_t> whole_number(const std::string& text, std::uint64_t
 std::uint64_t parse_whole_number(const std::string& text, std::uint64_t least, std::uint64_t most) {
   const auto value = whole_number(text, most);
   if (!value || *value < least) {
-    const bool bounded = most != std::numeric_limits<std::uint64_t>::max();
-    expect(text, bounded ? "a whole number from " + std::to_string(least) + " to " + std::to_string(most)
-                         : "a whole number of at least " + std::to_string(least));
+    expect(text, "a whole number from " + std::to_string(least) + " to " + std::to_string(most));
   }
   return *value;
 }
@@ -83,13 +81,7 @@ double parse_probability(const std::string& text) {
 }
 
 LineFormat parse_line_format(const std::string& text) {
-  std::string upper = text;
-  for (char& character : upper) {
-    character = character == 'n' || character == 'e' || character == 'o'
-                    ? static_cast<char>(character - 'a' + 'A')
-                    : character;
-  }
-  const auto* const found = std::find(kLineFormats.begin(), kLineFormats.end(), upper);
+  const auto* const found = std::find(kLineFormats.begin(), kLineFormats.end(), text);
   if (found == kLineFormats.end()) {
     expect(text, "a line format: 8N1, 8N2, 8E1 or 8O1");
   }

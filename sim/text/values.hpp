@@ -17,6 +17,7 @@ namespace ex9000::sim {
 // `'maybe': expected on or off`.
 
 bool parse_on_off(const std::string& text);
+inline std::string on_off_text(bool on) { return on ? "on" : "off"; }
 /// Parses one of two words; returns true for `yes`.
 bool parse_choice(const std::string& text, std::string_view yes, std::string_view no);
 /// Parses decimal digits; the value must be from `least` to `most`.
@@ -26,7 +27,7 @@ std::uint64_t parse_whole_number(const std::string& text, std::uint64_t least, s
 std::optional<double> decimal_number(const std::string& text, double least, double most);
 /// Parses a number above 0 and up to 1.
 double parse_probability(const std::string& text);
-/// Parses 8N1, 8N2, 8E1 or 8O1, in upper or lower case.
+/// Parses 8N1, 8N2, 8E1 or 8O1.
 LineFormat parse_line_format(const std::string& text);
 /// Returns the name that `parse_line_format` reads.
 std::string line_format_text(LineFormat format);

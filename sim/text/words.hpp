@@ -20,6 +20,19 @@ inline Words words_of(const std::string& text) {
   return words;
 }
 
+/// The parts of `text` between separators, at least one; they may be empty.
+inline Words parts_of(const std::string& text, char separator) {
+  Words parts(1);
+  for (const char character : text) {
+    if (character == separator) {
+      parts.emplace_back();
+    } else {
+      parts.back() += character;
+    }
+  }
+  return parts;
+}
+
 /// Returns the words with `separator` between them.
 inline std::string joined(const Words& words, std::string_view separator = " ") {
   std::string text;

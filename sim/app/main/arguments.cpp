@@ -31,6 +31,8 @@ std::string list_models() {
   return text;
 }
 
+std::string version_line() { return "ex9000-sim " + std::string(kFirmwareVersion) + "\n"; }
+
 Parsed wrong(const std::string& what) {
   Parsed parsed;
   parsed.error = "ex9000-sim: " + one_line(what) + "\n";
@@ -188,14 +190,14 @@ void reject_other_arguments(const std::string& printing, const CLI::App& app) {
 }  // namespace
 
 std::string one_line(std::string text) {
-  std::replace(text.begin(), text.end(), '\n', ' ');
+  std::replace_if(
+      text.begin(), text.end(), [](unsigned char character) { return std::iscntrl(character) != 0; }, ' ');
   text.erase(text.find_last_not_of(' ') + 1);
   return text;
 }
 
 Parsed parse_arguments(int argc, const char* const* argv) {
   CLI::App app(kDescription, "ex9000-sim");
-  app.footer(help::examples);
   app.set_help_flag("-h,--help", "print this help");
   std::vector<std::string> modules;
   Options options;
@@ -206,9 +208,11 @@ Parsed parse_arguments(int argc, const char* const* argv) {
   bool models = false;
   bool example = false;
   bool schema = false;
+  bool version = false;
   app.add_flag("--models", models, "list the models");
   app.add_flag("--example", example, "print an example of a bus file");
   app.add_flag("--schema", schema, "print the JSON Schema of bus files");
+  app.add_flag("--version", version, "print the version");
   app.require_subcommand(0, 1);  // with the limit 1, `play describe` plays the file `describe`
   PlayTexts play_texts;
   const CLI::App* const playing = add_play(app, play_texts);
@@ -216,8 +220,8 @@ Parsed parse_arguments(int argc, const char* const* argv) {
   const CLI::App* const describing = add_describe(app, describe_texts);
   std::string topic;
   CLI::App* const helping = app.add_subcommand("help", "explain a notation: " + help::topics());
-  helping->add_option("TOPIC", topic, help::topics())->required();
-  app.set_version_flag("--version", "ex9000-sim " + std::string(kFirmwareVersion), "print the version");
+  helping->add_option("TOPIC", topic, help::topics());
+  app.footer(help::examples);  // after the subcommands, which would inherit it
   app.get_formatter()->column_width(help::kColumn);
   try {
     std::vector<std::string> words = complete_words(app, argc, argv);
@@ -225,9 +229,7 @@ Parsed parse_arguments(int argc, const char* const* argv) {
     app.parse(words);
   } catch (const CLI::CallForHelp&) {
     const std::vector<CLI::App*> chosen = app.get_subcommands();
-    return printed((chosen.empty() ? app : *chosen.front()).help());
-  } catch (const CLI::CallForVersion& version) {
-    return printed(std::string(version.what()) + "\n");
+    return printed(chosen.empty() ? app.help() : chosen.front()->help("ex9000-sim"));
   } catch (const CLI::ParseError& error) {
     return wrong(std::string(error.what()) + "; see --help");
   } catch (const std::invalid_argument& error) {
@@ -236,7 +238,8 @@ Parsed parse_arguments(int argc, const char* const* argv) {
   try {
     for (const auto& [flag, is_given, text] :
          {std::tuple("--models", models, &list_models), std::tuple("--example", example, &example_bus_file),
-          std::tuple("--schema", schema, &bus_file_schema)}) {
+          std::tuple("--schema", schema, &bus_file_schema),
+          std::tuple("--version", version, &version_line)}) {
       if (is_given) {
         reject_other_arguments(flag, app);
         return printed(text());

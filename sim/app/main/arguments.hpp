@@ -21,8 +21,8 @@ struct Parsed {
   int exit_status = 0;
 };
 
-/// Returns `text` with a blank in place of each newline, and without blanks at the end. An error message must
-/// be one line, but the arguments that it quotes may contain newlines.
+/// Returns `text` with a blank in place of each control character, and without blanks at the end. An error
+/// message must be one line, but the arguments that it quotes may contain newlines.
 std::string one_line(std::string text);
 
 /// Parses the command line, and reads the bus file if the command line names one. Wrong arguments do not

@@ -97,7 +97,7 @@ std::string on(const std::string& topic) {
       return each.text();
     }
   }
-  fail("help " + topic + ": expected one of " + topics());
+  fail("help: '" + topic + "' is not a topic; expected one of " + topics());
 }
 
 }  // namespace ex9000::sim::help

@@ -6,9 +6,9 @@
 #include "sim/app/setup/line_factory.hpp"
 #include "sim/files_and_ports/files/eeprom_file.hpp"
 #include "sim/notation/actions.hpp"
-#include "sim/notation/input_notation.hpp"
 #include "sim/notation/module_notation.hpp"
 #include "sim/text/fail.hpp"
+#include "sim/text/values.hpp"
 #include "sim/text/words.hpp"
 
 namespace ex9000::play {
@@ -106,35 +106,32 @@ Bytes LineTarget::listen(std::chrono::nanoseconds time) {
   return std::exchange(heard_[line_], {});
 }
 
+/// Carries out an action of the chosen module.
+void LineTarget::on_module(sim::Words action) {
+  action.insert(action.begin(), std::to_string(module_ + 1));
+  sim::act({{"", chosen()}}, action);
+}
+
 void LineTarget::power(bool on) {
-  module().power(on);
+  on_module({"power", sim::on_off_text(on)});
   if (on) {
     run_until(now() + kComingUp);
   }
 }
 
 void LineTarget::reset() {
-  module().reset();
+  on_module({"reset"});
   run_until(now() + kComingUp);
 }
 
-/// Throws std::runtime_error if the chosen module lacks the input.
-void LineTarget::require_input(unsigned channel) {
-  try {
-    sim::parse_input(std::to_string(channel), module().model());
-  } catch (const std::invalid_argument& error) {
-    throw std::runtime_error(error.what());
-  }
-}
+void LineTarget::set_init(bool asserted) { on_module({"init", sim::on_off_text(asserted)}); }
 
 void LineTarget::set_input(unsigned channel, bool level) {
-  require_input(channel);
-  module().set_input(channel, level);
+  on_module({"input", std::to_string(channel), sim::on_off_text(level)});
 }
 
 void LineTarget::pulse_input(unsigned channel, std::uint32_t count) {
-  require_input(channel);
-  module().pulse_input(channel, count);
+  on_module({"pulse", std::to_string(channel), "x" + std::to_string(count)});
 }
 
 Led LineTarget::led(Led /*expected*/) {
@@ -155,8 +152,8 @@ void LineTarget::choose_module(std::size_t position) {
     }
     index -= lines_[line]->size();
   }
-  throw std::runtime_error("no module " + std::to_string(position + 1) + "; expected a position from 1 to " +
-                           std::to_string(position - index));
+  sim::fail("no module " + std::to_string(position + 1) + "; expected a position from 1 to " +
+            std::to_string(position - index));
 }
 
 void LineTarget::choose_line(const std::string& name) {
@@ -166,9 +163,8 @@ void LineTarget::choose_line(const std::string& name) {
     return;
   }
   const std::string names = sim::joined(names_, ", ");
-  throw std::runtime_error(
-      "no line '" + name + "'; " +
-      (names.empty() ? "the only line has no name; remove the step" : "expected one of " + names));
+  sim::fail("no line '" + name + "'; " +
+            (names.empty() ? "the only line has no name; remove the step" : "expected one of " + names));
 }
 
 /// Chooses a line and a module. If the line changes, discards the bytes that the master of the new line has
@@ -187,11 +183,7 @@ void LineTarget::act(const sim::Words& words) {
     lines.push_back({names_[i], *lines_[i]});
   }
   const bool of_a_module = words[0].find_first_not_of("0123456789") == std::string::npos;
-  try {
-    sim::act(of_a_module ? lines : sim::LinesInUse{lines[line_]}, words);
-  } catch (const std::invalid_argument& error) {
-    throw std::runtime_error(error.what());
-  }
+  sim::act(of_a_module ? lines : sim::LinesInUse{lines[line_]}, words);
 }
 
 }  // namespace ex9000::play

@@ -42,7 +42,7 @@ class LineTarget : public Target {
   void set_format(LineFormat format) override { chosen().master().set_format(format); }
   void power(bool on) override;
   void reset() override;
-  void set_init(bool asserted) override { module().set_init(asserted); }
+  void set_init(bool asserted) override;
   void set_input(unsigned channel, bool level) override;
   void pulse_input(unsigned channel, std::uint32_t count) override;
   std::uint16_t outputs() override { return module().outputs(); }
@@ -56,7 +56,7 @@ class LineTarget : public Target {
   sim::SimulatedModule& module() { return chosen().module(module_); }
 
  private:
-  void require_input(unsigned channel);
+  void on_module(sim::Words action);
   void run_until(sim::VirtualTime until);
   void add_line(const sim::LineSetup& setup, Memories::const_iterator memories, std::uint64_t seed);
   void turn_to(std::size_t line, std::size_t module);

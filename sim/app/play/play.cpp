@@ -26,7 +26,7 @@ std::vector<Transcript> load_all(const std::string& path) {
       }
     }
   } catch (const std::filesystem::filesystem_error& error) {
-    fail(error.what());
+    fail(path + ": " + error.code().message() + "; name a folder that can be read");
   }
   if (all.empty()) {
     fail(path + ": contains no .txt file; name a transcript, a scenario or a folder of such files");

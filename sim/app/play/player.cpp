@@ -120,7 +120,7 @@ Result play(const Transcript& transcript, Target& target) {
     where = transcript.file + ": at the end";
     playing.nothing_more();
     target.end();
-  } catch (const std::runtime_error& error) {
+  } catch (const std::exception& error) {
     result.failure = where + ": " + error.what() + who;
   }
   return result;

@@ -8,9 +8,9 @@
 namespace ex9000::play {
 
 /// Carries out the steps of `scenario` that choose a module or a line or contain a fault command, and checks
-/// that the inputs in other steps exist. No virtual time passes, so errors that depend on time are not found.
-/// `bus` must not be used for anything else afterwards. If a step is wrong, throws std::invalid_argument that
-/// names the file, the line number, the step and what is wrong.
+/// that the inputs in other steps exist. No virtual time passes, so an error in the state of a module is not
+/// one here (NotNow). `bus` must not be used for anything else afterwards. If a step is wrong, throws
+/// std::invalid_argument that names the file, the line number, the step and what is wrong.
 void rehearse(const Transcript& scenario, LineTarget& bus);
 
 }  // namespace ex9000::play

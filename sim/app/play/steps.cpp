@@ -151,7 +151,7 @@ Run action(const Words& words) {
 }
 
 bool is_action(const std::string& word) {
-  return word.find_first_not_of("0123456789") == std::string::npos || word == "fault" || word == "faults";
+  return word.find_first_not_of("0123456789") == std::string::npos || word == "fault";
 }
 
 [[noreturn]] void refuse(const std::string& text) {
@@ -236,6 +236,11 @@ Step parse_step(unsigned line, const std::string& text, const Model* model) {
   }
   if (model != nullptr) {
     refuse_in_transcripts(text);
+  }
+  if (words.size() > 1 && sim::only_reads(words[1])) {
+    fail("'" + text +
+         "': only reads, and a scenario prints nothing; expected a step that checks, for example 'outputs "
+         "0001'");
   }
   return {line, text, action(words), true};
 }

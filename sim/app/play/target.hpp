@@ -57,9 +57,8 @@ class Target {
   /// may use `expected` to choose how long to watch.
   virtual Led led(Led expected) = 0;
 
-  // Functions for a target with several modules and with faults. They throw std::runtime_error if the module,
-  // the line or the fault does not exist, or if the action is wrong. The implementations in this class
-  // always throw.
+  // Functions for a target with several modules and with faults. They throw std::invalid_argument if the
+  // module or the line does not exist, or like sim::act. The implementations in this class always throw.
 
   /// Chooses the module for the following calls. `position` is the position of the module, from 0, across all
   /// lines. The master then sends on the line of this module.

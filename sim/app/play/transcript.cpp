@@ -199,6 +199,9 @@ std::vector<Transcript> load(const std::string& path) {
     if (source.steps.empty()) {
       fail("has no step; add one");
     }
+    if (source.models.empty() && source.names_its_source) {
+      fail("has 'source:', but no 'model:' line; add one, or remove 'source:'");
+    }
     if (source.models.empty()) {
       return {scenario(path, source, line)};
     }

@@ -28,8 +28,11 @@ class BusFileReader {
   [[nodiscard]] Setup bus(const Node& root) const {
     Setup setup;
     setup.file = path_;
-    read(root, run_settings, setup, "lines",
-         [&](const Node& line) { setup.lines.push_back(read_line(line)); });
+    read(root, run_settings, setup, "lines", [&](const Node& lines) {
+      for (const Node& line : list_of(lines, "lines")) {
+        setup.lines.push_back(read_line(line));
+      }
+    });
     if (setup.lines.empty()) {
       refuse(root, "lines: a bus file requires at least one line; 'ex9000-sim --example' prints an example");
     }
@@ -39,9 +42,13 @@ class BusFileReader {
  private:
   [[nodiscard]] LineSetup read_line(const Node& node) const {
     LineSetup line;
-    line.places["port"] = place(node) + "port: ";  // for a pseudo-terminal that the file does not name
-    read(node, line_settings, line, "modules",
-         [&](const Node& module) { line.modules.push_back(read_module(module)); });
+    line.places["port"] = place(node) + "port: ";  // for what the file does not name
+    line.places["name"] = place(node) + "name: ";
+    read(node, line_settings, line, "modules", [&](const Node& modules) {
+      for (const Node& module : list_of(modules, "modules")) {
+        line.modules.push_back(read_module(module));
+      }
+    });
     if (line.modules.empty()) {
       refuse(node, "modules: a line requires at least one module, for example EX9042D-M@01");
     }
@@ -50,7 +57,9 @@ class BusFileReader {
 
   [[nodiscard]] ModuleSpec read_module(const Node& node) const {
     if (node.IsScalar()) {
-      return with_place(place(node), [&] { return parse_module_spec(text_of(node)); });
+      ModuleSpec module = with_place(place(node), [&] { return parse_module_spec(text_of(node)); });
+      prefix_places(module.places, place(node));
+      return module;
     }
     ModuleSpec module;
     const auto take_model = [&](const Node& model) {
@@ -66,14 +75,14 @@ class BusFileReader {
   }
 
   /// Reads the settings of `object`, in the order of `settings`, because some depend on those before. Before
-  /// them, calls `take_part` with each element of the list `part`, or with its only value.
+  /// them, calls `take_part` with the value of `part`.
   template <class Settings, class Object, class TakePart>
   void read(const Node& node, const Settings& settings, Object& object, const std::string& part,
             TakePart take_part) const {
     std::map<std::string, Member> members = members_of(node);
     const auto parts = members.find(part);
     if (parts != members.end()) {
-      each_of(parts->second.value, take_part);
+      take_part(parts->second.value);
       members.erase(parts);
     }
     for (const auto& setting : settings) {
@@ -88,8 +97,8 @@ class BusFileReader {
         take_setting(setting, object, where,
                      with_place(where, [&] { return value_of(value, setting.form); }));
       };
-      if (setting.form == Form::List) {
-        each_of(values, take);
+      if (setting.form == Form::List && values.IsSequence()) {
+        std::for_each(values.begin(), values.end(), take);
       } else {
         take(values);
       }
@@ -99,6 +108,13 @@ class BusFileReader {
       refuse(members.begin()->second.key,
              members.begin()->first + ": unknown key; expected one of " + part + ", " + names_of(settings));
     }
+  }
+
+  [[nodiscard]] const Node& list_of(const Node& node, const std::string& key) const {
+    if (!node.IsSequence()) {
+      refuse(node, key + ": expected a list");
+    }
+    return node;
   }
 
   struct Member {
@@ -118,17 +134,6 @@ class BusFileReader {
       }
     }
     return members;
-  }
-
-  template <class Take>
-  static void each_of(const Node& node, Take take) {
-    if (node.IsSequence()) {
-      for (const Node& element : node) {
-        take(element);
-      }
-    } else {
-      take(node);
-    }
   }
 
   /// Rejects NUL, because the operating system would end a path there.

@@ -70,7 +70,7 @@ void check_speed(const Setup& setup) {
         "them");
   }
   if (setup.speed.max() && (setup.control || setup.panel)) {
-    wrong("max cannot be combined with control and panel; leave out one of them");
+    wrong("max cannot be combined with control or panel; leave out one of them");
   }
   if (setup.speed.max() && !setup.lasts) {
     wrong("max requires for, for example 10s");
@@ -98,7 +98,6 @@ void check_uses(const Setup& setup) {
   Once paths("is already used; name another path");
   Once addresses("two ports cannot share an address; name one for each");
   Once names("two lines have this name; give each line a different name");
-  paths.add_path(place_of(setup.places, "control"), setup.control.value_or(""));
   for (const LineSetup& line : setup.lines) {
     names.add(place_of(line.places, "name"), line.name, line.name);
     for (const PortSetup& port : line.ports) {
@@ -111,6 +110,7 @@ void check_uses(const Setup& setup) {
       paths.add_path(place_of(module.places, "eeprom"), module.eeprom);
     }
   }
+  paths.add_path(place_of(setup.places, "control"), setup.control.value_or(""));
 }
 
 }  // namespace

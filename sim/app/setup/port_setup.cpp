@@ -97,18 +97,16 @@ PortSetup parse_port(const std::string& text) {
     }
     PortSetup port;
     port.kind = row.kind;
-    port.text = text.substr(0, text.find(','));
+    const Words parts = parts_of(text, ',');
+    port.text = parts[0];
     with_place(port.text + ": ", [&] { row.take(port, port.text.substr(colon + 1)); });
-    std::istringstream options(text.substr(port.text.size()));
-    std::string option;
-    std::getline(options, option, ',');
     std::set<std::string> given;
-    while (std::getline(options, option, ',')) {
-      with_place(option + ": ", [&] {
-        if (!given.insert(option.substr(0, option.find('='))).second) {
+    for (auto option = parts.begin() + 1; option != parts.end(); ++option) {
+      with_place(*option + ": ", [&] {
+        if (!given.insert(option->substr(0, option->find('='))).second) {
           fail("is given twice; leave out one of them");
         }
-        take_option(port, option);
+        take_option(port, *option);
       });
     }
     return port;

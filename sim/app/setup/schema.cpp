@@ -1,10 +1,10 @@
 #include "sim/app/setup/schema.hpp"
 
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "sim/app/setup/setup.hpp"
 #include "sim/notation/module_settings.hpp"
+#include "sim/text/words.hpp"
 
 namespace ex9000::sim {
 
@@ -15,8 +15,7 @@ using Json = nlohmann::ordered_json;
 /// The words of a choice, and those that are numbers also as numbers, as YAML and JSON read them.
 Json choices_of(std::string_view value) {
   Json choices = Json::array();
-  std::istringstream words{std::string(value)};
-  for (std::string word; std::getline(words, word, '|');) {
+  for (const std::string& word : parts_of(std::string(value), '|')) {
     if (word.find_first_not_of("0123456789") == std::string::npos) {
       choices.push_back(std::stoul(word));
     }

@@ -16,7 +16,10 @@ std::optional<LogFormat> parse_log(const std::string& text) {
   if (text == "off") {
     return std::nullopt;
   }
-  return parse_choice(text == "on" ? "text" : text, "json", "text") ? LogFormat::Json : LogFormat::Text;
+  if (text != "json" && text != "text" && text != "on") {
+    fail("'" + text + "': expected text, json, on or off");
+  }
+  return text == "json" ? LogFormat::Json : LogFormat::Text;
 }
 
 std::optional<PanelSetup> parse_panel(const std::string& text) {

@@ -35,12 +35,23 @@ void end_with_crc(std::vector<std::uint8_t>& frame) {
   frame.insert(frame.end(), {crc.low_byte(), crc.high_byte()});
 }
 
-/// MODBUS Application Protocol V1.1b3, section 7.
+/// Ends a DCON frame.
+void end_with_cr(std::string text, const State& state, std::vector<std::uint8_t>& frame) {
+  if (state.in_force.checksum) {
+    text += hex_byte_text(std::accumulate(text.begin(), text.end(), 0U));
+  }
+  text += '\r';
+  frame.assign(text.begin(), text.end());
+}
+
+/// MODBUS Application Protocol V1.1b3, section 7. In ASCII, the module rejects the command.
 void refuse(const Fault& fault, Reply& reply, const State& state) {
   constexpr unsigned kException = 0x80;
   if (state.speaks_modbus()) {
     reply.bytes = {reply.bytes[0], static_cast<std::uint8_t>(reply.bytes[1] | kException), fault.bytes[0]};
     end_with_crc(reply.bytes);
+  } else {
+    end_with_cr("?" + hex_byte_text(state.in_force.address), state, reply.bytes);
   }
 }
 
@@ -55,16 +66,9 @@ void answer_as(const Fault& fault, Reply& reply, const State& state) {
     end_with_crc(bytes);
     return;
   }
-  const bool checksum = state.in_force.checksum;
-  const auto content = bytes.end() - 1 - (checksum ? kCheck : 0);
-  if (bytes[0] == '>' || content - bytes.begin() < 3) {
-    return;
-  }
-  const std::string address = hex_byte_text(fault.bytes[0]);
-  std::copy(address.begin(), address.end(), bytes.begin() + 1);
-  if (checksum) {
-    const std::string sum = hex_byte_text(std::accumulate(bytes.begin(), content, 0U) & 0xFFU);
-    std::copy(sum.begin(), sum.end(), content);
+  const std::string text(bytes.begin(), bytes.end() - 1 - (state.in_force.checksum ? kCheck : 0));
+  if (text[0] != '>' && text.size() >= 3) {
+    end_with_cr(text[0] + hex_byte_text(fault.bytes[0]) + text.substr(3), state, bytes);
   }
 }
 
@@ -93,7 +97,7 @@ const std::vector<FaultKind>& fault_kinds() {
       {"lost-reply", Value::None, "every 3rd reply", Lasts::Reply, lose, "drops the reply"},
       {"late-reply", Value::Time, "50ms", Lasts::Reply, delay, "delays the reply by this time"},
       {"exception", Value::Byte, "06 every 3rd reply", Lasts::Reply, refuse,
-       "replaces a Modbus reply by an exception with this code"},
+       "replaces the reply by an exception with this code; in ASCII by ?AA"},
       {"wrong-unit", Value::Byte, "7F every 3rd reply", Lasts::Reply, answer_as,
        "makes the reply carry this address"},
       {"late-driver", Value::Time, "2ms", Lasts::Reply, hold_driver,

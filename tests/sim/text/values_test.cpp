@@ -59,7 +59,8 @@ TEST(WholeNumber, ANumberWithoutAnUpperBoundMayHave64Bits) {
   EXPECT_EQ(parse_whole_number("18446744073709551615", 1, kMost), kMost);
   EXPECT_EQ(parse_whole_number("1", 1, kMost), 1U);
   const auto parse = [](const std::string& text) { return parse_whole_number(text, 1, kMost); };
-  expect_refused(parse, {"0", "18446744073709551616", "", "-1", "1e3"}, "a whole number of at least 1");
+  expect_refused(parse, {"0", "18446744073709551616", "", "-1", "1e3"},
+                 "a whole number from 1 to 18446744073709551615");
 }
 
 TEST(WholeNumber, IsNulloptIfTheTextIsNotAWholeNumberUpToTheMaximum) {

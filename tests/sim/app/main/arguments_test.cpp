@@ -84,7 +84,7 @@ TEST(Arguments, TheLogFormatIsTextOrJson) {
   EXPECT_EQ(all_accepted({"EX9042D", "--log", "--strict-gaps"}).log, LogFormat::Text);
   EXPECT_EQ(accepted({"--log", "json", "EX9042D"}).modules.size(), 1U);
   EXPECT_EQ(accepted({"--log", "EX9042D", "EX9052D@02"}).modules.size(), 2U);
-  expect_error({"EX9042D", "--log=xml"}, "--log: 'xml'", "json or text");
+  expect_error({"EX9042D", "--log=xml"}, "--log: 'xml'", "expected text, json, on or off");
   expect_error({"EX9042D", "--log="}, "--log", "--help");
 }
 
@@ -214,13 +214,13 @@ TEST(Arguments, ValuesThatCannotBeCombinedAreRefused) {
             one},
            {{"--speed", "max"}, "--speed: max requires for", "for example 10s"},
            {{"--speed", "max", "--for", "1s", "--panel"},
-            "--speed: max cannot be combined with control and panel",
+            "--speed: max cannot be combined with control or panel",
             one},
            {{"--speed", "step"}, "--speed: step requires control", ""},
            {{"--speed", "step", "--control", "c", "--panel"},
             "--speed: step cannot be combined with panel",
             one},
-           {{"--port", "pty:b", "--control", "./b"}, "--port: b: is already used", "name another path"},
+           {{"--port", "pty:b", "--control", "./b"}, "--control: ./b: is already used", "name another path"},
        }) {
     std::vector<const char*> all{"EX9042D"};
     all.insert(all.end(), words.begin(), words.end());
@@ -234,7 +234,7 @@ TEST(Arguments, ValuesThatCannotBeCombinedAreRefused) {
 TEST(Arguments, AnEepromFileHasOneUse) {
   const std::string why = "eeprom=: a: is already used; name another path";
   expect_error({"EX9042D,eeprom=a", "EX9052D@02,eeprom=a"}, why, "");
-  expect_error({"EX9042D,eeprom=a", "--control", "a"}, why, "");
+  expect_error({"EX9042D,eeprom=a", "--control", "a"}, "--control: a: is already used", "");
   expect_error({"EX9042D,eeprom=a", "--port", "pty:x/../a"}, why, "");
   EXPECT_EQ(accepted({"EX9042D,eeprom=a", "EX9052D@02,eeprom=b"}).modules[1].eeprom, "b");
 }
@@ -260,9 +260,9 @@ TEST(Arguments, AWrongValueIsRefused) {
            {"--baud", "", "9600"},
            {"--format", "8M1", "8N1, 8N2, 8E1 or 8O1"},
            {"--timing", "fast", "instant or paced"},
-           {"--seed", "x", "a whole number of at least 0"},
-           {"--seed", "18446744073709551616", "a whole number of at least 0"},
-           {"--seed", "", "a whole number of at least 0"},
+           {"--seed", "x", "a whole number from 0 to 18446744073709551615"},
+           {"--seed", "18446744073709551616", "a whole number from 0 to 18446744073709551615"},
+           {"--seed", "", "a whole number from 0 to 18446744073709551615"},
            {"--speed", "0", "from 0.001 to 1000, max or step"},
            {"--speed", "0.00099", "from 0.001 to 1000, max or step"},
            {"--speed", "1000.1", "from 0.001 to 1000, max or step"},
@@ -298,7 +298,7 @@ TEST(Arguments, ValidValuesAreTaken) {
     EXPECT_EQ(std::to_string(accepted({"EX9042D", "--baud", rate}).baud.value_or(0)), rate);
   }
   EXPECT_EQ(accepted({"EX9042D", "--format", "8N2"}).format, LineFormat::k8N2);
-  EXPECT_EQ(accepted({"EX9042D", "--format", "8e1"}).format, LineFormat::k8E1);
+  EXPECT_EQ(accepted({"EX9042D", "--format", "8E1"}).format, LineFormat::k8E1);
   EXPECT_TRUE(accepted({"EX9042D", "--timing", "instant"}).instant);
   EXPECT_FALSE(accepted({"EX9042D", "--timing", "paced"}).instant);
   EXPECT_EQ(accepted({"EX9042D", "--name", "hall"}).name, "hall");

@@ -249,7 +249,7 @@ TEST(Program, WrongArgumentsGiveAOneLineErrorAndCreateNoFiles) {
       {{"EX9042D", "--capture", "."}, "--capture: .", "path"},
       {{"EX9042D", "--capture", "a", "--control", "/no/such/place/ctl"}, "--control", "path"},
       {{"EX9042D,eeprom=/no/such/place/bin", "--capture", "a"}, "eeprom=: /no/such/place/bin", "path"},
-      {{"EX9042D", "--log=xml"}, "--log: 'xml'", "json or text"},
+      {{"EX9042D", "--log=xml"}, "--log: 'xml'", "expected text, json, on or off"},
       {{"EX9042D,eeprom=/no/such/place/bin"}, "eeprom=: /no/such/place/bin", "path"},
       {{"describe", "EX1"}, "'EX1'", "--models"},
       {{"describe", "--format", "yaml"}, "--format yaml", "home-assistant"},

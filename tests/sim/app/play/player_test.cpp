@@ -87,6 +87,7 @@ TEST(Player, RefusesAFileWithAnInvalidStepOrHeader) {
   EXPECT_FALSE(loads("source: x\nmodel: EX9042D\npreset: address=-1\n\n> $01M\n"));
   EXPECT_FALSE(loads("source: x\nmodel: EX9042D\npreset: baud=0\n\n> $01M\n"));
   EXPECT_FALSE(loads("model: EX9042D\n\n> $01M\n"));
+  EXPECT_FALSE(loads("source: x\n\n> $01M\n"));
   EXPECT_FALSE(loads("source: x\nmodel: EX1\n\n> $01M\n"));
 }
 

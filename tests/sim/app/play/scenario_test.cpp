@@ -192,7 +192,6 @@ TEST(Play, RefusesStepsThatDoNotFitTheBusBeforePlaying) {
         Wrong{"0 fault gone", "no module 0", "expected a position from 1 to 3"},
         Wrong{"2 fault", "expected N fault FAULT", ""},
         Wrong{"1 fault bit-errors 0.1", "concerns the line, not a module", "add it as a fault of the line"},
-        Wrong{"fault gone\nfault off 2", "no fault 2", "'faults' lists the faults"},
         Wrong{"fault off", "fault off", "K|all"}}) {
     const Directory directory;
     const std::string file = directory / "a.txt";
@@ -208,6 +207,20 @@ TEST(Play, RefusesStepsThatDoNotFitTheBusBeforePlaying) {
     EXPECT_EQ(text.find('\n'), std::string::npos) << text;
     EXPECT_EQ(bytes_of_file(directory / "capture"), "precious");
   }
+}
+
+TEST(Play, WhatDependsOnTheStateOfAModuleIsJudgedWhenItIsPlayed) {
+  const Directory directory;
+  const std::string file = directory / "a.txt";
+  write_file(file,
+             "1 fault gone for 200ms\nwait 1s\n1 reset\npower off\n1 fault gone\npower on\nfault off 2\n");
+  EXPECT_EQ(played(file, true).rfind("passed  ", 0), 0U) << played(file, true);
+  write_file(file, "power off\nreset\n");
+  EXPECT_EQ(played(file, true).rfind("FAILED  " + file + ":2: reset: the module has no power", 0), 0U)
+      << played(file, true);
+  write_file(file, "fault off 1\n");
+  EXPECT_EQ(played(file, true).rfind("FAILED  " + file + ":1: fault off 1: no fault 1 on this line", 0), 0U)
+      << played(file, true);
 }
 
 TEST(Play, AFaultWhoseTimeHasPassedFailsItsStep) {
@@ -255,7 +268,9 @@ TEST(Play, RefusesAnInvalidEepromFileBeforeOverwritingTheCapture) {
       play({directory / "a.txt", with_eeprom(path), writing}, nullptr, record);
       FAIL() << "the steps were played";
     } catch (const std::invalid_argument& error) {
-      EXPECT_EQ(std::string(error.what()).rfind("eeprom=: " + path + ": ", 0), 0U) << error.what();
+      EXPECT_EQ(std::string(error.what()).rfind("EX9042D,eeprom=" + path + ": eeprom=: " + path + ": ", 0),
+                0U)
+          << error.what();
     }
   }
   EXPECT_EQ(bytes_of_file(directory / "capture"), "precious");
@@ -361,26 +376,10 @@ std::string refusal_of(const std::string& step) {
 }
 
 TEST(Step, AcceptsValidSyntaxOnly) {
-  for (const char* step : {"> $01M",
-                           ">",
-                           "< >",
-                           "<\t!01",
-                           "=> 01 05 0000 FF00",
-                           "bytes 01 02",
-                           "input 15 on",
-                           "pulse 0",
-                           "pulse 0 x1000000",
-                           "outputs 5",
-                           "outputs FFFF",
-                           "module 1",
-                           "baud 1200",
-                           "format 8E1",
-                           "wait 0s",
-                           "wait 1.5ms",
-                           "2 fault gone",
-                           "1 pulse 0 x5",
-                           "fault off all",
-                           "faults"}) {
+  for (const char* step :
+       {"> $01M", ">", "< >", "<\t!01", "=> 01 05 0000 FF00", "bytes 01 02", "input 15 on", "pulse 0",
+        "pulse 0 x1000000", "outputs 5", "outputs FFFF", "module 1", "baud 1200", "format 8E1", "wait 0s",
+        "wait 1.5ms", "2 fault gone", "1 pulse 0 x5", "fault off all"}) {
     EXPECT_EQ(refusal_of(step), "") << step;
   }
   struct Wrong {
@@ -409,6 +408,8 @@ TEST(Step, AcceptsValidSyntaxOnly) {
                              Wrong{"outputs 0x0", "'0x0'", "hex digits"},
                              Wrong{"outputs -1", "'-1'", "hex digits"},
                              Wrong{"outputs 10000", "'10000'", "hex digits"},
+                             Wrong{"1 status", "'1 status': only reads", "expected a step that checks"},
+                             Wrong{"faults", "'faults' is not a step", "N ACTION"},
                              Wrong{"module -1", "'-1'", "from 1 to"},
                              Wrong{"module 0", "'0'", "from 1 to"},
                              Wrong{"baud 0", "'0'", "1200, 2400, 4800, 9600"},

@@ -157,9 +157,11 @@ TEST(BusFile, AWrongFileIsRefusedWithALineNumberAndAKey) {
            {"seed: 1\nseed: 2", "2: seed: is given twice; leave out one of them"},
            {"\nseed: 1", "2: lines: a bus file requires at least one line; 'ex9000-sim --example' prints"},
            {"lines: []", "1: lines: a bus file requires at least one line"},
-           {"lines: {}", "1: modules: a line requires at least one module"},
+           {"lines: {}", "1: lines: expected a list"},
+           {"lines: []", "1: lines: a bus file requires at least one line"},
+           {"lines: [{modules: EX9042D}]", "1: modules: expected a list"},
            {"line: []", "1: line: " + known + "lines, log, capture, panel, control, speed, for, seed"},
-           {"log: xml", "1: log: 'xml': expected json or text"},
+           {"log: xml", "1: log: 'xml': expected text, json, on or off"},
            {"panel: 70000", "1: panel: '70000': expected a port from 0 to 65535"},
            {"panel: []", "1: panel: expected a single value"},
            {"seed: 1.5", "1: seed: '1.5': expected a whole number"},
@@ -312,19 +314,23 @@ TEST(BusFile, NoPathAddressOrNameHasTwoUses) {
   EXPECT_EQ(error("{name: a, port: tcp:0}", "name: a").rfind(":3: ", 0), 0U);  // not YAML
   EXPECT_EQ(error("name: a", "name: a"),
             ":5: name: a: two lines have this name; give each line a different name\n");
+  EXPECT_EQ(Argument("lines:\n- modules: [EX9042D]\n- name: line1\n  modules: [EX9042D]\n").error(),
+            ":3: name: line1: two lines have this name; give each line a different name\n");
+  EXPECT_EQ(Argument("lines:\n- modules: [EX9042D]\n  name: line2\n- modules: [EX9042D]\n").error(),
+            ":4: name: line2: two lines have this name; give each line a different name\n");
   EXPECT_EQ(error("port: tcp:0", "port: tcp:0"), "");
   EXPECT_EQ(
       Argument("lines:\n- modules:\n  - EX9042D\n  - {model: EX9042D, address: 02, eeprom: line1.tty}\n")
           .error(),
       ":4: eeprom: line1.tty: is already used; name another path\n");
   EXPECT_EQ(Argument("control: a\nlines:\n- port: pty:a\n  modules: [EX9042D]\n").error(),
-            ":3: port: a: is already used; name another path\n");
+            ":1: control: a: is already used; name another path\n");
 }
 
 TEST(BusFile, AnErrorNamesThePlaceOfTheValue) {
   const Argument file("control: c\npanel: on\nlines:\n- {modules: [EX9042D], port: tcp:0}\n");
   EXPECT_EQ(file.error({"--speed", "max", "--for", "1s"}),
-            "--speed: max cannot be combined with control and panel; leave out one of them\n");
+            "--speed: max cannot be combined with control or panel; leave out one of them\n");
   EXPECT_EQ(Argument("speed: step\n" + line_with("port: tcp:0")).error(),
             ":1: speed: step requires control, because only the control socket advances the time\n");
 }

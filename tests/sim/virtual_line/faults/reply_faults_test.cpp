@@ -163,12 +163,13 @@ TEST(ExceptionFault, ReplacesEveryNthReply) {
   }
 }
 
-TEST(ExceptionFault, AffectsNeitherBroadcastsNorAscii) {
-  FaultBench bench({"EX9042D-M", "EX9042D@02"});
+TEST(ExceptionFault, RejectsACommandInAsciiAndDoesNotAffectBroadcasts) {
+  FaultBench bench({"EX9042D-M", "EX9042D@02", "EX9042D@03,checksum=on"});
   bench.add("exception 06");
   EXPECT_EQ(reply_to(bench, "00050000FF008DEB"), "");
   EXPECT_EQ(bench.at(1).outputs(), 1);
-  EXPECT_EQ(bench.ask("$02M"), "!029042D");
+  EXPECT_EQ(bench.ask("$02M"), "?02");
+  EXPECT_EQ(bench.ask("$03MD4"), "?03A2");
 }
 
 TEST(WrongUnit, ReplacesTheAddressOfAModbusReply) {
