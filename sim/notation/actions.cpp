@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <iomanip>
 #include <iterator>
-#include <limits>
 #include <sstream>
 #include <string_view>
 
 #include "sim/notation/fault_notation.hpp"
 #include "sim/notation/input_notation.hpp"
+#include "sim/notation/shape.hpp"
 #include "sim/text/fail.hpp"
 #include "sim/text/values.hpp"
 
@@ -16,11 +16,13 @@ namespace ex9000::sim {
 
 namespace {
 
-/// What an action acts on.
-struct Place {
+/// A call of an action.
+struct Call {
   const LineInUse& in_use;
-  std::size_t index = 0;         ///< of the module on the line, from 0
-  std::size_t first_module = 0;  ///< the position of the line's first module across all lines, from 0
+  std::size_t index;         ///< of the module on the line, from 0
+  std::size_t first_module;  ///< the position of the line's first module across all lines, from 0
+  Words args;
+  std::string result = "";  ///< of an action that reads, or adds a fault
 
   [[nodiscard]] Line& line() const { return in_use.line; }
   [[nodiscard]] SimulatedModule& module() const { return in_use.line.module(index); }
@@ -36,14 +38,16 @@ struct Place {
     }
     return in_use.line.master();
   }
+  [[nodiscard]] unsigned input() const { return parse_input(args[0], module().model()); }
+  /// Appends a number to the result.
+  void add(unsigned number) { result += (result.empty() ? "" : " ") + std::to_string(number); }
 };
 
 std::string host_watchdog(const Settings& settings) {
   return settings.timeout_status ? "expired" : settings.watchdog_enabled ? "enabled" : "disabled";
 }
 
-std::string status(const Place& place, const Words& /*args*/) {
-  const SimulatedModule& module = place.module();
+std::string status(const SimulatedModule& module) {
   std::string text(module.model().designation);
   if (!module.powered()) {
     return text + " power=off";
@@ -69,25 +73,14 @@ std::string status(const Place& place, const Words& /*args*/) {
   return text + rest.str();
 }
 
-std::string led(const Place& place, const Words& /*args*/) {
-  const SimulatedModule& module = place.module();
+std::string led(const SimulatedModule& module) {
   if (!module.powered()) {
     return "off";
   }
   return module.module().led_pattern() == StatusLed::Pattern::Steady ? "on" : "flashing";
 }
 
-/// Returns the results of `number_of` for all channels, separated by spaces.
-template <class NumberOf>
-std::string for_each_channel(unsigned channels, NumberOf number_of) {
-  Words numbers;
-  for (unsigned channel = 0; channel < channels; ++channel) {
-    numbers.push_back(std::to_string(number_of(channel)));
-  }
-  return joined(numbers);
-}
-
-std::string end_fault(Line& line, const std::string& which) {
+void end_fault(Line& line, const std::string& which) {
   constexpr std::uint64_t kMostFaults = 999'999'999;
   const auto fault = whole_number(which, kMostFaults);
   if (which == "all") {
@@ -97,146 +90,126 @@ std::string end_fault(Line& line, const std::string& which) {
   } else if (!line.faults().remove(*fault)) {
     throw NotNow("no fault " + which + " on this line");
   }
-  return "";
 }
 
-std::string change_faults(const Place& place, const Words& args) {
-  if (args[0] == "off") {
-    return end_fault(place.line(), args.size() == 2 ? args[1] : "");
-  }
-  return std::to_string(place.line().faults().add(parse_fault(joined(args))));
-}
-
-std::string list_faults(const Place& place, const Words& /*args*/) {
-  const std::vector<Faults::Info> faults = place.line().faults().list();
+std::string list_faults(const Call& call) {
+  const std::vector<Faults::Info> faults = call.line().faults().list();
   std::string text = std::to_string(faults.size()) + (faults.size() == 1 ? " fault:" : " faults:");
   for (const Faults::Info& fault : faults) {
     text += (&fault == faults.data() ? " " : "; ") + std::to_string(fault.number) +
             (fault.in_progress != 0 ? "*" : "") + " x" + std::to_string(fault.occurrences_so_far) + " " +
-            (fault.module ? std::to_string(place.first_module + *fault.module + 1) + " " : "") + fault.text;
+            (fault.module ? std::to_string(call.first_module + *fault.module + 1) + " " : "") + fault.text;
   }
   return text;
 }
 
 struct Action {
-  std::string_view name;
-  std::string_view args;
-  std::size_t fewest;
-  std::size_t most;
+  enum class Of { Module, Line, Program } of;
+  std::string_view shape;
   bool changes;  ///< false: only reads
   std::string_view does;
-  std::string (*act)(const Place& place, const Words& args);
+  void (*act)(Call& call);  ///< null: carried out elsewhere
 
-  [[nodiscard]] std::string shape() const {
-    return std::string(name) + (args.empty() ? "" : " ") + std::string(args);
-  }
+  [[nodiscard]] std::string text() const { return (of == Of::Module ? "N " : "") + std::string(shape); }
 };
+using Of = Action::Of;
 
-constexpr std::size_t kAny = std::numeric_limits<std::size_t>::max();
-
-constexpr Action kModuleActions[] = {
-    {"power", "on|off", 1, 1, true, "switches the supply",
-     [](const Place& place, const Words& args) -> std::string {
-       place.module().power(parse_on_off(args[0]));
-       return "";
-     }},
-    {"reset", "", 0, 0, true, "resets the module; the supply stays on",
-     [](const Place& place, const Words& /*args*/) -> std::string {
-       place.powered_module().reset();
-       return "";
-     }},
-    {"init", "on|off", 1, 1, true, "ties INIT* to GND, or releases it",
-     [](const Place& place, const Words& args) -> std::string {
-       place.module().set_init(parse_on_off(args[0]));
-       return "";
-     }},
-    {"input", "C on|off", 2, 2, true, "sets the level of input C, from 0",
-     [](const Place& place, const Words& args) -> std::string {
-       place.module().set_input(parse_input(args[0], place.module().model()), parse_on_off(args[1]));
-       return "";
-     }},
-    {"pulse", "C [xCOUNT]", 1, 2, true, "applies COUNT full pulses to input C at once (default 1)",
-     [](const Place& place, const Words& args) -> std::string {
-       const unsigned channel = parse_input(args[0], place.module().model());
-       place.module().pulse_input(channel, parse_pulses(args).count);
-       return "";
-     }},
-    {"fault", "FAULT", 1, kAny, true,
+constexpr Action kActions[] = {
+    {Of::Module, "power on|off", true, "switches the supply",
+     [](Call& call) { call.module().power(parse_on_off(call.args[0])); }},
+    {Of::Module, "reset", true, "resets the module; the supply stays on",
+     [](Call& call) { call.powered_module().reset(); }},
+    {Of::Module, "init on|off", true, "ties INIT* to GND, or releases it",
+     [](Call& call) { call.module().set_init(parse_on_off(call.args[0])); }},
+    {Of::Module, "input C on|off", true, "sets the level of input C, from 0",
+     [](Call& call) { call.module().set_input(call.input(), parse_on_off(call.args[1])); }},
+    {Of::Module, "pulse C [xCOUNT]", true, "applies COUNT full pulses to input C at once (default 1)",
+     [](Call& call) { call.module().pulse_input(call.input(), parse_pulses(call.args).count); }},
+    {Of::Module, "fault FAULT...", true,
      "adds a fault of the module, see 'help faults'; replies with its number",
-     [](const Place& place, const Words& args) {
-       return std::to_string(place.line().faults().add(parse_fault(joined(args), place.index)));
+     [](Call& call) {
+       call.result = std::to_string(call.line().faults().add(parse_fault(joined(call.args), call.index)));
      }},
-    {"hang", "", 0, 0, true, "stops the main loop until the module watchdog resets the module",
-     [](const Place& place, const Words& /*args*/) -> std::string {
-       place.powered_module().hang();
-       return "";
-     }},
-    {"inputs", "", 0, 0, false, "reads the input levels in hex; bit n is input n",
-     [](const Place& place, const Words& /*args*/) { return hex_word_text(place.module().input_levels()); }},
-    {"outputs", "", 0, 0, false, "reads the outputs in hex; bit n is output n",
-     [](const Place& place, const Words& /*args*/) { return hex_word_text(place.module().outputs()); }},
-    {"timers", "", 0, 0, false,
+    {Of::Module, "hang", true, "stops the main loop until the module watchdog resets the module",
+     [](Call& call) { call.powered_module().hang(); }},
+    {Of::Module, "inputs", false, "reads the input levels in hex; bit n is input n",
+     [](Call& call) { call.result = hex_word_text(call.module().input_levels()); }},
+    {Of::Module, "outputs", false, "reads the outputs in hex; bit n is output n",
+     [](Call& call) { call.result = hex_word_text(call.module().outputs()); }},
+    {Of::Module, "timers", false,
      "reads the remaining time of each output's timer in 0.1 s; 0: it does not run",
-     [](const Place& place, const Words& /*args*/) {
-       const OutputTimers& timers = place.powered_module().module().state().output_timers;
-       return for_each_channel(place.module().model().outputs,
-                               [&](unsigned channel) { return timers.left(channel); });
+     [](Call& call) {
+       const auto& timers = call.powered_module().module().state().output_timers;
+       for (unsigned output = 0; output < call.module().model().outputs; ++output) {
+         call.add(timers.left(output));
+       }
      }},
-    {"filters", "", 0, 0, false, "reads the filter of each input in ms",
-     [](const Place& place, const Words& /*args*/) {
-       const InputFilters& filters = place.powered_module().module().state().settings.input_filters;
-       return for_each_channel(place.module().model().inputs,
-                               [&](unsigned channel) { return filters.of(channel); });
+    {Of::Module, "filters", false, "reads the filter of each input in ms",
+     [](Call& call) {
+       const auto& filters = call.powered_module().module().state().settings.input_filters;
+       for (unsigned input = 0; input < call.module().model().inputs; ++input) {
+         call.add(filters.of(input));
+       }
      }},
-    {"led", "", 0, 0, false, "reads the status LED: on, off or flashing", led},
-    {"status", "", 0, 0, false, "reads the model, the settings in force, the mode and the watchdogs", status},
+    {Of::Module, "led", false, "reads the status LED: on, off or flashing",
+     [](Call& call) { call.result = led(call.module()); }},
+    {Of::Module, "status", false, "reads the model, the settings in force, the mode and the watchdogs",
+     [](Call& call) { call.result = status(call.module()); }},
+    {Of::Line, "baud RATE", true, "sets the line's baud rate until a pseudo-terminal sets it",
+     [](Call& call) { call.own_master().set_baud(parse_baud_rate(call.args[0])); }},
+    {Of::Line, "format FORMAT", true, "sets the line's format: 8N1, 8N2, 8E1 or 8O1",
+     [](Call& call) { call.own_master().set_format(parse_line_format(call.args[0])); }},
+    {Of::Line, "fault FAULT...", true,
+     "adds a fault of the line or of all its modules; replies with its number",
+     [](Call& call) {
+       if (call.args[0] == "off") {
+         end_fault(call.line(), call.args.size() == 2 ? call.args[1] : "");
+       } else {
+         call.result = std::to_string(call.line().faults().add(parse_fault(joined(call.args))));
+       }
+     }},
+    {Of::Line, "fault off K|all", true, "removes the fault with this number, or all faults", nullptr},
+    {Of::Line, "faults", false,
+     "lists the faults: number, * if in progress, x and number of occurrences, module, text",
+     [](Call& call) { call.result = list_faults(call); }},
+    {Of::Line, "sent", false, "reads how many bytes the line has written to each of its ports",
+     [](Call& call) { call.result = std::to_string(call.in_use.sent ? call.in_use.sent() : 0); }},
+    {Of::Program, "line NAME ...", true,
+     "one of the six above, for that line; required if there are several lines", nullptr},
+    {Of::Program, "advance TIME [after N] [quiet]", true,
+     "requires --speed step. With 'after N', first waits until N bytes have arrived at the ports.\n"
+     "Sends all arrived bytes on the lines, and advances the time by TIME. With 'quiet', stops as\n"
+     "soon as nothing is pending. Replies with the time",
+     nullptr},
+    {Of::Program, "list", false, "lists the modules", nullptr},
+    {Of::Program, "help", false, "lists the commands", nullptr},
+    {Of::Program, "quit", true, "ends the simulator", nullptr},
 };
 
-constexpr Action kLineActions[] = {
-    {"baud", "RATE", 1, 1, true, "sets the line's baud rate until a pseudo-terminal sets it",
-     [](const Place& place, const Words& args) -> std::string {
-       place.own_master().set_baud(parse_baud_rate(args[0]));
-       return "";
-     }},
-    {"format", "FORMAT", 1, 1, true, "sets the line's format: 8N1, 8N2, 8E1 or 8O1",
-     [](const Place& place, const Words& args) -> std::string {
-       place.own_master().set_format(parse_line_format(args[0]));
-       return "";
-     }},
-    {"fault", "FAULT", 1, kAny, true,
-     "adds a fault of the line or of all its modules; replies with its number", change_faults},
-    {"fault off", "K|all", 1, 1, true, "removes the fault with this number, or all faults", nullptr},
-    {"faults", "", 0, 0, false,
-     "lists the faults: number, * if in progress, x and number of occurrences, module, text", list_faults},
-    {"sent", "", 0, 0, false, "reads how many bytes the line has written to each of its ports",
-     [](const Place& place, const Words& /*args*/) {
-       return std::to_string(place.in_use.sent ? place.in_use.sent() : 0);
-     }},
-};
-
-[[noreturn]] void refuse(const Words& words) {
-  fail("'" + joined(words) + "' is not a command; expected one of " + joined(action_shapes(), ", "));
+const Action* action_called(const std::string& name, Of of) {
+  const auto* const found = std::find_if(std::begin(kActions), std::end(kActions), [&](const Action& action) {
+    return action.of == of && action.act != nullptr && is_shape_of(action.shape, name);
+  });
+  return found == std::end(kActions) ? nullptr : found;
 }
 
-/// `said`: the command for the log. `lead`: stands before the shape of the action in a message.
-template <std::size_t kSize>
-std::string act(const Action (&actions)[kSize], const Place& place, const Words& words,
-                const std::string& lead, const std::string& said) {
-  for (const Action& action : actions) {
-    if (action.name != words[0]) {
-      continue;
-    }
-    const Words args(words.begin() + 1, words.end());
-    if (args.size() < action.fewest || args.size() > action.most) {
-      fail("expected " + lead + action.shape());
-    }
-    std::string result = action.act(place, args);
-    if (action.changes && place.in_use.note) {
-      place.in_use.note(said);
-    }
-    return result;
+[[noreturn]] void refuse(const std::string& text) {
+  fail("'" + text + "' is not a command; expected one of " + action_shapes());
+}
+
+/// `call.args` begin with the name. `said`: the command for the log.
+std::string carry_out(Call call, Of of, const std::string& said) {
+  const Action* const action = action_called(call.args[0], of);
+  if (action == nullptr) {
+    refuse(joined(call.args));
   }
-  refuse(words);
+  call.args.erase(call.args.begin());
+  check_shape(action->shape, call.args, of == Of::Module ? "expected N " : "expected ");
+  action->act(call);
+  if (action->changes && call.in_use.note) {
+    call.in_use.note(said);
+  }
+  return call.result;
 }
 
 std::string on_module(const LinesInUse& lines, const Words& words) {
@@ -249,23 +222,17 @@ std::string on_module(const LinesInUse& lines, const Words& words) {
     fail("no module " + words[0] + "; expected a position from 1 to " + std::to_string(modules));
   }
   if (words.size() == 1) {
-    refuse(words);
+    refuse(words[0]);
   }
   std::size_t index = *position - 1;
   auto each = lines.begin();
   for (; index >= each->line.size(); ++each) {
     index -= each->line.size();
   }
-  return act(kModuleActions, {*each, index, 0}, Words(words.begin() + 1, words.end()), "N ", joined(words));
+  return carry_out({*each, index, 0, Words(words.begin() + 1, words.end())}, Of::Module, joined(words));
 }
 
-std::string on_line(const LinesInUse& lines, const Words& words) {
-  if (words[0] != "line") {
-    if (lines.size() != 1) {
-      fail("there are several lines; put 'line NAME' before the command");
-    }
-    return act(kLineActions, {lines[0]}, words, "", joined(words));
-  }
+std::string on_named_line(const LinesInUse& lines, const Words& words) {
   if (words.size() < 3) {
     fail("expected line NAME and a command of a line, for example line NAME faults");
   }
@@ -273,7 +240,7 @@ std::string on_line(const LinesInUse& lines, const Words& words) {
   for (const LineInUse& each : lines) {
     if (each.name == words[1]) {
       const Words action(words.begin() + 2, words.end());
-      return act(kLineActions, {each, 0, first_module}, action, "", joined(action));
+      return carry_out({each, 0, first_module, action}, Of::Line, joined(action));
     }
     first_module += each.line.size();
   }
@@ -282,27 +249,29 @@ std::string on_line(const LinesInUse& lines, const Words& words) {
        (names.empty() ? "the only line has no name; leave out 'line NAME'" : "expected one of " + names));
 }
 
-bool is_number(const std::string& word) { return word.find_first_not_of("0123456789") == std::string::npos; }
-
-bool is_of_a_line(const std::string& word) {
-  const auto is_it = [&](const Action& action) { return action.name == word; };
-  return word == "line" || std::any_of(std::begin(kLineActions), std::end(kLineActions), is_it);
-}
-
 }  // namespace
 
 std::string act(const LinesInUse& lines, const Words& words) {
-  if (words.empty() || (!is_number(words[0]) && !is_of_a_line(words[0]))) {
-    fail("'" + (words.empty() ? "" : words[0]) + "' is not a command; expected one of " +
-         joined(action_shapes(), ", "));
+  const std::string first = words.empty() ? "" : words[0];
+  if (!first.empty() && first.find_first_not_of("0123456789") == std::string::npos) {
+    return on_module(lines, words);
   }
-  return is_number(words[0]) ? on_module(lines, words) : on_line(lines, words);
+  if (first == "line") {
+    return on_named_line(lines, words);
+  }
+  if (action_called(first, Of::Line) == nullptr) {
+    refuse(first);
+  }
+  if (lines.size() != 1) {
+    fail("there are several lines; put 'line NAME' before the command");
+  }
+  return carry_out({lines[0], 0, 0, words}, Of::Line, joined(words));
 }
 
 bool only_reads(const std::string& name) {
-  const auto reads = [&](const Action& action) { return action.name == name && !action.changes; };
-  return std::any_of(std::begin(kModuleActions), std::end(kModuleActions), reads) ||
-         std::any_of(std::begin(kLineActions), std::end(kLineActions), reads);
+  return std::any_of(std::begin(kActions), std::end(kActions), [&](const Action& action) {
+    return !action.changes && is_shape_of(action.shape, name);
+  });
 }
 
 Pulses parse_pulses(const Words& args) {
@@ -318,30 +287,27 @@ Pulses parse_pulses(const Words& args) {
   return pulses;
 }
 
-Words action_shapes() {
+std::string action_shapes() {
   Words shapes;
-  for (const Action& action : kModuleActions) {
-    shapes.push_back("N " + action.shape());
+  for (const Action& action : kActions) {
+    shapes.push_back(action.text());
   }
-  for (const Action& action : kLineActions) {
-    shapes.push_back(action.shape());
-  }
-  return shapes;
+  return joined(shapes, ", ");
 }
 
 std::string action_help() {
-  constexpr int kColumn = 20;
-  std::ostringstream text;
-  const auto row = [&text](const std::string& shape, const Action& action) {
-    text << "  " << std::left << std::setw(kColumn) << shape << action.does << "\n";
-  };
-  for (const Action& action : kModuleActions) {
-    row("N " + action.shape(), action);
+  const std::string indent(22, ' ');
+  std::string text;
+  for (const Action& action : kActions) {
+    std::string lead = "  " + action.text();
+    lead.resize(std::max(lead.size(), indent.size()), ' ');
+    lead += lead.size() == indent.size() ? "" : "\n" + indent;
+    for (const std::string& line : parts_of(std::string(action.does), '\n')) {
+      text += lead + line + "\n";
+      lead = indent;
+    }
   }
-  for (const Action& action : kLineActions) {
-    row(action.shape(), action);
-  }
-  return text.str();
+  return text;
 }
 
 }  // namespace ex9000::sim

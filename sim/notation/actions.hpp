@@ -39,9 +39,9 @@ struct Pulses {
 };
 Pulses parse_pulses(const Words& args);
 
-/// The shapes of all actions, for messages.
-Words action_shapes();
-/// The actions and what they do, one a line, for help.
+/// The shapes of all commands of the control socket, for messages: the actions, and those of the program.
+std::string action_shapes();
+/// The same commands and what they do, for help.
 std::string action_help();
 
 }  // namespace ex9000::sim

@@ -4,7 +4,7 @@
 #include <sstream>
 
 #include "sim/app/setup/port_setup.hpp"
-#include "sim/front_ends/control_socket/control.hpp"
+#include "sim/notation/actions.hpp"
 #include "sim/notation/fault_notation.hpp"
 #include "sim/notation/module_settings.hpp"
 #include "sim/text/fail.hpp"
@@ -56,7 +56,7 @@ std::string of_faults() {
 std::string of_control() {
   return "Each command on the control socket is one line of text, with the reply `ok ...` or `error: ...`.\n"
          "N is the position of a module. Positions count from 1, through all lines.\n\n" +
-         control_commands();
+         action_help();
 }
 
 struct Topic {

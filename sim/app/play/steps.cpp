@@ -6,6 +6,7 @@
 #include "sim/app/play/playing.hpp"
 #include "sim/notation/actions.hpp"
 #include "sim/notation/input_notation.hpp"
+#include "sim/notation/shape.hpp"
 #include "sim/text/durations.hpp"
 #include "sim/text/fail.hpp"
 #include "sim/text/values.hpp"
@@ -21,10 +22,7 @@ using Run = std::function<void(Playing& playing)>;
 
 /// A step that begins with a keyword.
 struct Row {
-  std::string_view name;
-  std::string_view args;
-  std::size_t fewest;
-  std::size_t most;
+  std::string_view shape;
   enum class Of {
     Any,         ///< transcripts and scenarios
     AnyActs,     ///< the same, and the step changes a module
@@ -32,10 +30,6 @@ struct Row {
     Scenarios,
   } of;
   Run (*parse)(const Words& args);
-
-  [[nodiscard]] std::string shape() const {
-    return std::string(name) + (args.empty() ? "" : " ") + std::string(args);
-  }
 };
 
 Run supply(const Words& args) {
@@ -91,58 +85,56 @@ Run line(const Words& args) {
   };
 }
 
-constexpr std::size_t kAnyNumber = 1000;
-
 constexpr Row kRows[] = {
-    {"bytes", "HEX", 1, kAnyNumber, Row::Of::Any,
+    {"bytes HEX...", Row::Of::Any,
      [](const Words& args) -> Run {
        return
            [bytes = sim::parse_hex_bytes(sim::joined(args))](Playing& playing) { playing.send_more(bytes); };
      }},
-    {"silence", "", 0, 0, Row::Of::Any,
+    {"silence", Row::Of::Any,
      [](const Words& /*args*/) -> Run { return [](Playing& playing) { playing.nothing_for(kSilence); }; }},
-    {"wait", "TIME", 1, 1, Row::Of::Any,
+    {"wait TIME", Row::Of::Any,
      [](const Words& args) -> Run {
        return [time = sim::parse_time(args[0])](Playing& playing) { playing.nothing_for(time); };
      }},
-    {"checksum", "on|off", 1, 1, Row::Of::Any,
+    {"checksum on|off", Row::Of::Any,
      [](const Words& args) -> Run {
        return [on = parse_on_off(args[0])](Playing& playing) { playing.set_checksum(on); };
      }},
-    {"baud", "RATE", 1, 1, Row::Of::Any, baud},
-    {"format", "8N1|8N2|8E1|8O1", 1, 1, Row::Of::Any,
+    {"baud RATE", Row::Of::Any, baud},
+    {"format 8N1|8N2|8E1|8O1", Row::Of::Any,
      [](const Words& args) -> Run {
        return [format = sim::parse_line_format(args[0])](Playing& playing) {
          playing.target().set_format(format);
        };
      }},
-    {"power", "on|off", 1, 1, Row::Of::AnyActs, supply},
-    {"power-cycle", "", 0, 0, Row::Of::AnyActs, power_cycle},
-    {"reset", "", 0, 0, Row::Of::AnyActs, reset},
-    {"init", "on|off", 1, 1, Row::Of::AnyActs,
+    {"power on|off", Row::Of::AnyActs, supply},
+    {"power-cycle", Row::Of::AnyActs, power_cycle},
+    {"reset", Row::Of::AnyActs, reset},
+    {"init on|off", Row::Of::AnyActs,
      [](const Words& args) -> Run {
        return [on = parse_on_off(args[0])](Playing& playing) { playing.target().set_init(on); };
      }},
-    {"input", "C on|off", 2, 2, Row::Of::AnyOnInput,
+    {"input C on|off", Row::Of::AnyOnInput,
      [](const Words& args) -> Run {
        return [channel = sim::parse_pulses({args[0]}).channel, on = parse_on_off(args[1])](Playing& playing) {
          playing.target().set_input(channel, on);
        };
      }},
-    {"pulse", "C [xCOUNT]", 1, 2, Row::Of::AnyOnInput,
+    {"pulse C [xCOUNT]", Row::Of::AnyOnInput,
      [](const Words& args) -> Run {
        return [pulses = sim::parse_pulses(args)](Playing& playing) {
          playing.target().pulse_input(pulses.channel, pulses.count);
        };
      }},
-    {"outputs", "HHHH", 1, 1, Row::Of::Any,
+    {"outputs HHHH", Row::Of::Any,
      [](const Words& args) -> Run {
        return
            [channels = sim::parse_hex_word(args[0])](Playing& playing) { playing.expect_outputs(channels); };
      }},
-    {"led", "on|off|flashing", 1, 1, Row::Of::Any, led},
-    {"module", "N", 1, 1, Row::Of::Scenarios, module},
-    {"line", "NAME", 1, 1, Row::Of::Scenarios, line},
+    {"led on|off|flashing", Row::Of::Any, led},
+    {"module N", Row::Of::Scenarios, module},
+    {"line NAME", Row::Of::Scenarios, line},
 };
 
 /// An action of the control socket, on module N or on the chosen line.
@@ -157,7 +149,7 @@ bool is_action(const std::string& word) {
 [[noreturn]] void refuse(const std::string& text) {
   std::string shapes = "> TEXT, < TEXT, => HEX, <= HEX";
   for (const Row& row : kRows) {
-    shapes += ", " + row.shape();
+    shapes += ", " + std::string(row.shape);
   }
   fail("'" + text + "' is not a step; expected one of " + shapes +
        ", N ACTION, fault FAULT, fault off K|all");
@@ -216,12 +208,10 @@ Step parse_step(unsigned line, const std::string& text, const Model* model) {
   const Words words = sim::words_of(text);
   const Words args(words.begin() + 1, words.end());
   for (const Row& row : kRows) {
-    if (row.name != words[0]) {
+    if (!sim::is_shape_of(row.shape, words[0])) {
       continue;
     }
-    if (args.size() < row.fewest || args.size() > row.most) {
-      fail("'" + text + "': expected " + row.shape());
-    }
+    sim::check_shape(row.shape, args, "'" + text + "': expected ");
     Run run = row.parse(args);
     if (model != nullptr && row.of == Row::Of::Scenarios) {
       refuse_in_transcripts(text);

@@ -9,22 +9,6 @@ namespace ex9000::sim {
 
 namespace {
 
-constexpr const char* kProgramCommands =
-    "  line NAME ...       one of the six above, for that line; required if there are several lines\n"
-    "  advance TIME [after N] [quiet]\n"
-    "                      requires --speed step. With 'after N', first waits until N bytes have arrived at "
-    "the ports.\n"
-    "                      Sends all arrived bytes on the lines, and advances the time by TIME. With "
-    "'quiet', stops as\n"
-    "                      soon as nothing is pending. Replies with the time\n"
-    "  list                lists the modules\n"
-    "  help                lists the commands\n"
-    "  quit                ends the simulator\n";
-
-std::string all_shapes() {
-  return joined(action_shapes(), ", ") + ", line NAME ..., advance TIME [after N] [quiet], list, help, quit";
-}
-
 std::string where(const SimulatedModule& module) {
   if (!module.powered()) {
     return " without power";
@@ -64,14 +48,12 @@ Control::Reply Control::carry_out(const std::string& command) {
     }
     const std::string result = first == "quit"   ? ""
                                : first == "list" ? list(lines_)
-                               : first == "help" ? all_shapes()
+                               : first == "help" ? action_shapes()
                                                  : act(lines_, words);
     return {"ok" + (result.empty() ? "" : " " + result), first == "quit"};
   } catch (const std::invalid_argument& error) {
     return {std::string("error: ") + error.what(), false};
   }
 }
-
-std::string control_commands() { return action_help() + kProgramCommands; }
 
 }  // namespace ex9000::sim

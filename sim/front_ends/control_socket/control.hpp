@@ -26,7 +26,4 @@ class Control {
   LinesInUse lines_;
 };
 
-/// Returns the commands and what they do, for help. The text has several lines.
-std::string control_commands();
-
 }  // namespace ex9000::sim

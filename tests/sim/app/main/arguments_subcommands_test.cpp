@@ -9,7 +9,7 @@
 #include "sim/app/exports/describe.hpp"
 #include "sim/app/main/arguments.hpp"
 #include "sim/app/setup/bus_file.hpp"
-#include "sim/front_ends/control_socket/control.hpp"
+#include "sim/notation/actions.hpp"
 #include "sim/notation/fault_notation.hpp"
 #include "tests/sim/app/main/parsed_arguments.hpp"
 
@@ -79,7 +79,7 @@ TEST(Arguments, HelpFitsOnAScreenAndHasTopics) {
   const std::string all = printed({"--help"});
   EXPECT_LE(std::count(all.begin(), all.end(), '\n'), 45);
   EXPECT_NE(printed({"help", "faults"}).find(fault_help()), std::string::npos);
-  EXPECT_NE(printed({"help", "control"}).find(control_commands()), std::string::npos);
+  EXPECT_NE(printed({"help", "control"}).find(action_help()), std::string::npos);
   for (const auto& [topic, word] :
        {std::pair("modules", "  eeprom=FILE "), std::pair("ports", "  serial:DEVICE "),
         std::pair("inputs", "C key at TIME"), std::pair("steps", "power-cycle")}) {

@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "sim/notation/actions.hpp"
 #include "sim/notation/module_notation.hpp"
 #include "tests/sim/front_ends/control_socket/control_bench.hpp"
 
@@ -60,17 +61,17 @@ TEST(ControlLine, TheCommandHelpAndTheOptionHelpShowTheseCommands) {
                                  "baud RATE",
                                  "format FORMAT",
                                  "sent",
-                                 "fault FAULT",
+                                 "fault FAULT...",
                                  "fault off K|all",
                                  "faults",
-                                 "N fault FAULT",
+                                 "N fault FAULT...",
                                  "line NAME ...",
                                  "list",
                                  "help",
                                  "quit",
                                  "advance TIME [after N] [quiet]"}) {
     EXPECT_TRUE(has(" " + text + ",", " " + form + ",")) << form << " in " << text;
-    EXPECT_TRUE(has("\n" + control_commands(), "\n  " + form + (form.size() < 19 ? " " : "\n"))) << form;
+    EXPECT_TRUE(has("\n" + action_help(), "\n  " + form + (form.size() < 19 ? " " : "\n"))) << form;
   }
 }
 
