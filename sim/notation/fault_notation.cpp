@@ -7,6 +7,7 @@
 #include <limits>
 #include <sstream>
 
+#include "sim/notation/word_reader.hpp"
 #include "sim/text/durations.hpp"
 #include "sim/text/fail.hpp"
 #include "sim/text/values.hpp"
@@ -45,31 +46,7 @@ constexpr std::array<ValueNotation, 7> kValues{{
 
 const ValueNotation& value_of(const FaultKind& kind) { return kValues[static_cast<std::size_t>(kind.value)]; }
 
-/// Reads words one after the other. `words` must outlive this object.
-class Reader {
- public:
-  explicit Reader(const Words& words) : words_(words) {}
-
-  [[nodiscard]] bool done() const { return at_ == words_.size(); }
-  std::string next(const std::string& wanted) {
-    if (done()) {
-      fail("ends too early; expected " + wanted);
-    }
-    return words_[at_++];
-  }
-  void expect(const std::string& wanted) {
-    const std::string word = next("'" + wanted + "'");
-    if (word != wanted) {
-      fail("'" + word + "': expected '" + wanted + "'");
-    }
-  }
-
- private:
-  const Words& words_;
-  std::size_t at_ = 0;
-};
-
-const FaultKind& read_kind(Reader& reader) {
+const FaultKind& read_kind(WordReader& reader) {
   const std::string name = reader.next("one of " + names_of(fault_kinds()));
   for (const FaultKind& kind : fault_kinds()) {
     if (kind.name == name) {
@@ -90,7 +67,7 @@ std::uint64_t ordinal(const std::string& word) {
 }
 
 /// Reads what follows `every`.
-void read_period(Reader& reader, Schedule& schedule) {
+void read_period(WordReader& reader, Schedule& schedule) {
   const std::string word = reader.next("'reply', '10th reply' or a duration after 'every'");
   schedule.count = word == "reply" ? 1 : ordinal(word);
   if (schedule.count == 0) {
@@ -107,7 +84,7 @@ void read_period(Reader& reader, Schedule& schedule) {
   }
 }
 
-void read_when(Reader& reader, const std::string& word, Schedule& schedule) {
+void read_when(WordReader& reader, const std::string& word, Schedule& schedule) {
   if (word == "at") {
     schedule.when = When::At;
     schedule.time = parse_time(reader.next("a time after 'at'"));
@@ -129,7 +106,7 @@ void read_when(Reader& reader, const std::string& word, Schedule& schedule) {
   }
 }
 
-Schedule read_schedule(Reader& reader) {
+Schedule read_schedule(WordReader& reader) {
   Schedule schedule;
   while (!reader.done()) {
     const std::string word = reader.next("a schedule");
@@ -169,7 +146,7 @@ void check(const FaultKind& kind, const Schedule& schedule) {
 
 Fault parse_fault(const std::string& text, std::optional<std::size_t> module) {
   const Words words = words_of(text);
-  Reader reader(words);
+  WordReader reader(words);
   Fault fault;
   fault.kind = &read_kind(reader);
   fault.module = module;

@@ -1,10 +1,9 @@
 #include "sim/notation/input_notation.hpp"
 
+#include <map>
 #include <optional>
-#include <sstream>
-#include <utility>
-#include <vector>
 
+#include "sim/notation/word_reader.hpp"
 #include "sim/text/durations.hpp"
 #include "sim/text/fail.hpp"
 #include "sim/text/values.hpp"
@@ -15,75 +14,49 @@ namespace {
 
 constexpr VirtualTime kShortest = std::chrono::microseconds(10);
 
-/// Parses durations. Each duration follows its keyword, and no keyword may appear twice.
-class Times {
- public:
-  explicit Times(std::istringstream& words) {
-    for (std::string word; words >> word;) {
-      std::string time;
-      if (!(words >> time)) {
-        fail("expected a duration after '" + word + "'");
-      }
-      for (const auto& [known, value] : times_) {
-        if (known == word) {
-          fail("'" + word + "' is given twice; leave out one of them");
-        }
-      }
-      times_.emplace_back(word, parse_time(time));
+using Times = std::map<std::string, VirtualTime>;
+
+/// Reads the rest, each duration after its keyword. `forms`: those that may appear.
+Times read_times(WordReader& words, const std::string& forms) {
+  Times times;
+  while (!words.done()) {
+    const std::string keyword = words.next(forms);
+    if (forms.find("'" + keyword + " TIME'") == std::string::npos) {
+      fail("'" + keyword + "': expected " + forms);
+    }
+    if (!times.emplace(keyword, parse_time(words.next("a duration after '" + keyword + "'"))).second) {
+      fail("'" + keyword + "' is given twice; leave out one of them");
     }
   }
-
-  /// Removes and returns the duration of a keyword; nullopt if the keyword is not given.
-  std::optional<VirtualTime> take(const std::string& word) {
-    for (auto time = times_.begin(); time != times_.end(); ++time) {
-      if (time->first == word) {
-        const VirtualTime value = time->second;
-        times_.erase(time);
-        return value;
-      }
-    }
-    return std::nullopt;
-  }
-
-  void reject_unknown(const std::string& there_are) const {
-    if (!times_.empty()) {
-      fail("'" + times_.front().first + "': expected " + there_are);
-    }
-  }
-
- private:
-  std::vector<std::pair<std::string, VirtualTime>> times_;
-};
-
-void read_square(std::istringstream& words, InputProgram& program) {
-  std::string period;
-  if (!(words >> period)) {
-    fail("expected a period after 'square'");
-  }
-  program.kind = InputProgram::Kind::Square;
-  program.time = parse_time(period);
-  Times times(words);
-  program.high = times.take("for").value_or(program.time / 2);
-  program.bounce = times.take("bounce").value_or(VirtualTime(0));
-  times.reject_unknown("'for TIME' (how long the input is on) or 'bounce TIME'");
+  return times;
 }
 
-void read_key(std::istringstream& words, InputProgram& program) {
-  Times times(words);
-  const auto at = times.take("at");
-  const auto every = times.take("every");
-  const auto high = times.take("for");
-  program.bounce = times.take("bounce").value_or(VirtualTime(0));
-  times.reject_unknown("'at TIME', 'every TIME', 'for TIME' or 'bounce TIME'");
-  if (at && every) {
+VirtualTime time_of(const Times& times, const std::string& keyword, VirtualTime otherwise = VirtualTime(0)) {
+  const auto time = times.find(keyword);
+  return time == times.end() ? otherwise : time->second;
+}
+
+void read_square(WordReader& words, InputProgram& program) {
+  program.kind = InputProgram::Kind::Square;
+  program.time = parse_time(words.next("a period after 'square'"));
+  const Times times = read_times(words, "'for TIME' (how long the input is on) or 'bounce TIME'");
+  program.high = time_of(times, "for", program.time / 2);
+  program.bounce = time_of(times, "bounce");
+}
+
+void read_key(WordReader& words, InputProgram& program) {
+  const Times times = read_times(words, "'at TIME', 'every TIME', 'for TIME' or 'bounce TIME'");
+  const bool once = times.count("at") != 0;
+  if (once && times.count("every") != 0) {
     fail("'at' and 'every' cannot be combined; leave out one of them");
   }
-  if ((!at && !every) || !high) {
+  if (times.count("at") + times.count("every") == 0 || times.count("for") == 0) {
     fail("a key is incomplete; expected 'at TIME' or 'every TIME', and 'for TIME' (how long it is pressed)");
   }
-  program.kind = at ? InputProgram::Kind::KeyOnce : InputProgram::Kind::KeyAgain;
-  program.time = at ? *at : *every;
-  program.high = *high;
+  program.kind = once ? InputProgram::Kind::KeyOnce : InputProgram::Kind::KeyAgain;
+  program.time = time_of(times, once ? "at" : "every");
+  program.high = time_of(times, "for");
+  program.bounce = time_of(times, "bounce");
 }
 
 void check(const InputProgram& program) {
@@ -113,22 +86,21 @@ unsigned parse_input(const std::string& text, const Model& model) {
 }
 
 InputProgram parse_input_program(const std::string& text, const Model& model) {
-  std::istringstream words(text);
-  std::string channel;
-  if (!(words >> channel)) {
+  WordReader words(words_of(text));
+  if (words.done()) {
     fail("the channel is missing; expected 'CHANNEL square PERIOD' or 'CHANNEL key at TIME for TIME'");
   }
   return with_place(text + ": ", [&] {
-    std::string kind;
-    words >> kind;
+    const std::string forms = "'square PERIOD' or 'key at TIME for TIME'";
     InputProgram program;
-    program.channel = parse_input(channel, model);
+    program.channel = parse_input(words.next("the channel"), model);
+    const std::string kind = words.next(forms);
     if (kind == "square") {
       read_square(words, program);
     } else if (kind == "key") {
       read_key(words, program);
     } else {
-      fail("'" + kind + "': expected 'square PERIOD' or 'key at TIME for TIME'");
+      fail("'" + kind + "': expected " + forms);
     }
     check(program);
     return program;

@@ -52,7 +52,7 @@ TEST(InputProgram, AnInvalidProgramIsRefusedWithTheErrorAndTheCorrection) {
            {"8 square 1s", "no input '8'", "0 to 7"},
            {"-1 square 1s", "no input '-1'", "0 to 7"},
            {"0x1 square 1s", "no input '0x1'", "0 to 7"},
-           {"0", "''", "square PERIOD"},
+           {"0", "ends too early", "square PERIOD"},
            {"0 sine 1s", "'sine'", "square PERIOD"},
            {"0 square", "expected a period", "after 'square'"},
            {"0 square 1", "'1': expected a duration", "12.5s"},
