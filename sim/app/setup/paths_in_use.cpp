@@ -35,7 +35,7 @@ std::vector<InUse> in_use_by(const Setup& setup) {
   add("the control socket", setup.control);
   for (const LineSetup& line : setup.lines) {
     for (const PortSetup& port : line.ports) {
-      add(port.kind == PortSetup::Kind::Pty ? "the pseudo-terminal" : "the serial port", port.path);
+      add("the port", port.path);
     }
     for (const ModuleSpec& module : line.modules) {
       add("a module's EEPROM file", module.eeprom);

@@ -51,9 +51,11 @@ std::string random_id() {
   return id;
 }
 
+}  // namespace
+
 /// A part of the state, and the number of the look at which it last changed. A look captures the present
 /// state for all viewers.
-struct Tracked {
+struct Panel::Tracked {
   Message value;
   std::uint64_t changed = 0;  ///< 0: there is no value yet
 
@@ -64,8 +66,6 @@ struct Tracked {
     }
   }
 };
-
-}  // namespace
 
 struct Panel::Module {
   const SimulatedModule* module = nullptr;

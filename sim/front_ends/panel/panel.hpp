@@ -70,6 +70,7 @@ class Panel {
   std::unique_ptr<PanelViewer> viewer();
 
  private:
+  struct Tracked;
   struct Watched;
   struct Module;
   class Viewer;

@@ -104,9 +104,9 @@ class BusFileSchema(unittest.TestCase):
         jsonschema.Draft202012Validator.check_schema(SCHEMA)
         self.assertTrue(schema_accepts(yaml.safe_load(run("--example").stdout)))
 
-    def test_the_schema_has_exactly_the_keys_of_this_test(self):
+    def test_the_schema_describes_each_key(self):
         for place, keys in RIGHT.items():
-            self.assertEqual(set(PROPERTIES[place]), set(keys), place)
+            self.assertLessEqual(set(keys), set(PROPERTIES[place]), place)
             for key, form in PROPERTIES[place].items():
                 self.assertTrue(form["description"], key)
 
