@@ -112,6 +112,7 @@ class Device {
   }
 
   constexpr Board& board() { return board_; }
+  constexpr Module& module() { return module_; }
   [[nodiscard]] const Module& module() const { return module_; }
 
  private:

@@ -16,10 +16,10 @@ namespace ex9000 {
 /// 32-bit words, which take less time in the interrupt than the 16-bit count of an EventTally.
 class LineTallies {
  public:
-  /// Counts a frame. For interrupts.
-  [[gnu::always_inline]] void count_in_interrupt(Verdict verdict) {
+  /// Counts frames. For interrupts.
+  [[gnu::always_inline]] void count_in_interrupt(Verdict verdict, std::uint32_t frames = 1) {
     auto& total = totals_[static_cast<std::size_t>(verdict)];
-    total.store_in_interrupt(total.load() + 1U);
+    total.store_in_interrupt(total.load() + frames);
   }
 
   /// Counts a byte with a framing or parity error, or a break. For interrupts.

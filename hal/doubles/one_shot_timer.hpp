@@ -8,7 +8,9 @@ class OneShotTimer {
  public:
   explicit OneShotTimer(const VirtualClock& clock) : clock_(clock) {}
 
-  void restart(Duration after) { fires_ = clock_.when(after); }
+  void restart(Duration after) { restart_at(clock_.when(after)); }
+  /// kNever: the timer stops.
+  void restart_at(VirtualTime fires) { fires_ = fires; }
 
   [[nodiscard]] VirtualTime next() const { return fires_; }
   /// Returns whether the timer fires now. If it does, the caller must call the function of `Device` that

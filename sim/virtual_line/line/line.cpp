@@ -20,7 +20,7 @@ LineTiming instantly(std::uint32_t /*baud*/, LineFormat /*format*/) {
 
 Line::Line(const std::vector<ModuleSpec>& modules, LineKind kind, Master::Receive receive)
     : kind_(kind),
-      wires_(clock_, kind.times_faster),
+      wires_(clock_, kind.times_faster, kind.fewest_to_share),
       master_(wires_, SerialMode{baud_rate(kFactoryBaudCode)}, std::move(receive)),
       spacing_(*this) {
   for (const ModuleSpec& spec : modules) {
@@ -63,7 +63,8 @@ void Line::move_input(std::size_t index, const InputProgram& program) {
 }
 
 bool Line::unsettled() const {
-  return wires_.busy() || master_.sending() || (faults_ && faults_->pending()) ||
+  return wires_.busy() || wires_.waits_for_silence() || master_.sending() ||
+         (faults_ && faults_->pending()) ||
          std::any_of(modules_.begin(), modules_.end(), [](const auto& module) { return module->pending(); });
 }
 

@@ -19,6 +19,7 @@ namespace ex9000::sim {
 struct LineKind {
   std::uint32_t times_faster = 1;  ///< factor for all nominal rates
   TimingAt timing_at = LineTiming::at;
+  std::size_t fewest_to_share = Wires::kFewestToShare;  ///< see Wires
 };
 
 /// Bytes take as long as on a real line.

@@ -12,61 +12,72 @@ namespace ex9000::sim {
 using hal::doubles::kNever;
 using hal::doubles::VirtualTime;
 
-/// Stores one due time for each station, and the earliest due time of each block of stations. After a change
-/// of due times, `next` searches only the blocks that have changed. Often all stations set their times
-/// between two calls of `next`, for example after they receive a byte, so `set` must be fast.
+/// One due time for each station, at the leaves of a tree whose other nodes are the earlier of the two below
+/// them.
 class DueTimes {
  public:
   /// Adds a station without a due time. Returns its number, counted from 0.
-  std::size_t add();
+  std::size_t add() {
+    if (stations_ == leaves_) {
+      grow();
+    }
+    return stations_++;
+  }
   /// Replaces the due time of a station; kNever: the station has none.
   void set(std::size_t station, VirtualTime when) {
-    times_[station] = when;
-    earliest_of_[station / kBlock] = kUnknown;
-    earliest_ = kUnknown;
-    if (when <= running_) {
-      next_to_run_ = std::min(next_to_run_, station);
-    }
+    earliest_[leaves_ + station] = when;
+    update_above(leaves_ + station);
   }
   /// Returns the earliest due time; kNever if there is none.
-  [[nodiscard]] VirtualTime next() const {
-    if (earliest_ == kUnknown) {
-      search();
-    }
-    return earliest_;
-  }
+  [[nodiscard]] VirtualTime next() const { return earliest_[1]; }
+
   /// Calls `run` with the number of each station whose due time is not after `now`, until no station is due.
   /// The next station is always the due station with the lowest number. Removes the due time of a station
   /// before the call for this station. `run` may set due times of all stations, but it must not call
   /// `run_due`.
   template <class Run>
   void run_due(VirtualTime now, Run run) {
-    running_ = now;
-    for (next_to_run_ = 0; next_to_run_ < stations_;) {
-      const std::size_t station = next_to_run_++;
-      if (times_[station] <= now) {
-        set(station, kNever);
-        run(station);
-      } else if (station % kBlock == 0 && earliest_of_[station / kBlock] > now) {
-        next_to_run_ = station + kBlock;
+    while (next() <= now) {
+      std::size_t node = 1;
+      while (node < leaves_) {
+        node *= 2;
+        node += earliest_[node] <= now ? 0U : 1U;
+      }
+      const std::size_t station = node - leaves_;
+      earliest_[node] = kNever;
+      run(station);  // most stations set their next time, so the nodes above are updated once
+      if (earliest_[leaves_ + station] == kNever) {
+        update_above(leaves_ + station);
       }
     }
-    running_ = kNotRunning;
   }
 
  private:
-  static constexpr std::size_t kBlock = 8;
-  static constexpr VirtualTime kNotRunning = VirtualTime::min();
-  static constexpr VirtualTime kUnknown = VirtualTime::min();  ///< a due time has changed since the search
-
-  void search() const;
+  void update_above(std::size_t node) {
+    while (node > 1) {
+      node /= 2;
+      const VirtualTime earlier = std::min(earliest_[2 * node], earliest_[2 * node + 1]);
+      if (earliest_[node] == earlier) {
+        return;
+      }
+      earliest_[node] = earlier;
+    }
+  }
+  /// Doubles the number of leaves.
+  void grow() {
+    const std::vector<VirtualTime> before(earliest_.begin() + static_cast<std::ptrdiff_t>(leaves_),
+                                          earliest_.end());
+    leaves_ *= 2;
+    earliest_.assign(2 * leaves_, kNever);
+    for (std::size_t station = 0; station < before.size(); ++station) {
+      set(station, before[station]);
+    }
+  }
 
   std::size_t stations_ = 0;
-  std::vector<VirtualTime> times_;                ///< whole blocks; the unused entries are kNever
-  VirtualTime running_ = kNotRunning;             ///< the `now` of `run_due` while `run_due` runs
-  std::size_t next_to_run_ = 0;                   ///< no station before this one is due at `running_`
-  mutable std::vector<VirtualTime> earliest_of_;  ///< the earliest due time of each block, or kUnknown
-  mutable VirtualTime earliest_ = kNever;         ///< the earliest due time, or kUnknown
+  std::size_t leaves_ = 1;  ///< a power of two
+  /// Node n is above the nodes 2n and 2n + 1; the leaves are at the end. Node 0 is not used.
+  std::vector<VirtualTime> earliest_{kNever, kNever};
 };
 
 }  // namespace ex9000::sim

@@ -90,6 +90,7 @@ void SimulatedModule::restart(ResetReason reason) {
 
 void SimulatedModule::start(ResetReason reason) {
   hung_ = false;
+  in_dcon_frame_ = false;
   stores_ = 0;
   mcu_.emplace(*this);
   mcu_->line.release_late(driver_late_by_);
@@ -99,6 +100,7 @@ void SimulatedModule::start(ResetReason reason) {
 }
 
 void SimulatedModule::stop() {
+  end_.hear_alone();
   mcu_->line.abort();
   wire_.abort();
   // A memory job uses buffers in `mcu_`, so the job must end before these buffers are destroyed.
@@ -248,6 +250,7 @@ void SimulatedModule::run_line() {
   mcu_->line.run();
   if (was_sending && !mcu_->line.sending()) {
     mcu_->device.on_sent();
+    in_dcon_frame_ = false;
   }
 }
 
@@ -275,8 +278,40 @@ void SimulatedModule::receive(std::uint8_t byte, ByteStatus status) {
     receive_after_silence(byte, status);
     return;
   }
+  in_dcon_frame_ = byte != DconAssembler::kEnd || status != ByteStatus::Good;
   mcu_->device.on_receive(byte, status);
   work_or_wait();  // most bytes cause no work
+}
+
+std::optional<Hearing> SimulatedModule::hearing() const {
+  if (!mcu_ || pending()) {
+    return std::nullopt;
+  }
+  const InForce& in_force = module().state().in_force;
+  if (in_force.protocol == Protocol::Ascii && in_dcon_frame_) {
+    return std::nullopt;
+  }
+  return Hearing{in_force.protocol, in_force.checksum, in_force.baud_code, in_force.address,
+                 timing_at_(baud_rate(in_force.baud_code), line_format(in_force.baud_code))};
+}
+
+void SimulatedModule::catch_up(const Heard& missed) {
+  for (std::size_t verdict = 0; verdict < missed.verdicts.size(); ++verdict) {
+    if (missed.verdicts[verdict] != 0) {
+      mcu_->device.module().tallies().count_in_interrupt(static_cast<Verdict>(verdict),
+                                                         missed.verdicts[verdict]);
+    }
+  }
+  for (const std::uint16_t each : missed.frame) {
+    if (each == Heard::kSilence) {
+      mcu_->device.on_silence();
+    } else {
+      mcu_->device.on_receive(static_cast<std::uint8_t>(each), ByteStatus::Good);
+    }
+  }
+  mcu_->silence_timer.restart_at(missed.silence_ends);
+  in_dcon_frame_ = !missed.frame.empty();
+  wait();
 }
 
 /// Runs the interrupt of the silence timer before the receive interrupt, see hal/one_shot_timer.hpp.

@@ -100,8 +100,8 @@ class SimulatedModule final : public Station {
   hal::doubles::Outputs& output_pins() { return outputs_; }
   hal::doubles::StatusLed& led() { return led_; }
   /// Returns true if the module is starting up, waits for the end of a silence or of a turn-around time,
-  /// processes a request, accesses its memory, or sends a reply. Also returns true if a late reply waits or
-  /// is on the wires.
+  /// processes a request, accesses its memory, or sends a reply. A silence of a shared ear does not count.
+  /// Also returns true if a late reply waits or is on the wires.
   [[nodiscard]] bool pending() const;
   /// Returns how often the hardware watchdog has reset the module since this object was constructed.
   [[nodiscard]] std::uint64_t watchdog_resets() const { return watchdog_resets_; }
@@ -111,6 +111,8 @@ class SimulatedModule final : public Station {
   // --- Station ---
   void run() override;
   void receive(std::uint8_t byte, ByteStatus status) override;
+  [[nodiscard]] std::optional<Hearing> hearing() const override;
+  void catch_up(const Heard& missed) override;
 
  private:
   /// See hal::Device.
@@ -188,6 +190,7 @@ class SimulatedModule final : public Station {
   bool switched_on_ = false;
   bool supply_interrupted_ = false;
   bool hung_ = false;
+  bool in_dcon_frame_ = false;  ///< perhaps: since the last CR or reply, a byte has arrived
   std::uint64_t watchdog_resets_ = 0;
   SerialMode listens_in_;  ///< the mode that the last call of `WireEnd::listen` has set
   // `receive` uses the members from here on. Many modules may receive each byte, so these members are next

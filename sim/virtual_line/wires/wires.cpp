@@ -20,6 +20,7 @@ struct Wires::End final : WireEnd {
                        wires.bit_rate(mode.baud));
   }
   void listen(SerialMode mode) override { wires.listen(*this, mode); }
+  void hear_alone() override { wires.hear_alone(index); }
   void run_at(VirtualTime when) override { wires.due_times_.set(index, when); }
 
   Wires& wires;
@@ -27,7 +28,8 @@ struct Wires::End final : WireEnd {
   bool driving = false;
 };
 
-Wires::Wires(VirtualClock& clock, std::uint32_t times_faster) : clock_(clock), times_faster_(times_faster) {}
+Wires::Wires(VirtualClock& clock, std::uint32_t times_faster, std::size_t fewest_to_share)
+    : clock_(clock), times_faster_(times_faster), fewest_to_share_(fewest_to_share) {}
 
 Wires::~Wires() = default;
 
@@ -46,6 +48,7 @@ SerialMode Wires::on_the_wires(SerialMode mode) const {
 }
 
 WireEnd& Wires::attach(Station& station) {
+  alone_.push_back(receivers_.size());
   receivers_.push_back({&station});
   ends_.push_back(std::make_unique<End>(*this, due_times_.add()));
   return *ends_.back();
@@ -56,6 +59,9 @@ void Wires::run_next() {
   const VirtualTime now = clock_.virtual_now();
   if (std::min(next_byte_end_, next_sample_) <= now) {
     run_wire();
+  }
+  if (next_silence_ <= now) {
+    end_silences();
   }
   if (due_times_.next() <= now) {
     due_times_.run_due(now, [this](std::size_t station) { receivers_[station].station->run(); });
@@ -123,6 +129,7 @@ void Wires::listen(End& end, SerialMode mode) {
   if (now == receiver.mode) {
     return;
   }
+  hear_alone(end.index);
   count_listener(receiver.mode, -1);
   count_listener(now, 1);
   receiver.mode = now;
@@ -164,8 +171,13 @@ void Wires::begin_sampling() {
   if (first == waves_.end()) {
     return;
   }
+  for (const auto& group : groups_) {
+    if (group->ear.members() != 0 && has_to_sample(group->receiver)) {
+      group->ear.dissolve();
+    }
+  }
   for (Receiver& receiver : receivers_) {
-    if (!receiver.samples && has_to_sample(receiver)) {
+    if (receiver.group == nullptr && !receiver.samples && has_to_sample(receiver)) {
       receiver.samples = true;
       // The sampler begins at the start of the first byte that has not ended, or at its own position if that
       // is later. It does not have to sample older bytes: the receiver got them unchanged, has sampled them
@@ -237,13 +249,107 @@ void Wires::deliver(const Wave& over) {
   for (WireObserver* observer : observers_) {
     observer->byte(over.station, over.byte, over.nominal, over.collided, over.start, ends);
   }
+  const VirtualTime quiet_since = std::exchange(quiet_since_, over.end);
   if (!over.arrives_whole()) {
     return;
   }
-  for (const Receiver& receiver : receivers_) {
+  if (over.start > quiet_since && alone_.size() + groups_.size() > fewest_to_share_) {
+    share(over);
+  }
+  if (!groups_.empty()) {
+    for (const auto& group : groups_) {
+      if (group->ear.members() != 0 && has_heard_from_the_start(group->receiver, over)) {
+        group->ear.hear(over.byte);
+      }
+    }
+    note_silences();
+  }
+  delivers_ = true;
+  for (const std::size_t station : alone_) {
+    const Receiver& receiver = receivers_[station];
     if (!receiver.samples && has_heard_from_the_start(receiver, over)) {
       receiver.station->receive(over.byte, ByteStatus::Good);
     }
+  }
+  delivers_ = false;
+  while (!now_alone_.empty()) {
+    add_alone(now_alone_.back());
+    now_alone_.pop_back();
+  }
+}
+
+/// Lets stations share an ear from `first` on, the first byte after a gap.
+void Wires::share(const Wave& first) {
+  for (const std::size_t station : alone_) {
+    Receiver& receiver = receivers_[station];
+    if (receiver.samples || receiver.sampler.busy() || !has_heard_from_the_start(receiver, first)) {
+      continue;
+    }
+    if (const auto hearing = receiver.station->hearing()) {
+      Group& group = group_for(*hearing, receiver);
+      if (group.ear.at_rest()) {
+        group.receiver.sampler.skip_to(first.start);
+        group.ear.add(station, hearing->address);
+        receiver.group = &group;
+      }
+    }
+  }
+  alone_.erase(std::remove_if(alone_.begin(), alone_.end(),
+                              [this](std::size_t station) { return receivers_[station].group != nullptr; }),
+               alone_.end());
+  for (const auto& group : groups_) {
+    if (group->ear.members() < fewest_to_share_) {
+      group->ear.dissolve();
+    }
+  }
+}
+
+/// Returns the group of stations that hear like `receiver`, which may have no members yet.
+Wires::Group& Wires::group_for(const Hearing& hearing, const Receiver& receiver) {
+  for (const auto& group : groups_) {
+    if (group->receiver.mode == receiver.mode && group->ear.hears_like(hearing)) {
+      return *group;
+    }
+  }
+  groups_.push_back(
+      std::make_unique<Group>(clock_, hearing, [this](std::size_t station) { hear_alone(station); }));
+  groups_.back()->receiver.mode = receiver.mode;
+  return *groups_.back();
+}
+
+void Wires::hear_alone(std::size_t station) {
+  Receiver& receiver = receivers_[station];
+  Group* const group = std::exchange(receiver.group, nullptr);
+  if (group == nullptr) {
+    return;
+  }
+  receiver.sampler = group->receiver.sampler;
+  if (delivers_) {
+    now_alone_.push_back(station);
+  } else {
+    add_alone(station);
+  }
+  receiver.station->catch_up(group->ear.remove(station));
+  note_silences();
+}
+
+void Wires::add_alone(std::size_t station) {
+  alone_.insert(std::lower_bound(alone_.begin(), alone_.end(), station), station);
+}
+
+void Wires::end_silences() {
+  for (const auto& group : groups_) {
+    if (group->ear.silence_ends() <= clock_.virtual_now()) {
+      group->ear.end_silence();
+    }
+  }
+  note_silences();
+}
+
+void Wires::note_silences() {
+  next_silence_ = kNever;
+  for (const auto& group : groups_) {
+    next_silence_ = std::min(next_silence_, group->ear.silence_ends());
   }
 }
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "hal/doubles/serial_line.hpp"
 #include "hal/doubles/virtual_clock.hpp"
 #include "sim/virtual_line/wires/due_times.hpp"
+#include "sim/virtual_line/wires/shared_ear.hpp"
 #include "sim/virtual_line/wires/uart_sampler.hpp"
 
 namespace ex9000::sim {
@@ -30,6 +32,10 @@ class Station {
   /// Wires calls this after the first stop bit of a byte, if the station listens; `status` says whether the
   /// byte has an error. A station also receives its own bytes, because both directions share the two wires.
   virtual void receive(std::uint8_t /*byte*/, ByteStatus /*status*/) {}
+  /// Returns how the station hears, if it can share an ear now, because it is at rest between two frames.
+  [[nodiscard]] virtual std::optional<Hearing> hearing() const { return std::nullopt; }
+  /// The station has shared an ear until now: brings it into the state in which it would be without that.
+  virtual void catch_up(const Heard& /*missed*/) {}
 
  protected:
   ~Station() = default;
@@ -44,6 +50,8 @@ class WireEnd : public Wire {
   /// Sets the time of the station's next `run`, in place of an earlier setting; kNever: Wires does not call
   /// `run`.
   virtual void run_at(VirtualTime when) = 0;
+  /// Ends the sharing of an ear. Call this before the station changes in a way that concerns its hearing.
+  virtual void hear_alone() = 0;
   /// Like `put`, but the byte has wrong parity if the format has a parity bit.
   virtual void put_with_wrong_parity(std::uint8_t byte, SerialMode mode) = 0;
 
@@ -97,7 +105,13 @@ class Disturbance {
 /// the factor does not change which stations understand each other.
 class Wires {
  public:
-  explicit Wires(VirtualClock& clock, std::uint32_t times_faster = 1);
+  /// An ear for fewer than these costs more than it saves.
+  static constexpr std::size_t kFewestToShare = 3;
+
+  /// `fewest_to_share`: at least this number of stations share an ear; the number makes no difference that
+  /// stations or observers can notice.
+  explicit Wires(VirtualClock& clock, std::uint32_t times_faster = 1,
+                 std::size_t fewest_to_share = kFewestToShare);
   Wires(const Wires&) = delete;
   Wires& operator=(const Wires&) = delete;
   ~Wires();
@@ -113,7 +127,7 @@ class Wires {
 
   /// Returns the time of the next event of Wires or of a station; kNever if there is none.
   [[nodiscard]] VirtualTime next() const {
-    return std::min(std::min(next_byte_end_, next_sample_), due_times_.next());
+    return std::min(std::min(next_byte_end_, next_sample_), std::min(next_silence_, due_times_.next()));
   }
   /// Sets the clock to the time `next`, unless the clock is already later. Then processes all events that are
   /// due. `next` must not be kNever.
@@ -127,12 +141,15 @@ class Wires {
   [[nodiscard]] bool carries() const { return carried_ != 0; }
   /// Returns whether a byte is on the wires or a driver is enabled.
   [[nodiscard]] bool busy() const { return carries() || drivers_on_ != 0; }
+  /// Returns whether a shared ear waits for the end of a silence.
+  [[nodiscard]] bool waits_for_silence() const { return next_silence_ != kNever; }
   /// Returns whether all stations that listen have the rate and the parity of `mode`.
   [[nodiscard]] bool all_hear(SerialMode mode) const { return !has_other_listeners(on_the_wires(mode)); }
   VirtualClock& clock() { return clock_; }
 
  private:
   struct End;
+  struct Group;
 
   /// The receiver of a station. The receivers of a line are in one array, because each byte reaches all of
   /// them.
@@ -141,6 +158,16 @@ class Wires {
     SerialMode mode = {};  ///< on the wires; a rate of 0: the station does not listen
     bool samples = false;  ///< samples the wires, because it cannot get every byte unchanged
     UartSampler sampler = {};
+    Group* group = nullptr;  ///< whose ear hears for the station; null: the station hears alone
+  };
+
+  /// Stations that share an ear, because they have heard the same since they began to listen.
+  struct Group {
+    Group(const VirtualClock& clock, const Hearing& hearing, SharedEar::Leave leave)
+        : ear(clock, hearing, std::move(leave)) {}
+
+    Receiver receiver;  ///< `mode` and `sampler` of the members
+    SharedEar ear;
   };
 
   [[nodiscard]] std::uint32_t bit_rate(std::uint32_t baud) const;
@@ -159,11 +186,23 @@ class Wires {
   void finish_bytes();
   void deliver(const Wave& over);
   void forget_waves();
+  void share(const Wave& first);
+  Group& group_for(const Hearing& hearing, const Receiver& receiver);
+  void hear_alone(std::size_t station);
+  void add_alone(std::size_t station);
+  void end_silences();
+  void note_silences();
 
   VirtualClock& clock_;
   std::uint32_t times_faster_;
+  std::size_t fewest_to_share_;
   std::vector<std::unique_ptr<End>> ends_;  ///< one for each station
   std::vector<Receiver> receivers_;         ///< one for each station
+  std::vector<std::unique_ptr<Group>> groups_;
+  std::vector<std::size_t> alone_;      ///< the stations that hear alone, in ascending order
+  std::vector<std::size_t> now_alone_;  ///< those that `alone_` gets after a delivery
+  bool delivers_ = false;
+  VirtualTime quiet_since_{0};  ///< the end of the last byte
   DueTimes due_times_;
   std::vector<WireObserver*> observers_;
   Disturbance* disturbance_ = nullptr;
@@ -172,7 +211,8 @@ class Wires {
   unsigned drivers_on_ = 0;
   std::map<std::pair<std::uint32_t, LineFormat>, int> listeners_;  ///< number of receivers for each mode
   VirtualTime next_byte_end_ = kNever;
-  VirtualTime next_sample_ = kNever;  ///< not kNever while a receiver samples
+  VirtualTime next_sample_ = kNever;   ///< not kNever while a receiver samples
+  VirtualTime next_silence_ = kNever;  ///< not kNever while a shared ear waits for a silence
 };
 
 }  // namespace ex9000::sim

@@ -4,12 +4,9 @@
 //
 //     load [--without pymodbus] [MILLISECONDS]    how long to poll each server in each round; default: 1000
 //
-// Fails if a module requires too much memory, or if the simulator with one module uses more than 1.5 times
-// the processor time of the libmodbus server. The limit of the processor time applies to the best round,
-// because other programs on the processors disturb single rounds. If other programs disturb all rounds, the
-// program skips this limit. The cost of many modules has no limit here, because other programs that use the
-// caches change this cost. tests/bench/simulator_instructions limits the instructions that each further
-// module adds.
+// Fails if a module requires too much memory. The processor times have no limit here, because they depend on
+// the machine, above all on the cost of its system calls; tests/bench/simulator_instructions limits the
+// instructions.
 #include <sched.h>
 
 #include <array>
@@ -18,7 +15,6 @@
 #include <cstdlib>
 #include <fstream>
 #include <memory>
-#include <optional>
 #include <sstream>
 #include <string>
 #include <thread>
@@ -125,13 +121,7 @@ void compare_one_module(milliseconds time, bool with_pymodbus) {
                                      std::pair<const char*, std::vector<Server>&>{"pseudo-terminal", tty}}) {
     std::printf("one module over %s:\n", transport);
     measure(servers, time);
-    print("ex9000-sim / libmodbus", servers[0].median() / servers[1].median(), 1.25);
-    if (const std::optional<double> ratio = servers[0].least_ratio_to(servers[1])) {
-      judge("ex9000-sim / libmodbus in the best round", *ratio, 1.25, 1.5);
-    } else {
-      std::printf("skipped: limit of ex9000-sim / libmodbus over %s: other programs use the processors\n",
-                  transport);
-    }
+    print("ex9000-sim / libmodbus", servers[0].median() / servers[1].median(), &servers == &tcp ? 0.9 : 1.5);
   }
 }
 
@@ -154,8 +144,8 @@ void compare_modules(milliseconds time, bool with_pymodbus) {
   }
   std::printf("modules on one line, polled in turn over TCP:\n");
   measure(servers, time);
-  print("32 modules / one module", servers[1].median() / servers[0].median(), 1.5);
-  print("247 modules / one module", servers[2].median() / servers[0].median(), 4);
+  print("32 modules / one module", servers[1].median() / servers[0].median(), 1.15);
+  print("247 modules / one module", servers[2].median() / servers[0].median(), 1.5);
   for (std::size_t i = sizes.size(); i < servers.size(); ++i) {
     const Server& ours = servers[i - sizes.size() + 1];
     print(ours.name() + " / pymodbus", ours.median() / servers[i].median(), 1);

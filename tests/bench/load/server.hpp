@@ -2,14 +2,11 @@
 #pragma once
 
 #include <time.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <chrono>
 #include <cstdio>
-#include <fstream>
-#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -46,28 +43,6 @@ inline double processor_seconds(int pid) {
   return static_cast<double>(time.tv_sec) + static_cast<double>(time.tv_nsec) * 1e-9;
 }
 
-/// Returns the sum of the busy times of all processors since the machine started, in seconds. The busy time
-/// includes the time of all programs and of interrupts, and the time that a hypervisor has given to other
-/// machines. Throws std::runtime_error if the system does not report these times.
-inline double busy_seconds() {
-  std::ifstream file("/proc/stat");
-  std::string name;
-  double user = 0;
-  double nice = 0;
-  double system = 0;
-  double idle = 0;
-  double waiting = 0;
-  double interrupts = 0;
-  double soft_interrupts = 0;
-  double stolen = 0;
-  if (!(file >> name >> user >> nice >> system >> idle >> waiting >> interrupts >> soft_interrupts >>
-        stolen)) {
-    throw std::runtime_error("/proc/stat cannot be read");
-  }
-  return (user + nice + system + interrupts + soft_interrupts + stolen) /
-         static_cast<double>(sysconf(_SC_CLK_TCK));
-}
-
 /// A server, and a master that polls the units of the server in turn.
 class Server {
  public:
@@ -75,37 +50,18 @@ class Server {
       : name_(std::move(name)), pid_(pid), master_(std::move(master)), units_(units) {}
 
   void poll_for(std::chrono::milliseconds time, std::size_t round) {
-    constexpr double kMostOfAProcessor = 0.1;  // the share of one processor that other programs may use
     const double before = processor_seconds(pid_);
-    const double own_before = processor_seconds(getpid());
-    const double all_before = busy_seconds();
     const auto began = std::chrono::steady_clock::now();
     const auto transactions = static_cast<double>(master_.poll_until(began + time, units_));
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - began;
     const double used = processor_seconds(pid_) - before;
-    const double others = busy_seconds() - all_before - used - (processor_seconds(getpid()) - own_before);
     microseconds_.at(round) = 1e6 * used / transactions;
     rates_.at(round) = transactions / took.count();
-    disturbed_.at(round) = others > kMostOfAProcessor * took.count();
   }
 
   [[nodiscard]] const std::string& name() const { return name_; }
   /// Returns the processor time of the server for a transaction, in microseconds: the median of all rounds.
   [[nodiscard]] double median() const { return median_of(microseconds_); }
-  /// For each round, divides the processor time of this server for a transaction by that of `other`. Returns
-  /// the smallest of these ratios. Ignores each round in which other programs disturbed the measurement of at
-  /// least one of the two servers. Returns nullopt if other programs disturbed every round. Compares only
-  /// results of the same round, because the speed of the machine can change from round to round.
-  [[nodiscard]] std::optional<double> least_ratio_to(const Server& other) const {
-    std::optional<double> result;
-    for (std::size_t round = 0; round < kRounds; ++round) {
-      const double ratio = microseconds_.at(round) / other.microseconds_.at(round);
-      if (!disturbed_.at(round) && !other.disturbed_.at(round) && (!result || ratio < *result)) {
-        result = ratio;
-      }
-    }
-    return result;
-  }
   /// Returns the number of transactions per second: the median of all rounds.
   [[nodiscard]] double rate() const { return median_of(rates_); }
 
@@ -123,7 +79,6 @@ class Server {
   unsigned units_;
   Figures microseconds_{};
   Figures rates_{};
-  std::array<bool, kRounds> disturbed_{};  ///< other programs used too much processor time in the round
 };
 
 /// Polls each server for `time` in each round, and prints the medians of all rounds.

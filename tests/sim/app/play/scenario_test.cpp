@@ -296,7 +296,7 @@ TEST(Play, RefusesACaptureThatWouldOverwriteAnotherFileOfTheRun) {
            {directory / "bus.json", "the bus file " + (directory / "bus.json")},
            {directory / "../" + std::filesystem::path(directory.path()).filename().string() + "/ctl",
             "the control socket " + (directory / "ctl")},
-           {"/dev/null", "the pseudo-terminal " + (directory / "tty")}}) {
+           {"/dev/null", "the port " + (directory / "tty")}}) {
     const sim::Writing writing{std::nullopt, capture};
     sim::PlayRecord record(writing, nullptr);
     try {

@@ -1,0 +1,150 @@
+#include "sim/virtual_line/wires/shared_ear.hpp"
+
+#include <algorithm>
+#include <string_view>
+#include <utility>
+
+#include "firmware/hex.hpp"
+
+namespace ex9000::sim {
+
+namespace {
+
+/// What begins a frame of DCON, or the reply of a module.
+constexpr std::string_view kDconLeads = "#$%@~!>?";
+
+}  // namespace
+
+SharedEar::SharedEar(const VirtualClock& clock, const Hearing& hearing, Leave leave)
+    : clock_(clock), hearing_(hearing), leave_(std::move(leave)) {
+  begin_anew();
+}
+
+void SharedEar::begin_anew() {
+  assembler_.emplace();
+  assembler_->rtu.use(hearing_.timing);
+  assembler_->dcon.use_checksum(hearing_.checksum);
+  // No Modbus frame has this address. A DCON frame that has it concerns all, which is more than necessary.
+  constexpr std::uint8_t kNobody = 0xFF;
+  assembler_->rtu.answer_to(kNobody);
+  assembler_->dcon.answer_to(kNobody);
+}
+
+bool SharedEar::hears_like(const Hearing& hearing) const {
+  return hearing.protocol == hearing_.protocol && hearing.checksum == hearing_.checksum &&
+         hearing.baud_code == hearing_.baud_code;
+}
+
+void SharedEar::add(std::size_t station, std::uint8_t address) {
+  members_.push_back({station, heard_.verdicts});
+  names_.push_back(name_of(address));
+}
+
+Heard SharedEar::remove(std::size_t station) {
+  const auto member = std::find_if(members_.begin(), members_.end(),
+                                   [=](const Member& each) { return each.station == station; });
+  Heard missed = heard_;
+  for (std::size_t verdict = 0; verdict < missed.verdicts.size(); ++verdict) {
+    missed.verdicts[verdict] -= member->counted_then[verdict];
+  }
+  names_[static_cast<std::size_t>(member - members_.begin())] = names_.back();
+  names_.pop_back();
+  *member = members_.back();
+  members_.pop_back();
+  if (members_.empty()) {  // it hears nothing any more
+    begin_anew();
+    heard_ = {};
+  }
+  return missed;
+}
+
+void SharedEar::dissolve() {
+  while (!members_.empty()) {
+    leave_(members_.back().station);
+  }
+}
+
+/// Returns whether the byte changes the state of a DCON receiver. The others need not be kept: between two
+/// frames those that do not begin one, and in a frame those after the longest one.
+bool SharedEar::matters(std::uint8_t byte) const {
+  return heard_.frame.empty() ? kDconLeads.find(static_cast<char>(byte)) != std::string_view::npos
+                              : heard_.frame.size() < kLongestDconFrame + 2U;
+}
+
+void SharedEar::hear(std::uint8_t byte) {
+  if (heard_.silence_ends <= clock_.virtual_now()) {
+    end_silence();  // before the receive interrupt, see hal/one_shot_timer.hpp
+    if (members_.empty()) {
+      return;
+    }
+  }
+  Assembler& assembler = *assembler_;
+  if (modbus()) {
+    assembler.rtu.byte(assembler.queue, byte, ByteStatus::Good);
+    heard_.frame.push_back(byte);
+    heard_.silence_ends = clock_.when(assembler.rtu.first_wait());
+  } else if (byte == DconAssembler::kEnd) {
+    judge(assembler.dcon.end(assembler.queue, ByteStatus::Good, clock_.now_in_interrupt()));
+  } else {
+    assembler.dcon.byte(assembler.queue, byte, ByteStatus::Good);
+    if (matters(byte)) {
+      heard_.frame.push_back(byte);
+    }
+  }
+}
+
+void SharedEar::end_silence() {
+  Assembler& assembler = *assembler_;
+  const Verdict verdict = assembler.rtu.silence(assembler.queue, clock_.now_in_interrupt());
+  const Duration wait = assembler.rtu.next_wait();
+  if (verdict == Verdict::Open && !(wait == Duration())) {
+    heard_.frame.push_back(Heard::kSilence);
+    heard_.silence_ends = clock_.when(wait);
+  } else {
+    judge(verdict);
+  }
+}
+
+/// The address as it stands in a frame.
+std::uint32_t SharedEar::name_of(std::uint8_t address) const {
+  return modbus() ? address : hex_digits(address);
+}
+
+/// Returns, in ascending order, at least the members for which the verdict on the frame may differ from that
+/// of the ear, or has an effect besides being counted.
+std::vector<std::size_t> SharedEar::concerned_by(Verdict verdict) const {
+  std::vector<std::size_t> concerned;
+  if (verdict == Verdict::Accepted || verdict == Verdict::HostOk || verdict == Verdict::NoRoom) {
+    for (const Member& member : members_) {
+      concerned.push_back(member.station);
+    }
+  } else if (verdict == Verdict::Foreign && heard_.frame.size() > 2) {
+    const auto& frame = heard_.frame;
+    // Modbus: a byte 00 may be of the turn-around. DCON: the address is after the delimiter.
+    const std::uint32_t name = !modbus()       ? frame[1] | unsigned{frame[2]} << 8U
+                               : frame[0] != 0 ? frame[0]
+                                               : frame[1];
+    for (auto at = names_.begin(); (at = std::find(at, names_.end(), name)) != names_.end(); ++at) {
+      concerned.push_back(members_[static_cast<std::size_t>(at - names_.begin())].station);
+    }
+  }
+  std::sort(concerned.begin(), concerned.end());
+  return concerned;
+}
+
+/// Ends the frame. Members that it concerns leave first.
+void SharedEar::judge(Verdict verdict) {
+  for (const std::size_t station : concerned_by(verdict)) {
+    leave_(station);
+  }
+  if (members_.empty()) {
+    return;
+  }
+  heard_.frame.clear();
+  heard_.silence_ends = kNever;
+  if (verdict != Verdict::Open) {
+    ++heard_.verdicts[static_cast<std::size_t>(verdict)];
+  }
+}
+
+}  // namespace ex9000::sim

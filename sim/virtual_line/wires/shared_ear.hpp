@@ -1,0 +1,102 @@
+// One ear for the stations that only listen.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "firmware/line/dcon_assembler.hpp"
+#include "firmware/line/frame_queue.hpp"
+#include "firmware/line/rtu_assembler.hpp"
+#include "firmware/line/timing.hpp"
+#include "firmware/line/verdict.hpp"
+#include "firmware/settings/settings.hpp"
+#include "hal/doubles/virtual_clock.hpp"
+
+namespace ex9000::sim {
+
+using hal::doubles::kNever;
+using hal::doubles::VirtualClock;
+using hal::doubles::VirtualTime;
+
+/// How a module makes frames of bytes. Modules for which all but the address is equal can share an ear.
+struct Hearing {
+  Protocol protocol = Protocol::Ascii;
+  bool checksum = false;
+  std::uint8_t baud_code = 0;
+  std::uint8_t address = 0;
+  LineTiming timing;  ///< depends on `baud_code`
+};
+
+/// What has happened at an ear while a module shared it.
+struct Heard {
+  /// The bytes of the frame that is not over, and kSilence for each time that its silence timer has expired.
+  static constexpr std::uint16_t kSilence = 0x100;
+
+  using Verdicts = std::array<std::uint32_t, static_cast<std::size_t>(Verdict::Overrun) + 1>;
+
+  Verdicts verdicts{};  ///< number of frames for each Verdict
+  std::vector<std::uint16_t> frame;
+  VirtualTime silence_ends = kNever;  ///< when the silence timer expires
+};
+
+/// Assembles frames with the firmware's own assemblers, for members that differ only in their address. A
+/// frame that concerns no member is only counted: the members would be in the same state as the ear after it.
+/// Before any other frame is judged, the members that it concerns leave, catch up with what they have missed,
+/// and hear the end of the frame themselves.
+class SharedEar {
+ public:
+  /// Called for a member that a frame concerns; must call `remove`.
+  using Leave = std::function<void(std::size_t station)>;
+
+  SharedEar(const VirtualClock& clock, const Hearing& hearing, Leave leave);
+
+  [[nodiscard]] bool hears_like(const Hearing& hearing) const;
+  /// Returns whether no frame is open, so that a station can become a member.
+  [[nodiscard]] bool at_rest() const { return heard_.frame.empty() && heard_.silence_ends == kNever; }
+  /// Adds a station between two frames.
+  void add(std::size_t station, std::uint8_t address);
+  /// Removes a member, and returns what it has missed.
+  Heard remove(std::size_t station);
+  [[nodiscard]] std::size_t members() const { return members_.size(); }
+  /// Calls `leave` for each member.
+  void dissolve();
+
+  /// Hears a byte without an error.
+  void hear(std::uint8_t byte);
+  [[nodiscard]] VirtualTime silence_ends() const { return heard_.silence_ends; }
+  /// Call this at `silence_ends`.
+  void end_silence();
+
+ private:
+  /// The firmware's part. It begins anew after a frame for all, which stays in the queue.
+  struct Assembler {
+    FrameQueue queue;
+    RtuAssembler rtu;
+    DconAssembler dcon;
+  };
+
+  [[nodiscard]] bool modbus() const { return hearing_.protocol == Protocol::ModbusRtu; }
+  void begin_anew();
+  [[nodiscard]] bool matters(std::uint8_t byte) const;
+  [[nodiscard]] std::uint32_t name_of(std::uint8_t address) const;
+  [[nodiscard]] std::vector<std::size_t> concerned_by(Verdict verdict) const;
+  void judge(Verdict verdict);
+
+  const VirtualClock& clock_;
+  const Hearing hearing_;
+  Leave leave_;
+  std::optional<Assembler> assembler_;
+  Heard heard_;  ///< `verdicts`: since the ear exists
+  struct Member {
+    std::size_t station;
+    Heard::Verdicts counted_then;  ///< `heard_.verdicts` when it was added
+  };
+  std::vector<Member> members_;       ///< in any order
+  std::vector<std::uint32_t> names_;  ///< `name_of` the address of each member
+};
+
+}  // namespace ex9000::sim
