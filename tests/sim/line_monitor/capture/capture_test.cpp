@@ -432,7 +432,7 @@ TEST(Capture, DoesNotOverwriteTheBusFileTheControlSocketThePseudoTerminalOrTheEe
   write_file(directory / "bus.json", bus);
   const std::vector<std::pair<std::string, std::string>> cases{{"bus.json", "the bus file bus.json"},
                                                                {"ctl", "the control socket ctl"},
-                                                               {"tty", "the pseudo-terminal tty"},
+                                                               {"tty", "the port tty"},
                                                                {"n.bin", "a module's EEPROM file n.bin"}};
   for (const auto& [path, what] : cases) {
     std::filesystem::create_symlink(path, directory / "link");
