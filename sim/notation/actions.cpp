@@ -22,7 +22,7 @@ struct Call {
   std::size_t index;         ///< of the module on the line, from 0
   std::size_t first_module;  ///< the position of the line's first module across all lines, from 0
   Words args;
-  std::string result = "";  ///< of an action that reads, or adds a fault
+  std::string result = {};  ///< of an action that reads, or adds a fault
 
   [[nodiscard]] Line& line() const { return in_use.line; }
   [[nodiscard]] SimulatedModule& module() const { return in_use.line.module(index); }

@@ -16,17 +16,22 @@ constexpr VirtualTime kShortest = std::chrono::microseconds(10);
 
 using Times = std::map<std::string, VirtualTime>;
 
-/// Reads the rest, each duration after its keyword. `forms`: those that may appear.
+/// Reads a duration after its keyword. `forms`: those that may appear.
+void read_time(WordReader& words, const std::string& forms, Times& times) {
+  const std::string keyword = words.next(forms);
+  if (forms.find("'" + keyword + " TIME'") == std::string::npos) {
+    fail("'" + keyword + "': expected " + forms);
+  }
+  if (!times.emplace(keyword, parse_time(words.next("a duration after '" + keyword + "'"))).second) {
+    fail("'" + keyword + "' is given twice; leave out one of them");
+  }
+}
+
+/// Reads the rest.
 Times read_times(WordReader& words, const std::string& forms) {
   Times times;
   while (!words.done()) {
-    const std::string keyword = words.next(forms);
-    if (forms.find("'" + keyword + " TIME'") == std::string::npos) {
-      fail("'" + keyword + "': expected " + forms);
-    }
-    if (!times.emplace(keyword, parse_time(words.next("a duration after '" + keyword + "'"))).second) {
-      fail("'" + keyword + "' is given twice; leave out one of them");
-    }
+    read_time(words, forms, times);
   }
   return times;
 }

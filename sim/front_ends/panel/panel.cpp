@@ -55,7 +55,7 @@ std::string random_id() {
 
 /// A part of the state, and the number of the look at which it last changed. A look captures the present
 /// state for all viewers.
-struct Panel::Tracked {
+struct Panel::Tracked {  // NOLINT(bugprone-exception-escape): moving a value does not throw
   Message value;
   std::uint64_t changed = 0;  ///< 0: there is no value yet
 
