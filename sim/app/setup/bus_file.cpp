@@ -28,63 +28,63 @@ class BusFileReader {
   [[nodiscard]] Setup bus(const Node& root) const {
     Setup setup;
     setup.file = path_;
-    read(root, run_settings, setup, "lines", [&](const Node& lines) {
-      for (const Node& line : list_of(lines, "lines")) {
+    const Part lines{"lines",
+                     "a bus file requires at least one line; 'ex9000-sim --example' prints an example"};
+    read(root, run_settings, setup, lines, [&](const Node& list) {
+      for (const Node& line : elements_of(list, lines)) {
         setup.lines.push_back(read_line(line));
       }
     });
-    if (setup.lines.empty()) {
-      refuse(root, "lines: a bus file requires at least one line; 'ex9000-sim --example' prints an example");
-    }
     return setup;
   }
 
  private:
+  /// A key that an object must have.
+  struct Part {
+    std::string key;
+    std::string if_missing;
+  };
+
   [[nodiscard]] LineSetup read_line(const Node& node) const {
     LineSetup line;
     line.places["port"] = place(node) + "port: ";  // for what the file does not name
     line.places["name"] = place(node) + "name: ";
-    read(node, line_settings, line, "modules", [&](const Node& modules) {
-      for (const Node& module : list_of(modules, "modules")) {
+    const Part modules{"modules", "a line requires at least one module, for example EX9042D-M@01"};
+    read(node, line_settings, line, modules, [&](const Node& list) {
+      for (const Node& module : elements_of(list, modules)) {
         line.modules.push_back(read_module(module));
       }
     });
-    if (line.modules.empty()) {
-      refuse(node, "modules: a line requires at least one module, for example EX9042D-M@01");
-    }
     return line;
   }
 
   [[nodiscard]] ModuleSpec read_module(const Node& node) const {
+    ModuleSpec module;
     if (node.IsScalar()) {
-      ModuleSpec module = with_place(place(node), [&] { return parse_module_spec(text_of(node)); });
+      module = with_place(place(node), [&] { return parse_module_spec(text_of(node)); });
       prefix_places(module.places, place(node));
       return module;
     }
-    ModuleSpec module;
-    const auto take_model = [&](const Node& model) {
+    const Part model{"model", "is missing; expected a model's name, for example EX9042D-M"};
+    read(node, module_settings, module, model, [&](const Node& name) {
       module =
-          with_place(place(model) + "model: ", [&] { return factory_fresh(model_called(text_of(model))); });
-    };
-    read(node, module_settings, module, "model", take_model);
-    if (module.model == nullptr) {
-      refuse(node, "model: is missing; expected a model's name, for example EX9042D-M");
-    }
+          with_place(place(name) + "model: ", [&] { return factory_fresh(model_called(text_of(name))); });
+    });
     with_place(place(node), [&] { check(module); });
     return module;
   }
 
-  /// Reads the settings of `object`, in the order of `settings`, because some depend on those before. Before
-  /// them, calls `take_part` with the value of `part`.
+  /// Calls `take_part` with the value of `part`, because the settings may depend on it. Then reads the
+  /// settings of `object`, in the order of `settings`, because some depend on those before.
   template <class Settings, class Object, class TakePart>
-  void read(const Node& node, const Settings& settings, Object& object, const std::string& part,
+  void read(const Node& node, const Settings& settings, Object& object, const Part& part,
             TakePart take_part) const {
-    std::map<std::string, Member> members = members_of(node);
-    const auto parts = members.find(part);
-    if (parts != members.end()) {
-      take_part(parts->second.value);
-      members.erase(parts);
+    const std::map<std::string, Member> members = members_of(node, part.key + ", " + names_of(settings));
+    const auto has_part = members.find(part.key);
+    if (has_part == members.end()) {
+      refuse(node, part.key + ": " + part.if_missing);
     }
+    take_part(has_part->second.value);
     for (const auto& setting : settings) {
       const auto member = members.find(std::string(setting.name));
       if (member == members.end()) {
@@ -102,19 +102,17 @@ class BusFileReader {
       } else {
         take(values);
       }
-      members.erase(member);
-    }
-    if (!members.empty()) {
-      refuse(members.begin()->second.key,
-             members.begin()->first + ": unknown key; expected one of " + part + ", " + names_of(settings));
     }
   }
 
-  [[nodiscard]] const Node& list_of(const Node& node, const std::string& key) const {
-    if (!node.IsSequence()) {
-      refuse(node, key + ": expected a list");
+  [[nodiscard]] const Node& elements_of(const Node& list, const Part& part) const {
+    if (!list.IsSequence()) {
+      refuse(list, part.key + ": expected a list");
     }
-    return node;
+    if (list.size() == 0) {
+      refuse(list, part.key + ": " + part.if_missing);
+    }
+    return list;
   }
 
   struct Member {
@@ -122,13 +120,17 @@ class BusFileReader {
     Node value;
   };
 
-  [[nodiscard]] std::map<std::string, Member> members_of(const Node& node) const {
+  /// `known`: the keys, separated by commas.
+  [[nodiscard]] std::map<std::string, Member> members_of(const Node& node, const std::string& known) const {
     if (!node.IsMap()) {
       refuse(node, "expected keys with values, for example 'name: hall'");
     }
     std::map<std::string, Member> members;
     for (const auto& member : node) {
       const std::string key = with_place(place(member.first), [&] { return text_of(member.first); });
+      if ((", " + known + ", ").find(", " + key + ", ") == std::string::npos) {
+        refuse(member.first, key + ": unknown key; expected one of " + known);
+      }
       if (!members.emplace(key, Member{member.first, member.second}).second) {
         refuse(member.first, key + ": is given twice; leave out one of them");
       }

@@ -72,6 +72,11 @@ bool SharedEar::matters(std::uint8_t byte) const {
 }
 
 void SharedEar::hear(std::uint8_t byte) {
+  constexpr std::size_t kMostKept = 300;  // longer than any frame
+  if (heard_.frame.size() >= kMostKept) {
+    dissolve();
+    return;
+  }
   if (heard_.silence_ends <= clock_.virtual_now()) {
     end_silence();  // before the receive interrupt, see hal/one_shot_timer.hpp
     if (members_.empty()) {

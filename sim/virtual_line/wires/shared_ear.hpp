@@ -65,7 +65,7 @@ class SharedEar {
   /// Calls `leave` for each member.
   void dissolve();
 
-  /// Hears a byte without an error.
+  /// Hears a byte without an error. A station that has left during this call must hear the byte itself.
   void hear(std::uint8_t byte);
   [[nodiscard]] VirtualTime silence_ends() const { return heard_.silence_ends; }
   /// Call this at `silence_ends`.

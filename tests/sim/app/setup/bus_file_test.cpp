@@ -144,6 +144,7 @@ TEST(BusFile, KeysMayComeInAnyOrderAndJsonIsYaml) {
 
 TEST(BusFile, AWrongFileIsRefusedWithALineNumberAndAKey) {
   const std::string known = "unknown key; expected one of ";
+  const std::string lines = "\nlines: [{modules: [EX9042D]}]";
   for (const auto& [text, why] : std::vector<std::pair<std::string, std::string>>{
            {"", "1: expected a bus file, as 'ex9000-sim --example' prints it"},
            {"---\nseed: 1\n---\nseed: 2\n", "3: expected the end of the file"},
@@ -156,23 +157,23 @@ TEST(BusFile, AWrongFileIsRefusedWithALineNumberAndAKey) {
            {"5", "1: expected keys with values"},
            {"seed: 1\nseed: 2", "2: seed: is given twice; leave out one of them"},
            {"\nseed: 1", "2: lines: a bus file requires at least one line; 'ex9000-sim --example' prints"},
-           {"lines: []", "1: lines: a bus file requires at least one line"},
            {"lines: {}", "1: lines: expected a list"},
            {"lines: []", "1: lines: a bus file requires at least one line"},
            {"lines: [{modules: EX9042D}]", "1: modules: expected a list"},
            {"line: []", "1: line: " + known + "lines, log, capture, panel, control, speed, for, seed"},
-           {"log: xml", "1: log: 'xml': expected text, json, on or off"},
-           {"panel: 70000", "1: panel: '70000': expected a port from 0 to 65535"},
-           {"panel: []", "1: panel: expected a single value"},
-           {"seed: 1.5", "1: seed: '1.5': expected a whole number"},
-           {"seed:\nlog: on", "1: seed: has no value; write one, or leave the key out"},
-           {"capture: ''", "1: capture: is empty; name a path"},
-           {"control: \"a\\0b\"", "1: control: contains NUL; leave out \\0"},
+           {"log: xml" + lines, "1: log: 'xml': expected text, json, on or off"},
+           {"panel: 70000" + lines, "1: panel: '70000': expected a port from 0 to 65535"},
+           {"panel: []" + lines, "1: panel: expected a single value"},
+           {"seed: 1.5" + lines, "1: seed: '1.5': expected a whole number"},
+           {"seed:\nlog: on" + lines, "1: seed: has no value; write one, or leave the key out"},
+           {"capture: ''" + lines, "1: capture: is empty; name a path"},
+           {"control: \"a\\0b\"" + lines, "1: control: contains NUL; leave out \\0"},
            {"lines:\n- 5", "2: expected keys with values"},
            {"lines:\n- port: pty:a", "2: modules: a line requires at least one module"},
            {"lines:\n- modules: []", "2: modules: a line requires at least one module"},
            {"lines:\n- modules: [[]]", "2: expected keys with values"},
            {"lines:\n- modules:\n  - {}", "3: model: is missing; expected a model's name"},
+           {"lines:\n- modules:\n  - input: 7 square 1s", "3: model: is missing; expected a model's name"},
            {"lines:\n- modules:\n  - model: EX1", "3: model: 'EX1' is not a model; 'ex9000-sim --models'"},
            {"lines:\n- modules:\n  - EX9042D,baud=1", "3: EX9042D,baud=1: baud=: '1': expected a baud rate"},
        }) {
