@@ -10,6 +10,7 @@
 #include "sim/notation/input_notation.hpp"
 #include "sim/notation/shape.hpp"
 #include "sim/text/fail.hpp"
+#include "sim/text/help_row.hpp"
 #include "sim/text/values.hpp"
 
 namespace ex9000::sim {
@@ -296,16 +297,10 @@ std::string action_shapes() {
 }
 
 std::string action_help() {
-  const std::string indent(22, ' ');
+  constexpr std::size_t kColumn = 20;
   std::string text;
   for (const Action& action : kActions) {
-    std::string lead = "  " + action.text();
-    lead.resize(std::max(lead.size(), indent.size()), ' ');
-    lead += lead.size() == indent.size() ? "" : "\n" + indent;
-    for (const std::string& line : parts_of(std::string(action.does), '\n')) {
-      text += lead + line + "\n";
-      lead = indent;
-    }
+    text += help_row(action.text(), action.does, kColumn);
   }
   return text;
 }

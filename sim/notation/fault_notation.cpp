@@ -3,13 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <iomanip>
 #include <limits>
-#include <sstream>
 
 #include "sim/notation/word_reader.hpp"
 #include "sim/text/durations.hpp"
 #include "sim/text/fail.hpp"
+#include "sim/text/help_row.hpp"
 #include "sim/text/values.hpp"
 #include "sim/text/words.hpp"
 
@@ -177,13 +176,12 @@ std::vector<std::string> usual_faults() {
 }
 
 std::string fault_help() {
-  std::ostringstream text;
+  constexpr std::size_t kColumn = 22;
+  std::string text;
   for (const FaultKind& kind : fault_kinds()) {
-    constexpr int kColumn = 22;
-    text << "  " << std::left << std::setw(kColumn)
-         << std::string(kind.name) + " " + std::string(value_of(kind).name) << kind.does << "\n";
+    text += help_row(std::string(kind.name) + " " + std::string(value_of(kind).name), kind.does, kColumn);
   }
-  return text.str();
+  return text;
 }
 
 }  // namespace ex9000::sim

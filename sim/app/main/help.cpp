@@ -1,13 +1,11 @@
 #include "sim/app/main/help.hpp"
 
-#include <iomanip>
-#include <sstream>
-
 #include "sim/app/setup/port_setup.hpp"
 #include "sim/notation/actions.hpp"
 #include "sim/notation/fault_notation.hpp"
 #include "sim/notation/module_settings.hpp"
 #include "sim/text/fail.hpp"
+#include "sim/text/help_row.hpp"
 #include "sim/text/words.hpp"
 
 namespace ex9000::sim::help {
@@ -15,17 +13,13 @@ namespace ex9000::sim::help {
 namespace {
 
 std::string of_modules() {
-  std::ostringstream text;
-  text
-      << "A module is MODEL[@ADDR][,KEY=VALUE]..., for example 9052d-m@0A,edge=rising. MODEL is a name from\n"
-         "--models, in upper or lower case, with or without EX. ADDR is the address in hex (default: "
-         "01).\n\n";
+  std::string text =
+      "A module is MODEL[@ADDR][,KEY=VALUE]..., for example 9052d-m@0A,edge=rising. MODEL is a name from\n"
+      "--models, in upper or lower case, with or without EX. ADDR is the address in hex (default: 01).\n\n";
   for (const Setting<ModuleSpec>& setting : module_settings) {
-    const std::string shape = std::string(setting.name) + "=" + std::string(setting.value);
-    text << "  " << std::left << std::setw(kColumn) << shape
-         << (shape.size() < kColumn ? "" : "\n" + std::string(kColumn + 2, ' ')) << setting.does << "\n";
+    text += help_row(std::string(setting.name) + "=" + std::string(setting.value), setting.does, kColumn);
   }
-  return text.str();
+  return text;
 }
 
 std::string of_ports() {

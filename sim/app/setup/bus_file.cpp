@@ -125,11 +125,15 @@ class BusFileReader {
     if (!node.IsMap()) {
       refuse(node, "expected keys with values, for example 'name: hall'");
     }
+    const std::string one_of = ": unknown key; expected one of " + known;
+    const auto is_known = [list = ", " + known + ", "](const std::string& key) {
+      return list.find(", " + key + ", ") != std::string::npos;
+    };
     std::map<std::string, Member> members;
     for (const auto& member : node) {
       const std::string key = with_place(place(member.first), [&] { return text_of(member.first); });
-      if ((", " + known + ", ").find(", " + key + ", ") == std::string::npos) {
-        refuse(member.first, key + ": unknown key; expected one of " + known);
+      if (!is_known(key)) {
+        refuse(member.first, key + one_of);
       }
       if (!members.emplace(key, Member{member.first, member.second}).second) {
         refuse(member.first, key + ": is given twice; leave out one of them");

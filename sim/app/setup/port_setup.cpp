@@ -1,12 +1,11 @@
 #include "sim/app/setup/port_setup.hpp"
 
-#include <iomanip>
 #include <set>
-#include <sstream>
 #include <string_view>
 
 #include "sim/text/durations.hpp"
 #include "sim/text/fail.hpp"
+#include "sim/text/help_row.hpp"
 #include "sim/text/words.hpp"
 
 namespace ex9000::sim {
@@ -31,6 +30,8 @@ struct KindRow {
   std::string_view does;
   Kind kind;
   void (*take)(PortSetup& port, const std::string& where);
+
+  [[nodiscard]] std::string shape() const { return std::string(name) + ":" + std::string(where); }
 };
 
 constexpr KindRow kKinds[] = {
@@ -47,6 +48,10 @@ struct OptionRow {
   std::string_view does;
   bool (*fits)(Kind kind);
   void (*take)(PortSetup& port, const std::string& value);
+
+  [[nodiscard]] std::string shape() const {
+    return std::string(name) + (value.empty() ? "" : "=" + std::string(value));
+  }
 };
 
 constexpr OptionRow kOptions[] = {
@@ -71,7 +76,7 @@ void take_option(PortSetup& port, const std::string& text) {
   for (const OptionRow& row : kOptions) {
     if (row.name == name && row.fits(port.kind)) {
       if (row.value.empty() != (equals == std::string::npos)) {
-        fail("expected " + name + (row.value.empty() ? "" : "=" + std::string(row.value)));
+        fail("expected " + row.shape());
       }
       row.take(port, equals == std::string::npos ? "" : text.substr(equals + 1));
       return;
@@ -80,7 +85,7 @@ void take_option(PortSetup& port, const std::string& text) {
   Words known;
   for (const OptionRow& row : kOptions) {
     if (row.fits(port.kind)) {
-      known.push_back(std::string(row.name) + (row.value.empty() ? "" : "=" + std::string(row.value)));
+      known.push_back(row.shape());
     }
   }
   fail("unknown option; expected " + joined(known, " or "));
@@ -113,24 +118,21 @@ PortSetup parse_port(const std::string& text) {
   }
   Words shapes;
   for (const KindRow& row : kKinds) {
-    shapes.push_back(std::string(row.name) + ":" + std::string(row.where));
+    shapes.push_back(row.shape());
   }
   fail("'" + text + "': expected " + joined(shapes, ", "));
 }
 
 std::string port_help() {
-  constexpr int kColumn = 24;
-  std::ostringstream text;
-  const auto line = [&text](const std::string& shape, std::string_view does) {
-    text << "  " << std::left << std::setw(kColumn) << shape << does << "\n";
-  };
+  constexpr std::size_t kColumn = 24;
+  std::string text;
   for (const KindRow& row : kKinds) {
-    line(std::string(row.name) + ":" + std::string(row.where), row.does);
+    text += help_row(row.shape(), row.does, kColumn);
   }
   for (const OptionRow& row : kOptions) {
-    line("," + std::string(row.name) + (row.value.empty() ? "" : "=" + std::string(row.value)), row.does);
+    text += help_row("," + row.shape(), row.does, kColumn);
   }
-  return text.str();
+  return text;
 }
 
 }  // namespace ex9000::sim

@@ -81,8 +81,10 @@ TEST(Arguments, HelpFitsOnAScreenAndHasTopics) {
   EXPECT_NE(printed({"help", "faults"}).find(fault_help()), std::string::npos);
   EXPECT_NE(printed({"help", "control"}).find(action_help()), std::string::npos);
   for (const auto& [topic, word] :
-       {std::pair("modules", "  eeprom=FILE "), std::pair("ports", "  serial:DEVICE "),
-        std::pair("inputs", "C key at TIME"), std::pair("steps", "power-cycle")}) {
+       {std::pair("modules", "  eeprom=FILE                   keeps the settings"),
+        std::pair("modules", "115200\n                                the baud rate"),
+        std::pair("ports", "  serial:DEVICE "), std::pair("inputs", "C key at TIME"),
+        std::pair("steps", "power-cycle")}) {
     EXPECT_NE(printed({"help", topic}).find(word), std::string::npos) << topic;
     EXPECT_NE(all.find(topic), std::string::npos) << topic;
   }
