@@ -34,7 +34,7 @@ class DueTimes {
   /// Calls `run` with the number of each station whose due time is not after `now`, until no station is due.
   /// The next station is always the due station with the lowest number. Removes the due time of a station
   /// before the call for this station. `run` may set due times of all stations, but it must not call
-  /// `run_due`.
+  /// `run_due` or `next`.
   template <class Run>
   void run_due(VirtualTime now, Run run) {
     while (next() <= now) {

@@ -24,7 +24,7 @@ void SharedEar::begin_anew() {
   assembler_.emplace();
   assembler_->rtu.use(hearing_.timing);
   assembler_->dcon.use_checksum(hearing_.checksum);
-  // No Modbus frame has this address. A DCON frame that has it concerns all, which is more than necessary.
+  // A frame with this address is for no module in Modbus. It concerns all, which is more than necessary.
   constexpr std::uint8_t kNobody = 0xFF;
   assembler_->rtu.answer_to(kNobody);
   assembler_->dcon.answer_to(kNobody);
@@ -125,10 +125,13 @@ std::vector<std::size_t> SharedEar::concerned_by(Verdict verdict) const {
     }
   } else if (verdict == Verdict::Foreign && heard_.frame.size() > 2) {
     const auto& frame = heard_.frame;
-    // Modbus: a byte 00 may be of the turn-around. DCON: the address is after the delimiter.
+    // Modbus: a byte 00 may be of the turn-around, and a silence may follow it. DCON: the address is after
+    // the delimiter.
+    const auto second = std::find_if(frame.begin() + 1, frame.end(),
+                                     [](std::uint16_t each) { return each != Heard::kSilence; });
     const std::uint32_t name = !modbus()       ? frame[1] | unsigned{frame[2]} << 8U
                                : frame[0] != 0 ? frame[0]
-                                               : frame[1];
+                                               : *second;
     for (auto at = names_.begin(); (at = std::find(at, names_.end(), name)) != names_.end(); ++at) {
       concerned.push_back(members_[static_cast<std::size_t>(at - names_.begin())].station);
     }

@@ -249,7 +249,7 @@ void Wires::deliver(const Wave& over) {
   for (WireObserver* observer : observers_) {
     observer->byte(over.station, over.byte, over.nominal, over.collided, over.start, ends);
   }
-  const VirtualTime quiet_since = std::exchange(quiet_since_, over.end);
+  const VirtualTime quiet_since = std::exchange(quiet_since_, ends);
   if (!over.arrives_whole()) {
     return;
   }
