@@ -193,8 +193,7 @@ class SimulatedModule final : public Station {
   bool in_dcon_frame_ = false;  ///< perhaps: since the last CR or reply, a byte has arrived
   std::uint64_t watchdog_resets_ = 0;
   SerialMode listens_in_;  ///< the mode that the last call of `WireEnd::listen` has set
-  // `receive` uses the members from here on. Many modules may receive each byte, so these members are next
-  // to each other and occupy few cache lines.
+  // `receive` uses the members from here on. They are next to each other and occupy few cache lines.
   ModuleWire wire_;
   VirtualTime next_without_silence_ = kNever;
   VirtualTime runs_at_ = kNever;  ///< when Wires calls `run`

@@ -151,8 +151,7 @@ class Wires {
   struct End;
   struct Group;
 
-  /// The receiver of a station. The receivers of a line are in one array, because each byte reaches all of
-  /// them.
+  /// The receiver of a station.
   struct Receiver {
     Station* station = nullptr;
     SerialMode mode = {};  ///< on the wires; a rate of 0: the station does not listen
