@@ -6,28 +6,23 @@ namespace ex9000::hal::doubles {
 
 void SerialLine::send(Bytes bytes) {
   bytes_ = wire_.replaced(bytes);
-  sent_ = 0;
   driving_ = true;
   wire_.drive(true);
-  first_start_bit_ = next_ = clock_.virtual_now() + kDriverLead;
+  next_ = clock_.virtual_now() + kDriverLead;
 }
 
 void SerialLine::run() {
   if (next_ > clock_.virtual_now()) {
     return;
   }
-  if (sent_ == bytes_.size) {
+  if (over_ == kNever) {
+    over_ = next_ + wire_.takes(bytes_.size, mode_) + kDriverTail;
+    next_ = over_ + late_by_;
+    wire_.put(bytes_, mode_);
+  } else {
     driving_ = false;
     next_ = over_ = kNever;
     wire_.drive(false);
-    return;
-  }
-  wire_.put(bytes_[sent_++], mode_);
-  // The time is calculated from the first start bit, so that rounding errors do not add up.
-  next_ = first_start_bit_ + wire_.takes(sent_, mode_);
-  if (sent_ == bytes_.size) {
-    over_ = next_ + kDriverTail;
-    next_ = over_ + late_by_;
   }
 }
 

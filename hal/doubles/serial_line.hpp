@@ -19,8 +19,9 @@ class Wire {
   virtual Bytes replaced(Bytes bytes) { return bytes; }
   /// Turns the UART's driver on or off.
   virtual void drive(bool on) = 0;
-  /// Begins to send `byte`: its start bit begins now. Call this only while the driver is on.
-  virtual void put(std::uint8_t byte, SerialMode mode) = 0;
+  /// Begins to send `bytes` without gaps: the first start bit begins now. Turning the driver off drops the
+  /// rest. Call this only while the driver is on.
+  virtual void put(Bytes bytes, SerialMode mode) = 0;
   /// Returns how long `bytes` bytes take if there is no gap between them.
   [[nodiscard]] virtual VirtualTime takes(std::size_t bytes, SerialMode mode) const = 0;
 
@@ -65,11 +66,9 @@ class SerialLine {
   SerialMode mode_;
   bool driving_ = false;
   Bytes bytes_;
-  std::size_t sent_ = 0;
-  VirtualTime first_start_bit_{0};
   VirtualTime next_ = kNever;
-  /// The time at which the driver turns off if `late_by_` is 0. kNever, except from the start of the last
-  /// byte until the driver turns off.
+  /// The time at which the driver turns off if `late_by_` is 0. kNever, except from the first start bit until
+  /// the driver turns off.
   VirtualTime over_ = kNever;
   VirtualTime late_by_{0};
 };

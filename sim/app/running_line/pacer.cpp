@@ -92,7 +92,7 @@ void Pacer::catch_up(VirtualTime until) {
   VirtualTime next = line_.wires().next();
   report_delay(next);
   for (; next <= until || leads(next); next = line_.wires().next()) {
-    line_.wires().run_next();
+    line_.wires().run_next(pace_.lead == VirtualTime(0) ? until : kNever);
   }
 }
 

@@ -41,7 +41,7 @@ void Noise::run() {
   strays_.erase(strays_.begin());
   ++changes_;
   straying_ = true;
-  wire_.put(byte, mode);
+  wire_.put({byte, mode});
   straying_ = false;
   wait_for_next();
 }

@@ -12,6 +12,7 @@ Master::Master(Wires& wires, SerialMode mode, Receive receive)
 
 void Master::send(const std::uint8_t* bytes, std::size_t size, VirtualTime not_before,
                   const std::vector<std::size_t>& damaged, const void* sender) {
+  const bool follows = sending();
   const std::size_t first = waiting_.size();
   taken_ += size;
   for (std::size_t i = 0; i < size; ++i) {
@@ -20,11 +21,13 @@ void Master::send(const std::uint8_t* bytes, std::size_t size, VirtualTime not_b
   for (const std::size_t position : damaged) {
     waiting_[first + position].damaged = true;
   }
-  if (!sending() && !waiting_.empty()) {
-    wake_at(std::max(clock_.virtual_now(), not_before));
-    if (next_ == clock_.virtual_now()) {
-      run();
-    }
+  if (follows) {
+    return;
+  }
+  if (not_before <= clock_.virtual_now()) {
+    run();
+  } else {
+    wire_.run_at(not_before);
   }
 }
 
@@ -37,8 +40,6 @@ void Master::drop(const void* sender) {
 void Master::set_mode(SerialMode mode) {
   if (mode != mode_) {
     mode_ = mode;
-    burst_began_ = next_;
-    burst_bytes_ = 0;
     wire_.listen(mode_);
     if (changed_) {
       changed_(mode_);
@@ -46,34 +47,23 @@ void Master::set_mode(SerialMode mode) {
   }
 }
 
-void Master::wake_at(VirtualTime when) {
-  next_ = when;
-  wire_.run_at(when);
-}
-
 void Master::run() {
-  if (waiting_.empty()) {
-    driving_ = false;
-    wake_at(kNever);
-    wire_.drive(false);
-    return;
-  }
-  if (!driving_) {
+  if (!waiting_.empty()) {
     driving_ = true;
     wire_.drive(true);
-    burst_began_ = clock_.virtual_now();
-    burst_bytes_ = 0;
+    wire_.send();
+  }
+}
+
+std::optional<Character> Master::next_byte() {
+  if (waiting_.empty()) {
+    driving_ = false;
+    wire_.drive(false);
+    return std::nullopt;
   }
   const Waiting next = waiting_.front();
   waiting_.pop_front();
-  if (next.damaged) {
-    wire_.put_with_wrong_parity(next.byte, mode_);
-  } else {
-    wire_.put(next.byte, mode_);
-  }
-  // The end of each byte is calculated from `burst_began_`, not from the end of the previous byte, so that
-  // rounding errors do not accumulate.
-  wake_at(burst_began_ + wire_.takes(++burst_bytes_, mode_));
+  return Character{next.byte, mode_, next.damaged};
 }
 
 void Master::receive(std::uint8_t byte, ByteStatus status) {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "sim/virtual_line/wires/wires.hpp"
@@ -32,7 +33,7 @@ class Master final : public Station {
   /// Removes the bytes of `sender` that wait for their start bit. `sender` is only compared.
   void drop(const void* sender);
   /// Returns whether bytes of this master wait or are on the wires.
-  [[nodiscard]] bool sending() const { return next_ != kNever; }
+  [[nodiscard]] bool sending() const { return driving_ || !waiting_.empty(); }
   /// Returns how many bytes `send` has taken so far.
   [[nodiscard]] std::uint64_t taken() const { return taken_; }
   /// Returns how many bytes wait for their start bit.
@@ -54,6 +55,7 @@ class Master final : public Station {
 
   // --- Station ---
   void run() override;
+  std::optional<Character> next_byte() override;
   void receive(std::uint8_t byte, ByteStatus status) override;
 
  private:
@@ -72,13 +74,6 @@ class Master final : public Station {
   std::deque<Waiting> waiting_;
   std::uint64_t taken_ = 0;
   bool driving_ = false;
-  VirtualTime burst_began_{0};
-  std::size_t burst_bytes_ = 0;
-  /// The end of the byte that this master is sending. If it is sending none: the beginning of its first
-  /// waiting byte. kNever: no byte waits or is on the wires.
-  VirtualTime next_ = kNever;
-
-  void wake_at(VirtualTime when);
 };
 
 }  // namespace ex9000::sim

@@ -110,6 +110,7 @@ class SimulatedModule final : public Station {
 
   // --- Station ---
   void run() override;
+  std::optional<Character> next_byte() override { return wire_.next_byte(); }
   void receive(std::uint8_t byte, ByteStatus status) override;
   [[nodiscard]] std::optional<Hearing> hearing() const override;
   void catch_up(const Heard& missed) override;

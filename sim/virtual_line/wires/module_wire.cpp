@@ -24,35 +24,40 @@ void ModuleWire::drive(bool on) {
       delay_ = std::max(delay_, late_.back().when - clock_.virtual_now());
     }
   }
-  hand_on(on ? What::On : What::Off, 0, {});
+  hand_on(on ? What::On : What::Off, {}, {});
   if (!on && ends_) {
     ends_();
   }
 }
 
-void ModuleWire::put(std::uint8_t byte, SerialMode mode) { hand_on(What::Byte, byte, reply_mode(mode)); }
+void ModuleWire::put(Bytes bytes, SerialMode mode) {
+  hand_on(What::Reply, {bytes.begin(), bytes.end()}, reply_mode(mode));
+}
 
-void ModuleWire::hand_on(What what, std::uint8_t byte, SerialMode mode) {
+void ModuleWire::hand_on(What what, std::vector<std::uint8_t> bytes, SerialMode mode) {
   if (reply_.lost) {
     return;
   }
   const VirtualTime now = clock_.virtual_now();
-  const Event event{now, now + delay_, what, byte, mode, reply_.late_by, reply_.delayed_by};
+  Event event{now, now + delay_, what, std::move(bytes), mode, reply_.late_by, reply_.delayed_by};
   if (delay_ == VirtualTime(0) && late_.empty()) {
-    carry_out(event);
+    carry_out(std::move(event));
     driving_late_ = driving_late_ && what != What::Off;  // `run` may have begun this reply as a late one
   } else {
-    late_.push_back(event);
+    late_.push_back(std::move(event));
   }
 }
 
-void ModuleWire::carry_out(const Event& event) {
+void ModuleWire::carry_out(Event event) {
   switch (event.what) {
     case What::On:
       wire_.drive(true);
       break;
-    case What::Byte:
-      wire_.put(event.byte, event.mode);
+    case What::Reply:
+      on_wires_ = std::move(event.bytes);
+      sent_ = 0;
+      mode_ = event.mode;
+      wire_.send();
       break;
     case What::Off:
       wire_.drive(false);
@@ -62,11 +67,15 @@ void ModuleWire::carry_out(const Event& event) {
 
 void ModuleWire::run() {
   while (!late_.empty() && late_.front().when <= clock_.virtual_now()) {
-    const Event due = late_.front();
+    Event due = std::move(late_.front());
     late_.pop_front();
     driving_late_ = due.what != What::Off;
-    carry_out(due);
+    carry_out(std::move(due));
   }
+}
+
+std::optional<Character> ModuleWire::next_byte() {
+  return sent_ < on_wires_.size() ? std::optional(Character{on_wires_[sent_++], mode_}) : std::nullopt;
 }
 
 void ModuleWire::end_delays(std::size_t fault) {

@@ -11,6 +11,7 @@
 
 #include "hal/doubles/serial_line.hpp"
 #include "hal/doubles/virtual_clock.hpp"
+#include "sim/virtual_line/wires/wires.hpp"
 
 namespace ex9000::sim {
 
@@ -31,7 +32,7 @@ struct Reply {
 /// Passes on the bytes that a UART sends. Without a fault, the bytes and their times are unchanged.
 class ModuleWire final : public Wire {
  public:
-  ModuleWire(const VirtualClock& clock, Wire& wire) : clock_(clock), wire_(wire) {}
+  ModuleWire(const VirtualClock& clock, WireEnd& wire) : clock_(clock), wire_(wire) {}
 
   /// Called before the UART enables the driver. The function may change the reply, but must not reset the
   /// module or switch off its power.
@@ -60,21 +61,24 @@ class ModuleWire final : public Wire {
   /// Call this when the module loses its supply or is reset.
   void abort();
 
+  /// See Station::next_byte.
+  std::optional<Character> next_byte();
+
   // --- Wire ---
   Bytes replaced(Bytes bytes) override;
   void drive(bool on) override;
-  void put(std::uint8_t byte, SerialMode mode) override;
+  void put(Bytes bytes, SerialMode mode) override;
   [[nodiscard]] VirtualTime takes(std::size_t bytes, SerialMode mode) const override {
     return wire_.takes(bytes, reply_mode(mode));
   }
 
  private:
-  enum class What { On, Byte, Off };
+  enum class What { On, Reply, Off };
   struct Event {
     VirtualTime sent;  ///< time at which the UART did this
     VirtualTime when;  ///< time at which it happens on the wires
     What what;
-    std::uint8_t byte;
+    std::vector<std::uint8_t> bytes;
     SerialMode mode;
     VirtualTime late_by;
     std::size_t delayed_by;
@@ -84,8 +88,8 @@ class ModuleWire final : public Wire {
   /// cannot fill the computer's memory.
   static constexpr std::size_t kMostLate = 65'536;
 
-  void hand_on(What what, std::uint8_t byte, SerialMode mode);
-  void carry_out(const Event& event);
+  void hand_on(What what, std::vector<std::uint8_t> bytes, SerialMode mode);
+  void carry_out(Event event);
   [[nodiscard]] SerialMode reply_mode(SerialMode mode) const {
     return with_rate(drives_ ? forced_for_reply_ : forced_, mode);
   }
@@ -94,7 +98,7 @@ class ModuleWire final : public Wire {
   }
 
   const VirtualClock& clock_;
-  Wire& wire_;
+  WireEnd& wire_;
   Begins begins_;
   Ends ends_;
   Reply reply_;  ///< the reply that the UART sends, if `begins_` is not null
@@ -106,6 +110,9 @@ class ModuleWire final : public Wire {
   bool drives_ = false;                 ///< the UART has enabled its driver
   std::deque<Event> late_;              ///< the events that are not on the wires yet
   bool driving_late_ = false;
+  std::vector<std::uint8_t> on_wires_;  ///< the reply that is on the wires
+  std::size_t sent_ = 0;                ///< number of its bytes that have begun
+  SerialMode mode_;
 };
 
 }  // namespace ex9000::sim

@@ -36,8 +36,7 @@ bool SharedEar::hears_like(const Hearing& hearing) const {
 }
 
 void SharedEar::add(std::size_t station, std::uint8_t address) {
-  members_.push_back({station, heard_.verdicts});
-  names_.push_back(name_of(address));
+  members_.push_back({station, name_of(address), heard_.verdicts});
 }
 
 Heard SharedEar::remove(std::size_t station) {
@@ -47,8 +46,6 @@ Heard SharedEar::remove(std::size_t station) {
   for (std::size_t verdict = 0; verdict < missed.verdicts.size(); ++verdict) {
     missed.verdicts[verdict] -= member->counted_then[verdict];
   }
-  names_[static_cast<std::size_t>(member - members_.begin())] = names_.back();
-  names_.pop_back();
   *member = members_.back();
   members_.pop_back();
   if (members_.empty()) {  // it hears nothing any more
@@ -132,8 +129,10 @@ std::vector<std::size_t> SharedEar::concerned_by(Verdict verdict) const {
     const std::uint32_t name = !modbus()       ? frame[1] | unsigned{frame[2]} << 8U
                                : frame[0] != 0 ? frame[0]
                                                : *second;
-    for (auto at = names_.begin(); (at = std::find(at, names_.end(), name)) != names_.end(); ++at) {
-      concerned.push_back(members_[static_cast<std::size_t>(at - names_.begin())].station);
+    for (const Member& member : members_) {
+      if (member.name == name) {
+        concerned.push_back(member.station);
+      }
     }
   }
   std::sort(concerned.begin(), concerned.end());

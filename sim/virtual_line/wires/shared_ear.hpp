@@ -93,10 +93,10 @@ class SharedEar {
   Heard heard_;  ///< `verdicts`: since the ear exists
   struct Member {
     std::size_t station;
+    std::uint32_t name;            ///< `name_of` its address
     Heard::Verdicts counted_then;  ///< `heard_.verdicts` when it was added
   };
-  std::vector<Member> members_;       ///< in any order
-  std::vector<std::uint32_t> names_;  ///< `name_of` the address of each member
+  std::vector<Member> members_;  ///< in any order
 };
 
 }  // namespace ex9000::sim

@@ -8,12 +8,8 @@ struct Wires::End final : WireEnd {
   End(Wires& its_wires, std::size_t its_index) : wires(its_wires), index(its_index) {}
 
   void drive(bool on) override { wires.drive(*this, on); }
-  void put(std::uint8_t byte, SerialMode mode) override {
-    wires.put(*this, byte, mode, levels_of(byte, mode.format));
-  }
-  void put_with_wrong_parity(std::uint8_t byte, SerialMode mode) override {
-    wires.put(*this, byte, mode, with_wrong_parity(levels_of(byte, mode.format), mode.format));
-  }
+  void send() override { wires.send(*this); }
+  void put(Character byte) override { wires.carry(wires.wave_of(*this, byte)); }
   [[nodiscard]] VirtualTime takes(std::size_t bytes, SerialMode mode) const override {
     constexpr std::int64_t kBitNanoseconds = 1'000'000'000;
     return VirtualTime(static_cast<std::int64_t>(bytes * bits_of_character(mode.format)) * kBitNanoseconds /
@@ -26,6 +22,12 @@ struct Wires::End final : WireEnd {
   Wires& wires;
   std::size_t index;
   bool driving = false;
+  /// When the next byte of `send` begins: `begun` bytes of `its_mode` after `since`, so that rounding errors
+  /// do not add up.
+  VirtualTime next_start = kNever;
+  VirtualTime since{0};
+  std::size_t begun = 0;
+  SerialMode its_mode;
 };
 
 Wires::Wires(VirtualClock& clock, std::uint32_t times_faster, std::size_t fewest_to_share)
@@ -54,12 +56,13 @@ WireEnd& Wires::attach(Station& station) {
   return *ends_.back();
 }
 
-void Wires::run_next() {
+void Wires::run_next(VirtualTime until) {
   clock_.set(std::max(next(), clock_.virtual_now()));
-  const VirtualTime now = clock_.virtual_now();
-  if (std::min(next_byte_end_, next_sample_) <= now) {
+  if (next_wire_event() <= clock_.virtual_now()) {
     run_wire();
   }
+  start_bytes(until);
+  const VirtualTime now = clock_.virtual_now();
   if (next_silence_ <= now) {
     end_silences();
   }
@@ -70,7 +73,7 @@ void Wires::run_next() {
 
 void Wires::run_until(VirtualTime until) {
   while (next() <= until) {
-    run_next();
+    run_next(until);
   }
   clock_.set(std::max(until, clock_.virtual_now()));
 }
@@ -82,6 +85,9 @@ void Wires::drive(End& end, bool on) {
   end.driving = on;
   drivers_on_ += on ? 1U : -1U;
   const VirtualTime now = clock_.virtual_now();
+  if (!on) {
+    stop_sending(end);
+  }
   for (Wave& wave : waves_) {
     wave.collided = wave.collided || drivers_on_ > 1;
     if (!on && wave.station == end.index && wave.cut_off == kNever && wave.end > now) {
@@ -96,13 +102,68 @@ void Wires::drive(End& end, bool on) {
   }
 }
 
-/// `sent`: the levels that the station sends, with right or wrong parity.
-void Wires::put(End& end, std::uint8_t byte, SerialMode mode, Levels sent) {
-  Wave wave{clock_.virtual_now(), on_the_wires(mode), sent};
-  if (disturbance_ != nullptr) {
-    wave.levels = disturbance_->disturbed({sent, mode, wave.end, drivers_on_ > 1});
+void Wires::send(End& end) {
+  end.next_start = end.since = clock_.virtual_now();
+  end.begun = 0;
+  sending_.push_back(&end);
+  note_starts();
+}
+
+void Wires::stop_sending(const End& end) {
+  sending_.erase(std::remove(sending_.begin(), sending_.end(), &end), sending_.end());
+  note_starts();
+}
+
+void Wires::note_starts() {
+  next_start_ = kNever;
+  for (const End* end : sending_) {
+    next_start_ = std::min(next_start_, end->next_start);
   }
-  wave.disturbed = wave.levels != levels_of(byte, mode.format);
+}
+
+/// Begins the bytes that are due. A byte that nothing can disturb arrives at once, with the clock at its end:
+/// no other byte is on the wires, all stations hear it, and nothing else happens before it ends.
+void Wires::start_bytes(VirtualTime until) {
+  while (next_start_ <= clock_.virtual_now()) {
+    std::size_t first = 0;
+    while (sending_[first]->next_start != next_start_) {
+      ++first;
+    }
+    End& end = *sending_[first];
+    const std::optional<Character> sent = receivers_[end.index].station->next_byte();
+    if (!sent) {
+      stop_sending(end);
+      continue;
+    }
+    if (sent->mode != end.its_mode) {
+      end.its_mode = sent->mode;
+      end.since = clock_.virtual_now();
+      end.begun = 0;
+    }
+    end.next_start = end.since + end.takes(++end.begun, end.its_mode);
+    note_starts();
+    const Wave wave = wave_of(end, *sent);
+    const VirtualTime others = std::min(next_silence_, due_times_.next());
+    if (wave.arrives_whole() && !has_other_listeners(wave.mode) && next_sample_ == kNever &&
+        wave.end <= std::min(until, others)) {
+      clock_.set(wave.end);
+      deliver(wave);
+    } else {
+      carry(wave);
+    }
+  }
+}
+
+/// Returns a byte that begins now.
+Wave Wires::wave_of(const End& end, const Character& sent) {
+  const auto [byte, mode, wrong_parity] = sent;
+  const Levels right = levels_of(byte, mode.format);
+  Wave wave{clock_.virtual_now(), on_the_wires(mode),
+            wrong_parity ? with_wrong_parity(right, mode.format) : right};
+  if (disturbance_ != nullptr) {
+    wave.levels = disturbance_->disturbed({wave.levels, mode, wave.end, drivers_on_ > 1});
+  }
+  wave.disturbed = wave.levels != right;
   if (wave.disturbed) {
     for (WireObserver* observer : observers_) {
       observer->changed(end.index, wave.levels);
@@ -112,6 +173,10 @@ void Wires::put(End& end, std::uint8_t byte, SerialMode mode, Levels sent) {
   wave.nominal = mode;
   wave.byte = byte;
   wave.collided = drivers_on_ > 1 || carries();
+  return wave;
+}
+
+void Wires::carry(const Wave& wave) {
   for (Wave& other : waves_) {
     other.collided = true;
   }

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "firmware/line/verdict.hpp"
-#include "hal/doubles/serial_line.hpp"
 #include "hal/doubles/virtual_clock.hpp"
+#include "hal/serial_mode.hpp"
 #include "sim/virtual_line/wires/due_times.hpp"
 #include "sim/virtual_line/wires/shared_ear.hpp"
 #include "sim/virtual_line/wires/uart_sampler.hpp"
@@ -20,7 +20,13 @@ namespace ex9000::sim {
 
 using hal::SerialMode;
 using hal::doubles::VirtualClock;
-using hal::doubles::Wire;
+
+/// A byte that a station sends.
+struct Character {
+  std::uint8_t byte;
+  SerialMode mode;
+  bool wrong_parity = false;  ///< if the format has a parity bit
+};
 
 /// A user of the wires. Some stations are devices on the two wires, for example a module or a master. Other
 /// stations do not send or receive; Wires only calls their `run`.
@@ -29,6 +35,9 @@ class Station {
   /// Wires calls this at the time that the station has set with WireEnd::run_at. Before the call, Wires
   /// clears that time.
   virtual void run() = 0;
+  /// Wires calls this for each byte of WireEnd::send, at the start of the byte, and at the end of the last
+  /// one, when the result must be empty.
+  virtual std::optional<Character> next_byte() { return std::nullopt; }
   /// Wires calls this after the first stop bit of a byte, if the station listens; `status` says whether the
   /// byte has an error. A station also receives its own bytes, because both directions share the two wires.
   virtual void receive(std::uint8_t /*byte*/, ByteStatus /*status*/) {}
@@ -42,8 +51,16 @@ class Station {
 };
 
 /// A station's end of the wires.
-class WireEnd : public Wire {
+class WireEnd {
  public:
+  /// Enables or disables the station's driver. Disabling it ends `send` and cuts off the byte on the wires.
+  virtual void drive(bool on) = 0;
+  /// Begins to send the bytes of Station::next_byte without gaps; the first start bit begins now.
+  virtual void send() = 0;
+  /// Sends one byte from now on.
+  virtual void put(Character sent) = 0;
+  /// Returns how long `bytes` bytes take if there is no gap between them.
+  [[nodiscard]] virtual VirtualTime takes(std::size_t bytes, SerialMode mode) const = 0;
   /// Makes the station receive in this mode from now on; a rate of 0: the station does not listen. A receiver
   /// that begins in the middle of a byte samples the rest of it.
   virtual void listen(SerialMode mode) = 0;
@@ -52,8 +69,6 @@ class WireEnd : public Wire {
   virtual void run_at(VirtualTime when) = 0;
   /// Ends the sharing of an ear. Call this before the station changes in a way that concerns its hearing.
   virtual void hear_alone() = 0;
-  /// Like `put`, but the byte has wrong parity if the format has a parity bit.
-  virtual void put_with_wrong_parity(std::uint8_t byte, SerialMode mode) = 0;
 
  protected:
   ~WireEnd() = default;
@@ -127,11 +142,12 @@ class Wires {
 
   /// Returns the time of the next event of Wires or of a station; kNever if there is none.
   [[nodiscard]] VirtualTime next() const {
-    return std::min(std::min(next_byte_end_, next_sample_), std::min(next_silence_, due_times_.next()));
+    return std::min(std::min(next_wire_event(), next_start_), std::min(next_silence_, due_times_.next()));
   }
   /// Sets the clock to the time `next`, unless the clock is already later. Then processes all events that are
-  /// due. `next` must not be kNever.
-  void run_next();
+  /// due, and further bytes that end not after `until` and before all other events. `next` must not be
+  /// kNever.
+  void run_next(VirtualTime until = kNever);
   /// Processes all events up to and including the time `until`. Then sets the clock to `until`, unless the
   /// clock is already later.
   void run_until(VirtualTime until);
@@ -171,8 +187,14 @@ class Wires {
 
   [[nodiscard]] std::uint32_t bit_rate(std::uint32_t baud) const;
   [[nodiscard]] SerialMode on_the_wires(SerialMode mode) const;
+  [[nodiscard]] VirtualTime next_wire_event() const { return std::min(next_byte_end_, next_sample_); }
   void drive(End& end, bool on);
-  void put(End& end, std::uint8_t byte, SerialMode mode, Levels sent);
+  void send(End& end);
+  void stop_sending(const End& end);
+  void start_bytes(VirtualTime until);
+  void note_starts();
+  [[nodiscard]] Wave wave_of(const End& end, const Character& sent);
+  void carry(const Wave& wave);
   void listen(End& end, SerialMode mode);
   static bool has_heard_from_the_start(const Receiver& receiver, const Wave& wave);
   [[nodiscard]] bool has_to_sample(const Receiver& receiver) const;
@@ -201,7 +223,9 @@ class Wires {
   std::vector<std::size_t> alone_;      ///< the stations that hear alone, in ascending order
   std::vector<std::size_t> now_alone_;  ///< those that `alone_` gets after a delivery
   bool delivers_ = false;
-  VirtualTime quiet_since_{0};  ///< the end of the last byte
+  VirtualTime quiet_since_{0};       ///< the end of the last byte
+  std::vector<End*> sending_;        ///< in the order in which they began
+  VirtualTime next_start_ = kNever;  ///< of a byte of `sending_`
   DueTimes due_times_;
   std::vector<WireObserver*> observers_;
   Disturbance* disturbance_ = nullptr;

@@ -260,7 +260,7 @@ class Babbler final : public Station {
 
   void run() override {
     end_.drive(true);
-    end_.put(0x55, {9600, LineFormat::k8N1});
+    end_.put({0x55, {9600, LineFormat::k8N1}});
     end_.run_at(wires_.clock().virtual_now() + period_);
   }
 

@@ -12,14 +12,22 @@ namespace {
 using namespace std::chrono_literals;
 using Happened = std::vector<std::string>;
 
-/// Records each event with its time in milliseconds.
-struct WireLog final : Wire {
+/// Records each event with its time in milliseconds, and each byte when its reply begins.
+struct WireLog final : WireEnd {
   explicit WireLog(const VirtualClock& its_clock) : clock(its_clock) {}
 
   void drive(bool on) override { note(on ? "on" : "off"); }
-  void put(std::uint8_t byte, hal::SerialMode mode) override {
-    note(std::string(1, static_cast<char>(byte)) + " " + std::to_string(mode.baud));
+  void send() override {
+    while (const auto byte = sender->next_byte()) {
+      put(*byte);
+    }
   }
+  void put(Character sent) override {
+    note(std::string(1, static_cast<char>(sent.byte)) + " " + std::to_string(sent.mode.baud));
+  }
+  void listen(hal::SerialMode /*mode*/) override {}
+  void run_at(VirtualTime /*when*/) override {}
+  void hear_alone() override {}
   [[nodiscard]] VirtualTime takes(std::size_t bytes, hal::SerialMode mode) const override {
     return bytes * VirtualTime(10'000'000'000) / mode.baud;
   }
@@ -28,12 +36,19 @@ struct WireLog final : Wire {
   }
 
   const VirtualClock& clock;
+  ModuleWire* sender = nullptr;
   Happened happened;
 };
 
 /// `reply` simulates a UART that sends a reply of one byte. A reply takes one millisecond.
 class ModuleWireTest : public testing::Test {
  protected:
+  ModuleWireTest() { wires.sender = &wire; }
+
+  void put(char byte) {
+    const auto sent = static_cast<std::uint8_t>(byte);
+    wire.put({&sent, 1}, {9600});
+  }
   void run_until(VirtualTime time) {
     while (wire.next() <= time) {
       clock.set(std::max(wire.next(), clock.virtual_now()));
@@ -49,7 +64,7 @@ class ModuleWireTest : public testing::Test {
   void reply(VirtualTime at, char byte) {
     run_until(at);
     begin_reply(byte);
-    wire.put(static_cast<std::uint8_t>(byte), {9600});
+    put(byte);
     run_until(at + 1ms);
     wire.drive(false);
   }
@@ -76,13 +91,13 @@ TEST_F(ModuleWireTest, AReplyKeepsItsForcedRateToTheEnd) {
   wire.force_rate(1200);
   run_until(5ms);
   wire.drive(true);
-  wire.put('a', {9600});
+  put('a');
   wire.force_rate(0);
-  wire.put('b', {9600});
+  put('b');
   EXPECT_EQ(wire.takes(2, {9600}), wires.takes(2, {1200}));
   wire.drive(false);
   wire.drive(true);
-  wire.put('c', {9600});
+  put('c');
   EXPECT_EQ(wires.happened, (Happened{"5 on", "5 a 1200", "5 b 1200", "5 off", "5 on", "5 c 9600"}));
 }
 
@@ -107,7 +122,7 @@ TEST_F(ModuleWireTest, IfTheDelayEndsAtTheStartOfAReplyTheReplyIsNotLate) {
   begin_reply('a');
   wire.end_delays(kFault);
   run_until(5ms);
-  wire.put('a', {9600});
+  put('a');
   run_until(6ms);
   wire.drive(false);
   EXPECT_FALSE(wire.sends_late());

@@ -131,7 +131,7 @@ class Talker final : public Station {
     driving_ = true;
     end_.drive(true);
     wave_ = recorder_.waves.size();
-    end_.put(static_cast<std::uint8_t>(random_()), mode_);
+    end_.put({static_cast<std::uint8_t>(random_()), mode_});
     --left_;
     const VirtualTime takes = end_.takes(1, mode_);
     cuts_off_ = happens(random_, trouble_.cut_off);
@@ -160,7 +160,7 @@ class Stray final : public Station {
 
   void run() override {
     if (happens(random_, trouble_.stray)) {
-      end_.put(static_cast<std::uint8_t>(random_()), some_mode(random_, trouble_));
+      end_.put({static_cast<std::uint8_t>(random_()), some_mode(random_, trouble_)});
     }
     end_.run_at(wires_.clock().virtual_now() +
                 between(random_, VirtualTime(1), std::chrono::milliseconds(20)));

@@ -98,15 +98,31 @@ TEST_F(BusTest, AMasterDropsTheWaitingBytesOfOneSender) {
   master.send(bytes.data(), bytes.size(), {}, {}, &first);
   master.send(bytes.data(), bytes.size(), {}, {}, &second);
   master.send(bytes.data(), bytes.size());
-  master.drop(&first);  // the start bit of its first byte has been sent
+  wires_.run_for(VirtualTime(0));  // the start bit of the first byte has been sent
+  master.drop(&first);
   wires_.run_for(std::chrono::seconds(1));
   EXPECT_EQ(listener.text(), "aabcabc");
   EXPECT_FALSE(master.sending());
   master.send(bytes.data(), bytes.size(), {}, {}, &first);
+  wires_.run_for(VirtualTime(0));
   master.drop(&first);
   wires_.run_for(std::chrono::seconds(1));
   EXPECT_EQ(listener.text(), "aabcabca");
   EXPECT_FALSE(wires_.busy());
+}
+
+TEST_F(BusTest, StopsInTheMiddleOfABurst) {
+  Master master(wires_, SerialMode{9600}, [](std::uint8_t /*byte*/, ByteStatus /*status*/) {});
+  Listener listener(wires_, 9600);
+  const std::vector<std::uint8_t> bytes{'a', 'b', 'c'};
+  master.send(bytes.data(), bytes.size());
+  wires_.run_until(microseconds(1500));  // a byte takes 1042 us
+  EXPECT_EQ(wires_.clock().virtual_now(), microseconds(1500));
+  EXPECT_EQ(listener.text(), "a");
+  EXPECT_TRUE(wires_.carries());
+  master.drop(nullptr);
+  wires_.run_until(milliseconds(10));
+  EXPECT_EQ(listener.text(), "ab");
 }
 
 TEST_F(BusTest, IsBusyWhileADriverIsEnabledEvenWithoutAByte) {
@@ -125,12 +141,12 @@ TEST_F(BusTest, AByteThatWasCutOffStaysCutOffWhenItsStationCutsOffAnotherByte) {
   WireEnd& end = wires_.attach(sender);
   Listener listener(wires_, 9600);
   end.drive(true);
-  end.put(0x00, {1200});  // would last 8.3 ms
+  end.put({0x00, {1200}});  // would last 8.3 ms
   wires_.run_for(microseconds(200));
   end.drive(false);
   wires_.run_for(milliseconds(4));
   end.drive(true);
-  end.put(0xFF, {9600});
+  end.put({0xFF, {9600}});
   wires_.run_for(microseconds(370));  // just after the middle of data bit 2
   end.drive(false);
   wires_.run_for(milliseconds(10));
