@@ -26,7 +26,7 @@ struct Played {
   play::Result result;
 };
 
-/// Returns one run for each `model:` line of each file. The runs have not been played yet.
+/// Returns all runs of all files. The runs have not been played yet.
 inline std::vector<Played> all_runs() {
   std::vector<Played> runs;
   for (const std::string& file : play::transcript_files(EX9000_CONFORMANCE_DIR)) {
@@ -65,8 +65,7 @@ inline void play_run(Played& run, play::Target& target) {
   try {
     run.result = play::play(run.transcript, target);
   } catch (const std::exception& error) {
-    run.result.failure = run.transcript.file + ": " + error.what() + " (" +
-                         std::string(run.transcript.model->designation) + ")";
+    run.result.failure = run.transcript.file + ": " + error.what() + " (" + run.transcript.run + ")";
   }
 }
 
@@ -92,7 +91,8 @@ inline std::size_t steps_in(const std::string& path) {
   std::size_t steps = 0;
   for (std::string line; std::getline(file, line);) {
     const auto begins = [&line](const char* with) { return line.rfind(with, 0) == 0; };
-    const bool header = begins("source:") || begins("model:") || begins("preset:") || begins("tags:");
+    const bool header = begins("source:") || begins("model:") || begins("models:") || begins("with:") ||
+                        begins("preset:") || begins("tags:");
     steps += line.empty() || begins(";") || header ? 0U : 1U;
   }
   return steps;

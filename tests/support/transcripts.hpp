@@ -1,5 +1,4 @@
-// Loads transcripts, and adds up the waiting times in them. A file with transcripts has at least one `model:`
-// line. A scenario has no such line.
+// Loads transcripts, and adds up the waiting times in them.
 #pragma once
 
 #include <chrono>
@@ -12,12 +11,12 @@
 
 namespace ex9000::runner {
 
-/// Returns the transcripts of a file, one for each of its `model:` lines. Throws std::invalid_argument if
+/// Returns the transcripts of a file, one for each model and `with:` line. Throws std::invalid_argument if
 /// play::load throws it, or if the file is a scenario.
 inline std::vector<play::Transcript> load_transcripts(const std::string& path) {
   std::vector<play::Transcript> transcripts = play::load(path);
   if (transcripts[0].model == nullptr) {
-    sim::fail(path + ":1: the file has no 'model:' line; a transcript requires at least one");
+    sim::fail(path + ":1: the file names no model; add a 'model:' line");
   }
   return transcripts;
 }

@@ -77,8 +77,8 @@ frames without the CRC, `silence`, `wait 1.5s`, `bytes HEX`, `checksum on|off`, 
 a module `power on|off`, `power-cycle`, `reset`, `init on|off`, `input C on|off`, `pulse C [xCOUNT]`, `outputs HHHH`,
 `led on|off|flashing`.
 A file with `source:` and `model:` lines before the steps is a transcript, which is played on each of these models. A
-file without `model:` lines is a scenario for the modules or the bus file on the command line. A scenario can
-have more steps: `module N`, `line NAME`, `fault FAULT`, `fault off K|all`, and `N COMMAND` of 'help control'. See
+file that names no models is a scenario for the modules or the bus file on the command line. A scenario can have more
+steps: `module N`, `line NAME`, `fault FAULT`, `fault off K|all`, and `N COMMAND` of 'help control'. See
 tests/conformance/README.md.
 )";
 }

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "sim/app/play/line_target.hpp"
+#include "sim/app/play/model_table.hpp"
 #include "sim/app/play/player.hpp"
 #include "sim/app/play/rehearsal.hpp"
 #include "sim/app/play/transcript.hpp"
@@ -36,14 +37,15 @@ std::vector<Transcript> load_all(const std::string& path) {
 
 void check(const Transcript& transcript, const std::optional<sim::Setup>& bus) {
   if (transcript.model == nullptr && !bus) {
-    fail(transcript.file + ": has no 'model:' line; add modules or a bus file to the command line");
+    fail(transcript.file + ": names no model; add modules or a bus file to the command line");
   }
   if (transcript.model != nullptr && bus) {
-    fail(transcript.file + ": has 'model:' lines; leave out the modules or the bus file");
+    fail(transcript.file + ": names its models; leave out the modules or the bus file");
   }
 }
 
-/// Throws if the capture is a file that is played or that the bus names. Call this before the capture starts.
+/// Throws if the capture is a file that is played, its table of models or a file that the bus names. Call
+/// this before the capture starts.
 void check_capture_path(const Task& task, const std::vector<Transcript>& all) {
   if (!task.writing.capture) {
     return;
@@ -51,6 +53,9 @@ void check_capture_path(const Task& task, const std::vector<Transcript>& all) {
   std::vector<sim::InUse> read = task.bus ? sim::in_use_by(*task.bus) : std::vector<sim::InUse>();
   for (const Transcript& transcript : all) {
     read.push_back({"the file of steps", transcript.file});
+    if (const std::string table = table_path_for(transcript.file); !table.empty()) {
+      read.push_back({"the table of models", table});
+    }
   }
   sim::with_place("--capture: ", [&] { sim::refuse_overwriting(*task.writing.capture, read); });
 }
@@ -72,8 +77,7 @@ bool play(const Task& task, const std::function<void(const std::string& line)>& 
   std::size_t steps = 0;
   std::size_t failed = 0;
   for (const Transcript& transcript : all) {
-    const std::string who =
-        transcript.model == nullptr ? "" : " (" + std::string(transcript.model->designation) + ")";
+    const std::string who = transcript.model == nullptr ? "" : " (" + transcript.run + ")";
     observer.run_begins(transcript.file + who);
     LineTarget target = task.bus ? LineTarget(*task.bus, memories, &observer) : LineTarget(&observer);
     const Result result = play(transcript, target);

@@ -108,7 +108,7 @@ Result play(const Transcript& transcript, Target& target) {
     target.set_baud(baud_rate(transcript.preset.baud_code));
     target.set_format(line_format(transcript.preset.baud_code));
     checksum = (transcript.preset.format & kFormatChecksum) != 0;
-    who = " (" + std::string(transcript.model->designation) + ")";
+    who = " (" + transcript.run + ")";
   }
   Playing playing(target, checksum);
   try {

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
-#include <map>
 #include <optional>
 #include <string_view>
 
+#include "sim/app/play/model_table.hpp"
 #include "sim/app/play/steps.hpp"
 #include "sim/files_and_ports/files/regular_file.hpp"
 #include "sim/notation/module_notation.hpp"
@@ -20,17 +20,22 @@ namespace {
 
 using sim::fail;
 using sim::open_text_file;
-using Variables = std::map<std::string, std::string>;
 
 struct Line {
   unsigned number;
   std::string text;
 };
 
+/// The variables of a header line.
+struct Given {
+  std::string text;  ///< as in the file
+  Variables variables;
+};
+
 struct ModelRun {
   const Model* model;
-  Variables variables;
-  sim::Words presets;
+  Given given;
+  std::string preset;
   unsigned preset_line = 0;
 };
 
@@ -40,18 +45,10 @@ std::string trimmed(const std::string& text) {
   return first == std::string::npos ? "" : text.substr(first, last - first + 1);
 }
 
-const Model& model_named(const std::string& name) {
-  const Model* model = find_model(name);
-  if (model == nullptr) {
-    sim::refuse_model(name);
-  }
-  return *model;
-}
-
-/// The settings of a `preset:` line.
-Settings preset_of(const ModelRun& run) {
-  sim::ModuleSpec spec = sim::factory_fresh(*run.model);
-  for (const std::string& word : run.presets) {
+/// The settings of a `preset:` line, in which variables are replaced.
+Settings preset_of(const Model& model, const std::string& preset) {
+  sim::ModuleSpec spec = sim::factory_fresh(model);
+  for (const std::string& word : sim::words_of(preset)) {
     const auto equals = word.find('=');
     const std::string key = word.substr(0, equals);
     sim::take_module_setting(
@@ -60,20 +57,22 @@ Settings preset_of(const ModelRun& run) {
   return spec.settings;
 }
 
+/// Replaces each {VAR} by its value.
 std::string substitute(std::string text, const Variables& variables) {
-  for (const auto& [name, value] : variables) {
-    const std::string pattern = "{" + name + "}";
-    for (auto at = text.find(pattern); at != std::string::npos; at = text.find(pattern, at + value.size())) {
-      text.replace(at, pattern.size(), value);
-    }
-  }
   constexpr std::string_view kLetters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz_0123456789";
-  for (auto at = text.find('{'); at != std::string::npos; at = text.find('{', at + 1)) {
+  for (auto at = text.find('{'); at != std::string::npos; at = text.find('{', at)) {
     const auto end = text.find_first_not_of(kLetters, at + 1);
-    if (end != std::string::npos && end != at + 1 && text[end] == '}') {
-      const std::string name = text.substr(at + 1, end - at - 1);
-      fail("'{" + name + "}': unknown variable; add its value to the 'model:' line");
+    if (end == std::string::npos || end == at + 1 || text[end] != '}') {
+      ++at;
+      continue;
     }
+    const std::string name = text.substr(at + 1, end - at - 1);
+    const auto variable = variables.find(name);
+    if (variable == variables.end()) {
+      fail("'{" + name + "}': unknown variable; add its value to the 'model:' or 'with:' line");
+    }
+    text.replace(at, end + 1 - at, variable->second);
+    at += variable->second.size();
   }
   return text;
 }
@@ -84,41 +83,94 @@ std::optional<std::string> header_value(const std::string& text, const std::stri
 
 /// The content of a file before it is combined with a model.
 struct Source {
+  ModelTable table;
   bool names_its_source = false;
   bool slow = false;
   std::vector<ModelRun> models;
   std::size_t preset_ends = 0;  ///< the models before this index have a `preset:` line
+  std::vector<Given> withs;
   std::vector<Line> steps;
 };
+
+void add_all(const Variables& added, Variables& variables) {
+  for (const auto& [name, value] : added) {
+    if (!variables.insert({name, value}).second) {
+      fail("'" + name + "' is given twice; leave out one of them");
+    }
+  }
+}
+
+/// Splits the value of a header line into its variables, VAR=TEXT, and the words before them.
+std::pair<sim::Words, Given> words_and_variables(const std::string& text) {
+  sim::Words words;
+  Given given;
+  for (const std::string& word : sim::words_of(text)) {
+    const auto equals = word.find('=');
+    if (equals != std::string::npos) {
+      add_all({{word.substr(0, equals), word.substr(equals + 1)}}, given.variables);
+      given.text += " " + word;
+    } else if (given.text.empty()) {
+      words.push_back(word);
+    } else {
+      fail("'" + word + "': expected VAR=TEXT");
+    }
+  }
+  return {words, given};
+}
+
+/// Adds the models of a `model:` line (`by_class` is false) or of a `models:` line.
+void add_models(const std::string& text, bool by_class, Source& source) {
+  const auto [words, given] = words_and_variables(text);
+  if (words.empty()) {
+    fail(by_class ? "'models:' requires a class" : "'model:' requires a model's name");
+  }
+  std::vector<const Model*> models;
+  if (by_class) {
+    models = models_of(source.table, words);
+  } else {
+    std::transform(words.begin(), words.end(), std::back_inserter(models),
+                   [](const std::string& name) { return &model_named(name); });
+  }
+  for (const Model* const model : models) {
+    ModelRun run{model, given, {}, 0};
+    for (const ModelEntry& entry : source.table) {
+      if (entry.model == model) {
+        add_all(entry.variables, run.given.variables);
+      }
+    }
+    source.models.push_back(run);
+  }
+}
+
+void add_preset(const std::string& text, unsigned number, Source& source) {
+  if (source.preset_ends == source.models.size()) {
+    fail("'preset:' requires a preceding 'model:' or 'models:' line without a preset");
+  }
+  for (; source.preset_ends < source.models.size(); ++source.preset_ends) {
+    source.models[source.preset_ends].preset = text;
+    source.models[source.preset_ends].preset_line = number;
+  }
+}
+
+void add_with(const std::string& text, Source& source) {
+  const auto [words, given] = words_and_variables(text);
+  if (!words.empty() || given.text.empty()) {
+    fail("'with:' requires VAR=TEXT");
+  }
+  source.withs.push_back(given);
+}
 
 bool read_header(const std::string& text, unsigned number, Source& source) {
   if (const auto from = header_value(text, "source")) {
     source.names_its_source = !from->empty();
   } else if (const auto model = header_value(text, "model")) {
-    const sim::Words word = sim::words_of(*model);
-    if (word.empty()) {
-      fail("'model:' requires a model's name");
-    }
-    ModelRun run{&model_named(word[0]), {}, {}, 0};
-    for (std::size_t i = 1; i < word.size(); ++i) {
-      const auto equals = word[i].find('=');
-      if (equals == std::string::npos) {
-        fail("'" + word[i] + "': expected KEY=VALUE");
-      }
-      const std::string key = word[i].substr(0, equals);
-      if (!run.variables.insert({key, word[i].substr(equals + 1)}).second) {
-        fail("'" + key + "' is given twice; leave out one of them");
-      }
-    }
-    source.models.push_back(run);
+    add_models(*model, false, source);
+  } else if (const auto models = header_value(text, "models")) {
+    add_models(*models, true, source);
   } else if (const auto preset = header_value(text, "preset")) {
-    if (source.preset_ends == source.models.size()) {
-      fail("'preset:' requires a preceding 'model:' line without a preset");
-    }
-    for (; source.preset_ends < source.models.size(); ++source.preset_ends) {
-      source.models[source.preset_ends].presets = sim::words_of(*preset);
-      source.models[source.preset_ends].preset_line = number;
-    }
+    add_preset(*preset, number, source);
+  } else if (const auto with = header_value(text, "with")) {
+    add_with(*with, source);
   } else if (const auto tags = header_value(text, "tags")) {
     if (*tags != "slow") {
       fail("'" + *tags + "' is not a tag; expected slow");
@@ -143,8 +195,8 @@ void read_line(const std::string& raw, unsigned number, Source& source) {
 }
 
 Transcript scenario(const std::string& path, const Source& source, unsigned& line) {
-  if (source.slow) {
-    fail("'tags:' requires a 'model:' line");
+  if (source.slow || !source.withs.empty()) {
+    fail(std::string(source.slow ? "'tags:'" : "'with:'") + " requires a 'model:' or 'models:' line");
   }
   Transcript transcript;
   transcript.file = path;
@@ -155,18 +207,33 @@ Transcript scenario(const std::string& path, const Source& source, unsigned& lin
   return transcript;
 }
 
-Transcript transcript_of(const std::string& path, const Source& source, const ModelRun& run, unsigned& line) {
+bool have_different_presets(const std::vector<ModelRun>& runs) {
+  return std::any_of(runs.begin(), runs.end(),
+                     [&runs](const ModelRun& run) { return run.preset != runs[0].preset; });
+}
+
+/// `line` is the line that is read, for the message of an error.
+Transcript transcript_of(const std::string& path, const Source& source, const ModelRun& run,
+                         const Given& with, unsigned& line) {
+  Variables variables = run.given.variables;
+  for (const auto& [name, value] : with.variables) {
+    add_all({{name, substitute(value, run.given.variables)}}, variables);
+  }
   Transcript transcript;
   transcript.file = path;
   transcript.model = run.model;
-  transcript.preset_given = !run.presets.empty();
-  line = run.presets.empty() ? line : run.preset_line;
-  transcript.preset = preset_of(run);
+  transcript.preset_given = !run.preset.empty();
+  line = run.preset.empty() ? line : run.preset_line;
+  const std::string preset = substitute(run.preset, variables);
+  transcript.run = std::string(run.model->designation) + run.given.text + with.text;
+  if (!preset.empty() && have_different_presets(source.models)) {
+    transcript.run += " " + preset;
+  }
+  transcript.preset = preset_of(*run.model, preset);
   transcript.slow = source.slow;
   for (const Line& raw : source.steps) {
     line = raw.number;
-    const std::string text = substitute(raw.text, run.variables);
-    transcript.steps.push_back(parse_step(raw.number, text, run.model));
+    transcript.steps.push_back(parse_step(raw.number, substitute(raw.text, variables), run.model));
   }
   return transcript;
 }
@@ -189,9 +256,12 @@ std::vector<Transcript> load(const std::string& path) {
   if (!file.is_open()) {
     fail(path + ": cannot be read; name a transcript, a scenario or a folder of such files");
   }
+  Source source;
+  if (const std::string table = table_path_for(path); !table.empty()) {
+    source.table = read_model_table(table);
+  }
   unsigned line = 0;
   try {
-    Source source;
     for (std::string raw; std::getline(file, raw);) {
       read_line(raw, ++line, source);
     }
@@ -200,7 +270,7 @@ std::vector<Transcript> load(const std::string& path) {
       fail("has no step; add one");
     }
     if (source.models.empty() && source.names_its_source) {
-      fail("has 'source:', but no 'model:' line; add one, or remove 'source:'");
+      fail("has 'source:', but names no model; add a 'model:' line, or remove 'source:'");
     }
     if (source.models.empty()) {
       return {scenario(path, source, line)};
@@ -209,8 +279,11 @@ std::vector<Transcript> load(const std::string& path) {
       fail("has no source; add a line such as 'source: EX9042D manual 2.6'");
     }
     std::vector<Transcript> transcripts;
+    const std::vector<Given> once(1);
     for (const ModelRun& run : source.models) {
-      transcripts.push_back(transcript_of(path, source, run, line));
+      for (const Given& with : source.withs.empty() ? once : source.withs) {
+        transcripts.push_back(transcript_of(path, source, run, with, line));
+      }
     }
     return transcripts;
   } catch (const std::exception& error) {

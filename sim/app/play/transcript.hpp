@@ -32,7 +32,10 @@ struct Step {
 struct Transcript {
   std::string file;
   const Model* model = nullptr;  ///< null: a scenario
-  Settings preset;               ///< of a transcript: factory settings with the changes from the header
+  /// The model, the variables from the header and, if not all runs have the same, the preset. Empty: a
+  /// scenario.
+  std::string run;
+  Settings preset;  ///< of a transcript: factory settings with the changes from the header
   bool preset_given = false;
   bool slow = false;
   std::vector<Step> steps;
@@ -46,8 +49,8 @@ constexpr std::chrono::milliseconds kSilence{250};
 /// std::filesystem::filesystem_error if a directory cannot be read.
 std::vector<std::string> transcript_files(const std::string& directory);
 
-/// Returns all runs of a transcript, one for each `model:` line, or the single run of a scenario. Throws
-/// std::invalid_argument that names the file, the line (if the file can be read) and what is wrong.
+/// Returns all runs of a transcript, one for each model and `with:` line, or the single run of a scenario.
+/// Throws std::invalid_argument that names the file, the line (if the file can be read) and what is wrong.
 std::vector<Transcript> load(const std::string& path);
 
 }  // namespace ex9000::play

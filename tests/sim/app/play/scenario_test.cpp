@@ -332,7 +332,7 @@ TEST(Play, RequiresABusForAScenarioAndRejectsABusForATranscript) {
   EXPECT_NE(played(directory / "scenario.txt", false).find("add modules or a bus file to the command line"),
             std::string::npos);
   EXPECT_NE(played(directory / "transcript.txt", true)
-                .find("has 'model:' lines; leave out the modules or the bus file"),
+                .find("names its models; leave out the modules or the bus file"),
             std::string::npos);
 }
 
@@ -353,9 +353,10 @@ TEST(Play, RefusesAFileWithoutValidSteps) {
   EXPECT_NE(played(directory / "wrong.txt", true).find("wrong.txt:2: 'wiat 1s' is not a step"),
             std::string::npos);
   write_file(directory / "preset.txt", "preset: protocol=ascii\n> $01M\n");
-  EXPECT_NE(played(directory / "preset.txt", true)
-                .find("preset.txt:1: 'preset:' requires a preceding 'model:' line without a preset"),
-            std::string::npos);
+  EXPECT_NE(
+      played(directory / "preset.txt", true)
+          .find("preset.txt:1: 'preset:' requires a preceding 'model:' or 'models:' line without a preset"),
+      std::string::npos);
 }
 
 // --- syntax of steps ---
