@@ -1,10 +1,12 @@
-// Plays all transcripts on the running simulator in stepped time, over pseudo-terminals and over TCP.
+// Plays all transcripts on the running simulator in stepped time, over pseudo-terminals. Plays those about
+// framing over TCP too.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <atomic>
 #include <exception>
-#include <string>
+#include <filesystem>
+#include <utility>
 #include <vector>
 
 #include "tests/conformance/runs.hpp"
@@ -34,23 +36,28 @@ void play_on_a_simulator(Played* runs, std::size_t count, Over over) try {
   std::for_each_n(runs, count, [&error](Played& run) { run.result.failure = error.what(); });
 }
 
-class Conformance : public testing::TestWithParam<Over> {};
-
-TEST_P(Conformance, TheSimulatorPassesEveryTranscriptOnEveryModelThatTheTranscriptNames) {
-  std::vector<Played> runs = all_runs();
+void play_over(Over over, std::vector<Played> runs) {
   std::atomic<std::size_t> next{0};
   in_parallel(processors(), [&](unsigned /*number*/) {
     for (std::size_t first = next.fetch_add(kLines); first < runs.size(); first = next.fetch_add(kLines)) {
-      play_on_a_simulator(&runs[first], std::min(kLines, runs.size() - first), GetParam());
+      play_on_a_simulator(&runs[first], std::min(kLines, runs.size() - first), over);
     }
   });
   expect_all_steps_passed("process", runs);
 }
 
-std::string name_of(const testing::TestParamInfo<Over>& over) {
-  return over.param == Over::Tcp ? "OverTcp" : "OverItsPseudoTerminal";
+TEST(Conformance, TheSimulatorPassesEveryTranscriptOverItsPseudoTerminal) {
+  play_over(Over::PseudoTerminal, all_runs());
 }
-INSTANTIATE_TEST_SUITE_P(Ports, Conformance, testing::Values(Over::PseudoTerminal, Over::Tcp), name_of);
+
+TEST(Conformance, TheSimulatorPassesTheTranscriptsAboutFramingOverTcp) {
+  std::vector<Played> runs = all_runs();
+  const auto others = std::remove_if(runs.begin(), runs.end(), [](const Played& run) {
+    return std::filesystem::path(run.transcript.file).parent_path().filename() != "framing";
+  });
+  runs.erase(others, runs.end());
+  play_over(Over::Tcp, std::move(runs));
+}
 
 }  // namespace
 }  // namespace ex9000::conformance
