@@ -1,53 +1,57 @@
-// Plays all transcripts on the core in virtual time. Checks that transcripts with long waits are marked slow.
+// Plays all transcripts on the core in virtual time. Checks that they reach everything that a transcript can
+// reach, and that transcripts with long waits are marked slow.
 #include <gtest/gtest.h>
 
-#include <cstdio>
-#include <string>
+#include <set>
+#include <string_view>
 #include <vector>
 
-#include "sim/app/play/player.hpp"
-#include "sim/app/play/transcript.hpp"
+#include "tests/conformance/runs.hpp"
 #include "tests/support/core_target.hpp"
 #include "tests/support/coverage.hpp"
-#include "tests/support/transcripts.hpp"
 
-namespace ex9000 {
+namespace ex9000::conformance {
 namespace {
 
-TEST(Conformance, TheCorePassesAllTranscriptsAndTheyReachAllModelsTableRowsRefusalsAndVerdicts) {
-  const std::vector<std::string> files = play::transcript_files(EX9000_CONFORMANCE_DIR);
-  ASSERT_FALSE(files.empty());
-  std::size_t runs = 0;
-  std::size_t steps = 0;
-  std::set<std::string_view> models;
-  runner::Coverage coverage;
-  for (const std::string& file : files) {
-    for (const play::Transcript& transcript : runner::load_transcripts(file)) {
-      runner::CoreTarget target(&coverage);
-      const play::Result result = play::play(transcript, target);
-      EXPECT_TRUE(result.passed()) << result.failure;
-      ++runs;
-      steps += result.steps;
-      models.insert(transcript.model->designation);
+/// The runs are played once, before the tests.
+class Conformance : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    runs_ = all_runs();
+    for (Played& run : runs_) {
+      runner::CoreTarget target(&coverage_);
+      play_run(run, target);
     }
+  }
+
+  static inline std::vector<Played> runs_;
+  static inline runner::Coverage coverage_;
+};
+
+TEST_F(Conformance, TheCorePassesTheTranscripts) { expect_all_steps_passed("core", runs_); }
+
+TEST_F(Conformance, TheTranscriptsReachAllModelsTableRowsRefusalsAndVerdicts) {
+  if (!selection().empty()) {
+    GTEST_SKIP() << "EX9000_PLAY selects some of the transcripts";
+  }
+  std::set<std::string_view> models;
+  for (const Played& run : runs_) {
+    models.insert(run.transcript.model->designation);
   }
   for (const Model& model : kModels) {
     EXPECT_EQ(models.count(model.designation), 1U) << model.designation << " has no transcript";
   }
-  for (const std::string& id : coverage.missing()) {
+  for (const std::string& id : coverage_.missing()) {
     ADD_FAILURE() << id << " is not reached by any transcript";
   }
-  std::printf("core: %zu files, %zu runs, %zu steps, %zu rows, refusals and verdicts reached\n", files.size(),
-              runs, steps, coverage.reached());
+  std::printf("core: %zu rows, refusals and verdicts reached\n", coverage_.reached());
 }
 
-TEST(Conformance, TheTotalWaitOfATranscriptIsUnderTwoSecondsUnlessItsFileIsMarkedSlow) {
-  for (const std::string& file : play::transcript_files(EX9000_CONFORMANCE_DIR)) {
-    for (const play::Transcript& transcript : runner::load_transcripts(file)) {
-      EXPECT_TRUE(transcript.slow || runner::waits_of(transcript) < std::chrono::seconds(2)) << file;
-    }
+TEST_F(Conformance, TheTotalWaitOfATranscriptIsUnderTwoSecondsUnlessItsFileIsMarkedSlow) {
+  for (const auto& [transcript, result] : runs_) {
+    EXPECT_TRUE(transcript.slow || runner::waits_of(transcript) < std::chrono::seconds(2)) << transcript.file;
   }
 }
 
 }  // namespace
-}  // namespace ex9000
+}  // namespace ex9000::conformance

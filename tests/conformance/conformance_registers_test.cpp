@@ -5,16 +5,14 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <string>
+#include <vector>
 
-#include "sim/app/play/player.hpp"
-#include "sim/app/play/transcript.hpp"
 #include "tests/boards/images_under_test.hpp"
+#include "tests/conformance/runs.hpp"
 #include "tests/mcu_model/register_target.hpp"
-#include "tests/support/transcripts.hpp"
 
 namespace ex9000::registers {
 namespace {
@@ -39,33 +37,23 @@ class ConformanceOnRegisters : public testing::TestWithParam<ImageName> {};
 
 TEST_P(ConformanceOnRegisters, PassesTheTranscriptsOfItsModel) {
   const Image& image = image_of(GetParam().board, GetParam().model);
-  std::size_t runs = 0;
-  std::size_t steps = 0;
-  for (const std::string& file : play::transcript_files(EX9000_CONFORMANCE_DIR)) {
-    if (!plays(image, file)) {
-      continue;
-    }
-    for (const play::Transcript& transcript : runner::load_transcripts(file)) {
-      if (transcript.model->designation != image.model) {
-        continue;
-      }
-      SCOPED_TRACE(file);
-      RegisterTarget target(image);
-      const play::Result result = play::play(transcript, target);
-      EXPECT_TRUE(result.passed()) << result.failure;
-      EXPECT_EQ(result.steps, transcript.steps.size());
-      BoardBench& bench = target.bench();
-      EXPECT_EQ(bench.line.bits_lost, 0U) << "bits sent while driver enable was off";
-      EXPECT_EQ(bench.line.let_go_early, 0U);
-      EXPECT_EQ(bench.line.let_go_late, 0U);
-      EXPECT_FALSE(bench.pins.any_was_shorted());
-      EXPECT_EQ(bench.watchdog_resets, 0U);
-      ++runs;
-      steps += result.steps;
-    }
+  std::vector<conformance::Played> runs = conformance::all_runs();
+  const auto others = std::remove_if(runs.begin(), runs.end(), [&image](const conformance::Played& run) {
+    return run.transcript.model->designation != image.model || !plays(image, run.transcript.file);
+  });
+  runs.erase(others, runs.end());
+  for (conformance::Played& run : runs) {
+    SCOPED_TRACE(conformance::name_of(run));
+    RegisterTarget target(image);
+    conformance::play_run(run, target);
+    BoardBench& bench = target.bench();
+    EXPECT_EQ(bench.line.bits_lost, 0U) << "bits sent while driver enable was off";
+    EXPECT_EQ(bench.line.let_go_early, 0U);
+    EXPECT_EQ(bench.line.let_go_late, 0U);
+    EXPECT_FALSE(bench.pins.any_was_shorted());
+    EXPECT_EQ(bench.watchdog_resets, 0U);
   }
-  EXPECT_GT(runs, 0U);
-  std::printf("%s: %zu runs, %zu steps\n", image.name().c_str(), runs, steps);
+  conformance::expect_all_steps_passed(image.name().c_str(), runs);
 }
 
 INSTANTIATE_TEST_SUITE_P(Images, ConformanceOnRegisters,

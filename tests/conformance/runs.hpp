@@ -1,4 +1,6 @@
-// Plays transcripts in parallel, and checks that they pass.
+// Selects transcripts, plays them in parallel, and checks that they pass. If EX9000_PLAY is set in the
+// environment, only the runs that it selects take part: those of a folder (dcon/init), of a file
+// (dcon/init/baud-change.txt), or one that a failed test has named.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -6,7 +8,9 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
+#include <filesystem>
 #include <fstream>
 #include <string>
 #include <string_view>
@@ -16,6 +20,8 @@
 
 #include "sim/app/play/player.hpp"
 #include "sim/app/play/transcript.hpp"
+#include "sim/text/fail.hpp"
+#include "sim/text/words.hpp"
 #include "tests/support/transcripts.hpp"
 
 namespace ex9000::conformance {
@@ -26,13 +32,49 @@ struct Played {
   play::Result result;
 };
 
-/// Returns all runs of all files. The runs have not been played yet.
+/// Returns the path of the file below the folder of this header.
+inline std::string path_of(const std::string& file) {
+  return file.substr(std::string_view(EX9000_CONFORMANCE_DIR "/").size());
+}
+
+/// Returns the name of a run for EX9000_PLAY: the path of the file and what the run has in addition.
+inline std::string name_of(const Played& run) {
+  return path_of(run.transcript.file) + " " + run.transcript.run;
+}
+
+/// Returns the value of EX9000_PLAY. Empty: all runs take part.
+inline std::string selection() {
+  const char* const wanted = std::getenv("EX9000_PLAY");
+  return wanted == nullptr ? "" : wanted;
+}
+
+/// Returns whether the name or path `whole` is `begin` or continues it with another part.
+inline bool continues(const std::string& whole, const std::string& begin) {
+  return begin.empty() || whole == begin || whole.rfind(begin + "/", 0) == 0 ||
+         whole.rfind(begin + " ", 0) == 0;
+}
+
+/// Returns all runs of all files, or those that EX9000_PLAY selects. The runs have not been played yet.
+/// Throws std::invalid_argument if EX9000_PLAY selects none.
 inline std::vector<Played> all_runs() {
+  const std::string wanted = selection();
   std::vector<Played> runs;
   for (const std::string& file : play::transcript_files(EX9000_CONFORMANCE_DIR)) {
-    for (play::Transcript& transcript : runner::load_transcripts(file)) {
-      runs.push_back({std::move(transcript), {}});
+    if (!continues(path_of(file), wanted) && !continues(wanted, path_of(file))) {
+      continue;
     }
+    for (play::Transcript& transcript : runner::load_transcripts(file)) {
+      Played run{std::move(transcript), {}};
+      if (name_of(run) == wanted) {
+        return {run};
+      }
+      if (continues(name_of(run), wanted)) {
+        runs.push_back(std::move(run));
+      }
+    }
+  }
+  if (runs.empty()) {
+    sim::fail("EX9000_PLAY=" + sim::shell_word(wanted) + " selects no run; name a folder, a file or a run");
   }
   return runs;
 }
@@ -98,13 +140,22 @@ inline std::size_t steps_in(const std::string& path) {
   return steps;
 }
 
+/// Returns what has failed in a run, and the command that repeats only this run.
+inline std::string failure_of(const Played& run) {
+  return run.result.failure + "\nto repeat it: EX9000_PLAY=" + sim::shell_word(name_of(run)) + " " +
+         std::filesystem::read_symlink("/proc/self/exe").string();
+}
+
 /// Expects that all runs have passed, and that each has played all steps of its file.
 inline void expect_all_steps_passed(const char* name, const std::vector<Played>& runs) {
-  EXPECT_FALSE(runs.empty());
+  EXPECT_FALSE(runs.empty() && selection().empty());
   std::size_t steps = 0;
   for (const Played& run : runs) {
-    EXPECT_TRUE(run.result.passed()) << run.result.failure;
-    EXPECT_EQ(run.result.steps, steps_in(run.transcript.file)) << run.transcript.file;
+    if (!run.result.passed()) {
+      ADD_FAILURE() << failure_of(run);
+    } else {
+      EXPECT_EQ(run.result.steps, steps_in(run.transcript.file)) << run.transcript.file;
+    }
     steps += run.result.steps;
   }
   std::printf("%s: %zu runs, %zu steps\n", name, runs.size(), steps);
