@@ -2,10 +2,14 @@
 // reach, and that transcripts with long waits are marked slow.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <iterator>
 #include <set>
 #include <string_view>
+#include <utility>
 #include <vector>
 
+#include "sim/app/play/model_table.hpp"
 #include "tests/conformance/runs.hpp"
 #include "tests/support/core_target.hpp"
 #include "tests/support/coverage.hpp"
@@ -50,6 +54,22 @@ TEST_F(Conformance, TheTranscriptsReachAllModelsTableRowsRefusalsAndVerdicts) {
 TEST_F(Conformance, TheTotalWaitOfATranscriptIsUnderTwoSecondsUnlessItsFileIsMarkedSlow) {
   for (const auto& [transcript, result] : runs_) {
     EXPECT_TRUE(transcript.slow || runner::waits_of(transcript) < std::chrono::seconds(2)) << transcript.file;
+  }
+}
+
+TEST(ModelTable, AssignsToEachModelTheClassesOfItsProtocolAndItsChannels) {
+  const play::ModelTable table = play::read_model_table(EX9000_CONFORMANCE_DIR "/models.table");
+  EXPECT_EQ(table.size(), std::size(kModels));
+  for (const play::ModelEntry& entry : table) {
+    const Model& model = *entry.model;
+    for (const auto& [name, expected] : {std::pair("ascii", !model.speaks_modbus()),
+                                         {"modbus", model.speaks_modbus()},
+                                         {"inputs", model.has_inputs()},
+                                         {"outputs", model.has_outputs()},
+                                         {"wide", model.inputs > 8 || model.outputs > 8}}) {
+      EXPECT_EQ(std::count(entry.classes.begin(), entry.classes.end(), name), expected ? 1 : 0)
+          << model.designation << ": " << name;
+    }
   }
 }
 
