@@ -10,8 +10,6 @@ constexpr std::uint32_t kLast = 0xFFFF'FFFFU;
 constexpr std::uint32_t kHalf = 0x8000'0000U;
 constexpr Time kShortlyBeforeTheWrap{kLast - 99};
 
-TEST(Duration, IsZeroByDefault) { EXPECT_EQ(Duration().microseconds(), 0U); }
-
 TEST(Duration, AMillisecondIs1000Microseconds) {
   EXPECT_EQ(milliseconds(0).microseconds(), 0U);
   EXPECT_EQ(milliseconds(1).microseconds(), 1000U);

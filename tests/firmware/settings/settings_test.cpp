@@ -367,20 +367,6 @@ TEST(Settings, AreUnequalIfDifferentFieldsWereChanged) {
   }
 }
 
-TEST(Settings, FromTheAddressToTheSafeValueAreZeroOrEmptyInANewObject) {
-  const Settings untouched;
-  EXPECT_EQ(untouched.address, 0);
-  EXPECT_EQ(untouched.baud_code, 0);
-  EXPECT_EQ(untouched.format, 0);
-  EXPECT_EQ(untouched.protocol, Protocol::Ascii);
-  EXPECT_EQ(untouched.watchdog_timeout, 0);
-  EXPECT_FALSE(untouched.watchdog_enabled);
-  EXPECT_FALSE(untouched.timeout_status);
-  EXPECT_EQ(untouched.name.bytes().size, 0U);
-  EXPECT_EQ(untouched.power_on_value, 0);
-  EXPECT_EQ(untouched.safe_value, 0);
-}
-
 // --- extensions: firmware/extensions.md ---
 
 TEST_F(Possible, AFilterTimeIsAtMost2000MsAndOnlyForAnInputOfTheModel) {
