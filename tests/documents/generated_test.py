@@ -29,21 +29,15 @@ def section_of(document: str, command: str) -> str:
 
 
 class Generated(unittest.TestCase):
-    def test_the_picture_of_the_folders_is_up_to_date(self) -> None:
-        pictured = section_of(".github/CONTRIBUTING.md", "toolchain/draw-folders")
-        self.assertEqual(pictured, printed(["toolchain/draw-folders"]))
-
     def test_the_tables_of_the_command_line_are_up_to_date(self) -> None:
         for table, words in (("options", ["--help"]), ("modules", ["help", "modules"]), ("ports", ["help", "ports"])):
             with self.subTest(table=table):
                 written = section_of("sim/docs/command-line.md", f"toolchain/help-tables {table}")
                 self.assertEqual(written, printed(["toolchain/help-tables", table], printed([PROGRAM, *words])))
 
-    def test_the_tables_of_recorded_figures_are_up_to_date(self) -> None:
-        for document, record in (("boards/README.md", "sizes"), ("tests/README.md", "instructions")):
-            with self.subTest(document=document):
-                written = section_of(document, f"toolchain/tabulate-records {record}")
-                self.assertEqual(written, printed(["toolchain/tabulate-records", record]))
+    def test_the_table_of_recorded_sizes_is_up_to_date(self) -> None:
+        written = section_of("boards/README.md", "toolchain/tabulate-sizes")
+        self.assertEqual(written, printed(["toolchain/tabulate-sizes"]))
 
     def test_the_wiring_of_the_pico_is_up_to_date(self) -> None:
         drawn = (ROOT / "boards/pico/wiring.svg").read_text(encoding="utf-8")
