@@ -24,7 +24,6 @@ class Board {
     this.outside[pins.data] = true; // pull-ups
     this.outside[pins.data + 1] = true;
     this.chip = null;
-    this.trace = null; // the Trace that is attached to each new chip; null if there is none
     this.transmitted = true;
     this.driverOn = false;
     this.echoes = true;
@@ -105,9 +104,6 @@ class Board {
       },
     });
     const { chip } = this;
-    if (this.trace !== null) {
-      this.trace.attach(chip);
-    }
     this.eeprom.attach(chip.i2c, this.clock, () => chip.i2cBitTime, () => chip.i2cConnected);
     for (let number = 0; number < PINS; number += 1) {
       this.pinChanged(number);

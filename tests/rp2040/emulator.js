@@ -3,7 +3,6 @@
 "use strict";
 const fs = require("fs");
 const { Board } = require("./board");
-const { Trace } = require("./trace");
 
 let board = null;
 
@@ -181,16 +180,6 @@ const COMMANDS = {
   write: (address, value) => board.chip.mcu.writeUint16(integer(address), integer(value)),
   // lose INTERRUPT: the processor does not notice this interrupt until the next reset
   lose: (interrupt) => board.chip.processor.lose(integer(interrupt)),
-  // trace DESCRIPTOR: writes interrupts and bytes of the UART to an open file, from the next start of the chip on
-  trace(descriptor) {
-    board.trace = new Trace(integer(descriptor));
-  },
-  // trace-instructions on|off: sets whether the trace also contains each instruction
-  "trace-instructions"(on) {
-    board.trace.instructions = on === "on";
-  },
-  // note TEXT: writes a line to the file of the trace
-  note: (...words) => board.trace.note(words.join(" ")),
   // cycles: returns the cycles of the instructions that the chip has executed since power-on or its last reset. The
   // command `reset-processor` does not restart this count. Returns 0 while the supply is off.
   cycles: () => board.chip?.mcu.core.cycles ?? 0,
@@ -209,8 +198,6 @@ function answer(line) {
     return `ok ${execute(line)}\n`;
   } catch (error) {
     return `error ${error.message.replaceAll("\n", " ")}\n`;
-  } finally {
-    board?.trace?.flush();
   }
 }
 

@@ -1,11 +1,8 @@
 // Tests what the models report, how long their operations take, and which accesses they reject. A model
 // rejects an access that is an error on a real chip, that shows an error of the firmware, or that the model does not
-// support. Also tests the trace.
+// support.
 "use strict";
 const assert = require("node:assert/strict");
-const fs = require("node:fs");
-const os = require("node:os");
-const path = require("node:path");
 const { test } = require("node:test");
 const { RP2040 } = require("rp2040js");
 const { ChipClock, Time } = require("./clock");
@@ -19,7 +16,6 @@ const { Pl011 } = require("./pl011");
 const { correctPll } = require("./pll");
 const { QspiPins, Ssi } = require("./ssi");
 const { CHIP_RESET, ChipReset, Guarded, Resets, Watchdog } = require("./system");
-const { Trace } = require("./trace");
 
 const BIT = 8680; // ns at 115200 baud
 const PERI_ENABLE = 1 << 11;
@@ -454,38 +450,4 @@ test("the PLL requires a reference, and cannot clock the system without a lock o
   pll.reset();
   assert.equal(pll.readUint32(4), 0x2d);
   assert.equal(isLocked(), false);
-});
-
-test("a trace contains each instruction once, and an interrupt before the first instruction of its handler", () => {
-  const { mcu } = setUp();
-  const { core } = mcu;
-  const processor = new Processor(mcu);
-  const folder = fs.mkdtempSync(path.join(os.tmpdir(), "ex9000-trace-"));
-  const file = fs.openSync(path.join(folder, "trace"), "w+");
-  const trace = new Trace(file);
-  trace.attach({ mcu, uart: uartOf({ mcu }).uart });
-  const NOP = 0xbf00;
-  const RETURN = 0x4770; // BX LR
-  mcu.sramView.setUint16(0x100, NOP, true);
-  mcu.sramView.setUint16(0x102, NOP, true);
-  mcu.sramView.setUint16(0x200, NOP, true);
-  mcu.sramView.setUint16(0x202, RETURN, true);
-  mcu.sramView.setUint32(4 * 16, 0x20000201, true);
-  core.VTOR = 0x20000000;
-  core.SP = 0x20001000;
-  core.PC = 0x20000100;
-  core.enabledInterrupts = 1;
-  processor.step();
-  trace.instructions = true;
-  processor.setLine(0, true);
-  processor.step();
-  processor.setLine(0, false);
-  processor.step();
-  processor.step();
-  trace.flush();
-  assert.deepEqual(fs.readFileSync(path.join(folder, "trace"), "utf8").split("\n"), [
-    "nvic_acknowledge_irq IRQ: 16 now active", "T/20000200", "T/20000202", "nvic_complete_irq IRQ 16", "T/20000102", "",
-  ]);
-  fs.closeSync(file);
-  fs.rmSync(folder, { recursive: true });
 });

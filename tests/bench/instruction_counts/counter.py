@@ -70,8 +70,7 @@ class Counter:
     occurs.
     """
 
-    def __init__(self, handlers, sleeps, numbers):
-        self._numbers = numbers  # an execution.Interrupts
+    def __init__(self, handlers, sleeps):
         self._first = {number: execution.as_logged(address) for number, address in handlers.items()}
         self._awake = {execution.as_logged(address + 2) for address in sleeps}
         self._seen = threading.Event()
@@ -127,7 +126,7 @@ class Counter:
             self._pass += span.addresses
         if self.nothing_happens:
             self.idling.note(span.addresses)
-        if span.exception == self._numbers.line_end:
+        if span.exception == execution.LINE_END:
             self.answered = True
 
     def slept(self, main):
@@ -143,10 +142,10 @@ class Counter:
             self._pass += main.addresses
 
     def _note_interrupt(self, span):
-        if span.exception == self._numbers.line:
+        if span.exception == execution.LINE:
             if len(span.received) + span.sent == 1:
                 (self.sent_byte if span.sent else self.received_byte).note(span.addresses)
-        elif span.exception in self._numbers.edges:
+        elif span.exception in execution.EDGES:
             self.edges.setdefault(self.edges_at_once, Highest()).note(span.addresses)
         else:
             self.interrupts.setdefault(span.exception, Highest()).note(span.addresses)

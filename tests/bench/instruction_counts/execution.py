@@ -5,16 +5,13 @@ that accesses a peripheral ("cpu_io_recompile"), or an interrupt comes first ("S
 that event, and the line of the instruction does not count.
 """
 
-import collections
-
 MAIN = 0
 TICK = 15
-ALARM = 51  # alarm interrupt of this tool: see emulator.py. The RP2040 has no exception 51
+ALARM = 51  # alarm interrupt of this tool: see emulator.py
 
-# Exception numbers of a board. `edges` contains those of all ports whose inputs this tool changes.
-Interrupts = collections.namedtuple("Interrupts", "edges line i2c silence line_end wake")
-LM3S6965 = Interrupts(edges=range(16, 21), line=21, i2c=24, silence=35, line_end=37, wake=39)
-RP2040 = Interrupts(edges=[29], line=36, i2c=39, silence=16, line_end=17, wake=18)
+# Exception numbers. EDGES contains those of all ports whose inputs this tool changes.
+EDGES = range(16, 21)
+LINE, I2C, SILENCE, LINE_END, WAKE = 21, 24, 35, 37, 39
 
 
 class Span:

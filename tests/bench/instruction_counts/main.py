@@ -5,24 +5,24 @@ import collections
 import concurrent.futures
 import multiprocessing
 import os
-import pathlib
 import sys
 
 from instruction_counts import execution
-from instruction_counts.boards import BOARDS
-from instruction_counts.capacity import Found
-from instruction_counts.emulator import ROOT, die_with_parent
+from instruction_counts.capacity import Found, capacity
+from instruction_counts.emulator import ROOT, Emulator, die_with_parent
 from instruction_counts.refusal import Refusal
 from instruction_counts.requests import Model
 from instruction_counts.session import REST, Session
+
+RECORD = ROOT / "tests/bench/recorded_instructions"
 
 OUTPUTS = Model("EX9042D-M", 0, 13, True)
 INPUTS = Model("EX9052D-M", 8, 0, True)
 BOTH = Model("EX9055D", 8, 8, False)
 
 # For each session: the model, whether the session uses ASCII, and whether it also sends the requests that are the same
-# for all models. Without --all, only one session of each protocol sends those requests. The models of these sessions
-# have inputs, because those requests require the most instructions on a model with inputs.
+# for all models. Only one session of each protocol sends those requests. The models of these sessions have inputs,
+# because those requests require the most instructions on a model with inputs.
 SESSIONS = [
     (INPUTS, False, True),
     (BOTH, True, True),
@@ -40,8 +40,8 @@ GROWTH = 1.05  # a count above this multiple of the recorded count is an error
 Row = collections.namedtuple("Row", "name passes served until")
 
 
-def rows_of(counter, numbers):
-    """Returns the rows of a counter. `numbers`: an execution.Interrupts."""
+def rows_of(counter):
+    """Returns the rows of a counter."""
     rows = [Row(request.name, passes, 1, request.until) for request, passes in counter.requests.items()]
 
     def add(name, passes, served=1):
@@ -53,10 +53,10 @@ def rows_of(counter, numbers):
     add("sent byte", counter.sent_byte)
     names = {
         execution.TICK: "tick's interrupt",
-        numbers.silence: "silence's interrupt",
-        numbers.i2c: "I2C's interrupt",
-        numbers.line_end: "interrupt at the reply's end",
-        numbers.wake: "wake timer's interrupt",
+        execution.SILENCE: "silence's interrupt",
+        execution.I2C: "I2C's interrupt",
+        execution.LINE_END: "interrupt at the reply's end",
+        execution.WAKE: "wake timer's interrupt",
     }
     for exception, highest in sorted(counter.interrupts.items()):
         add(names.get(exception, f"exception {exception}"), highest)
@@ -74,14 +74,13 @@ def image_of(options, model):
 
 
 def run_session(options, model, is_ascii, general):
-    """Returns the rows to print, the profiles, and the input for `capacity`."""
-    board = BOARDS[options.board]
+    """Returns the rows to print, and the input for `capacity`."""
     label = f"{model.name} {'ASCII' if is_ascii else 'RTU'}"
     everything = not options.only
-    with Session(board, image_of(options, model), options.gate, model, is_ascii) as session:
+    with Session(image_of(options, model), options.gate, model, is_ascii) as session:
         session.set_up()
         session.count_requests(
-            general or options.all, lambda request: options.only in f"{label} {request.name}", options.passes
+            general, lambda request: options.only in f"{label} {request.name}", options.passes
         )
         if everything:
             session.count_rest()
@@ -89,13 +88,12 @@ def run_session(options, model, is_ascii, general):
                 session.count_edges(EDGE_PASSES)
     rows = [
         row._replace(name=f"{label} {row.name}")
-        for row in rows_of(session.counter, board.interrupts)
+        for row in rows_of(session.counter)
         if everything or row.until and row.passes.passes
     ]
-    profiles = [profile(session.image, row) for row in rows if options.profile and options.profile in row.name]
     found = Found()
     found.add(session.counter)
-    return [(row.name, count_of(row), row.until) for row in rows], profiles, found
+    return [(row.name, count_of(row), row.until) for row in rows], found
 
 
 def results(options):
@@ -124,19 +122,6 @@ def text_of(name, count, until, before):
     return f"{name:58} {count:6} {since:6} {until}".rstrip()
 
 
-def profile(image, row):
-    addresses = [int(address, 16) for address in row.passes.addresses]
-    chains = image.inlined(addresses)
-    text = [f"\n{row.name}: {len(addresses)} instructions"]
-    for title, names in (
-        ("by function of the image", map(image.function, addresses)),
-        ("by function of the source", (chains[address][0] for address in addresses)),
-    ):
-        text.append(f"  {title}")
-        text += [f"{amount:8} {function}" for function, amount in collections.Counter(names).most_common()]
-    return "\n".join(text) + "\n"
-
-
 def main(arguments):
     parser = argparse.ArgumentParser(
         prog="instructions",
@@ -151,14 +136,7 @@ def main(arguments):
     )
     parser.add_argument("folder", help="folder with the images, as ELF files")
     parser.add_argument(
-        "--board", choices=BOARDS, help="the board of the images (default: the name of the folder, without its path)"
-    )
-    parser.add_argument(
         "--only", default="", metavar="TEXT", help="count only requests whose names contain TEXT"
-    )
-    parser.add_argument(
-        "--profile", default="", metavar="TEXT",
-        help="for results whose names contain TEXT, print how many instructions each function executes"
     )
     parser.add_argument(
         "--passes", type=int, default=100, help="maximum number of passes of each request (default: 100)"
@@ -170,42 +148,35 @@ def main(arguments):
         help="the plugin that a preset for the host builds from tests/qemu/gate.cpp (default preset: host-debug)",
     )
     parser.add_argument(
-        "--all", action="store_true", help="count every request on each of the tool's models that supports it"
-    )
-    parser.add_argument(
         "--jobs", type=int, default=os.cpu_count() or 1,
         help="number of concurrent sessions (default: number of processors)"
     )
     parser.add_argument("--record", action="store_true", help="write the counts to the record")
     options = parser.parse_args(arguments)
-    options.board = options.board or pathlib.Path(options.folder).name
-    if options.board not in BOARDS:
-        parser.error(f"{options.folder}: names no board; add --board {' or --board '.join(BOARDS)}")
-    board = BOARDS[options.board]
-    if options.record and (options.only or options.all):
-        parser.error("--record: the record must not depend on --only or --all; omit these options")
-    before = recorded(board.record)
+    if options.record and options.only:
+        parser.error("--record: the record must not depend on --only; omit this option")
+    before = recorded(RECORD)
     counts = {}
     found = Found()
     try:
         for model, _, _ in SESSIONS:
-            board.emulator.check(image_of(options, model), options.gate)
-        for rows, profiles, its in results(options):
+            Emulator.check(image_of(options, model), options.gate)
+        for rows, its in results(options):
             counts |= {name: count for name, count, _ in rows}
             found.merge(its)
             for name, count, until in rows:
                 print(text_of(name, count, until, before.get(name)))
-            print("\n".join(profiles), end="", flush=True)
+            sys.stdout.flush()
     except (Refusal, RuntimeError) as error:
         print(f"instructions: {error}", file=sys.stderr)
         return 2
-    if not options.only and board.capacity:
-        print(board.capacity(found))
+    if not options.only:
+        print(capacity(found))
     if options.record:
-        board.record.write_text("".join(f"{name} {count}\n" for name, count in counts.items()))
+        RECORD.write_text("".join(f"{name} {count}\n" for name, count in counts.items()))
         return 0
     grown = [name for name, count in counts.items() if name in before and count > GROWTH * before[name]]
     if grown:
         print(f"{'; '.join(grown)}: grown by more than 5 %; if this is intended, repeat the command with --record and "
-              "without --only and --all", file=sys.stderr)
+              "without --only", file=sys.stderr)
     return 1 if grown else 0

@@ -1,4 +1,4 @@
-"""The error that ends tests/bench/instructions, and the checks that several emulators share."""
+"""The error that ends tests/bench/instructions, and the checks that cause it."""
 
 import os
 import re
@@ -28,8 +28,7 @@ def message_of_end(process, name, errors):
     status = process.wait()
     errors.seek(0, os.SEEK_SET)
     lines = errors.read().decode(errors="replace").splitlines()
-    # QEMU and Node.js also print warnings, registers, and the stack of an error.
-    why = [line for line in lines if re.match(r"qemu[\w-]*: (?!warning)|\w*Error: ", line)]
+    why = [line for line in lines if re.match(r"qemu[\w-]*: (?!warning)", line)]  # QEMU also prints registers
     how = f"signal {-status}" if status < 0 else f"status {status}"
     cause = f": {why[0].removeprefix(name + ': ')}" if why else ""
     return f"{name}: the emulator has ended with {how}{cause}; remove the cause and start it again"

@@ -4,11 +4,16 @@ import threading
 
 from instruction_counts import execution
 from instruction_counts.counter import Counter
-from instruction_counts.emulator import HANG
+from instruction_counts.emulator import HANG, Emulator
 from instruction_counts.image import Image
 from instruction_counts.requests import DONE, IGNORED, ascii_requests, crc16, dcon, modbus_requests, rtu
 
+# The pin of INIT*, and the pins of the inputs. One interrupt serves all pins of a group.
+INIT = "A7"
+INPUTS = [["B0", "B1", "B4", "B5", "B6"], ["C4", "C5", "C6"]]
+
 # All these times are in seconds of emulated time.
+START_UP = 0.1  # until the module has nothing to do
 DEBOUNCE = 0.03
 PATIENCE = 0.25  # maximum time until a reply is complete
 DRIVER_OFF = 0.0006  # maximum time from a reply until the driver enable is off, at 115200 baud
@@ -26,14 +31,13 @@ class Session:
     """Sends requests to one image. ASCII sessions use checksums, because requests with checksums require more
     instructions."""
 
-    def __init__(self, board, image, gate, model, is_ascii):
-        self._board = board  # a boards.Board
+    def __init__(self, image, gate, model, is_ascii):
         self.image = Image(image)
         self._model = model
         self._ascii = is_ascii
         self._sleeps = self.image.sleeps()
-        self.counter = Counter(self.image.handlers(), self._sleeps, board.interrupts)
-        self._emulator = board.emulator(image, gate)
+        self.counter = Counter(self.image.handlers(), self._sleeps)
+        self._emulator = Emulator(image, gate)
 
     def __enter__(self):
         return self
@@ -63,8 +67,7 @@ class Session:
         `passes` times, then all inputs of each group together `passes` times. The levels alternate between high and
         low."""
         self._set_filter(1)
-        groups = self._board.groups
-        for pins in [[pin] for group in groups for pin in group] + groups:
+        for pins in [[pin] for group in INPUTS for pin in group] + INPUTS:
             for attempt in range(passes):
                 self._log(True)
                 for pin in pins:
@@ -104,13 +107,13 @@ class Session:
 
     def _power_up(self, init):
         """Switches the supply on. `init` is the level of INIT*."""
-        inputs = [pin for group in self._board.groups for pin in group]
-        self._emulator.power_up({**dict.fromkeys(inputs, False), self._board.init: init})
+        inputs = [pin for group in INPUTS for pin in group]
+        self._emulator.power_up({**dict.fromkeys(inputs, False), INIT: init})
         threading.Thread(
             target=execution.follow, args=(self._emulator.log, self._sleeps, self.counter), daemon=True
         ).start()
         self._run(SLICE)
-        self._run(self._board.start_up)
+        self._run(START_UP)
 
     def _count(self, request, passes):
         """Repeats a request. If the request has several frames, sends the last frame once more at the end, so that the
@@ -200,7 +203,7 @@ class Session:
         self._converse(dcon(f"~01X0240{value}", True) if self._ascii else rtu(f"01 06 0240 {value}"))
 
     def _set_init(self, asserted):
-        self._emulator.set_pin(self._board.init, not asserted)
+        self._emulator.set_pin(INIT, not asserted)
         self._run(DEBOUNCE)
 
     def _log(self, on):
