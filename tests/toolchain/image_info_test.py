@@ -9,26 +9,19 @@ import sys
 import tempfile
 import unittest
 
+from sample import elf
+
 TOOLCHAIN = pathlib.Path(__file__).resolve().parents[2] / "toolchain"
 sys.path.insert(0, str(TOOLCHAIN))
 
-from image_info.flash_content import NotAnImage, flash_content  # noqa: E402
+from elf_file import NotAnImage  # noqa: E402
+from image_info.flash_content import flash_content  # noqa: E402
 from image_info.info import info_of  # noqa: E402
 
 INFO = struct.pack("<8s8s24s16s40s", b"EX9INFO1", b"D01.00", b"a-board", b"EX9042D-M", b"0123abcd" * 5)
 EXPECTED = {"version": "D01.00", "board": "a-board", "model": "EX9042D-M", "commit": "0123abcd" * 5}
 STELLARIS = bytes(0xC0) + INFO + b"code"
 PICO = bytes(0x1A8) + INFO + b"code"
-
-
-def elf(*segments: tuple[int, bytes]) -> bytes:
-    header = 52 + 32 * len(segments)
-    table, content = b"", b""
-    for address, data in segments:
-        table += struct.pack("<8I", 1, header + len(content), 0x20000000, address, len(data), len(data), 5, 4)
-        content += data
-    fields = (2, 40, 1, 0, 52, 0, 0, 52, 32, len(segments), 0, 0, 0)
-    return b"\x7fELF\x01\x01".ljust(16, b"\0") + struct.pack("<2H5I6H", *fields) + table + content
 
 
 def uf2(begin: int, content: bytes) -> bytes:

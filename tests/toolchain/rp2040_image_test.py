@@ -9,24 +9,16 @@ import sys
 import tempfile
 import unittest
 
+from sample import elf
+
 TOOLCHAIN = pathlib.Path(__file__).resolve().parents[2] / "toolchain"
 sys.path.insert(0, str(TOOLCHAIN))
 
-from rp2040_image import FLASH, NotAnImage, checksum, flash_content, sealed, uf2  # noqa: E402
+from elf_file import NotAnImage  # noqa: E402
+from rp2040_image import FLASH, checksum, flash_content, sealed, uf2  # noqa: E402
 
 PAGE = 256
 BLOCK = 512
-
-
-def elf(*segments: tuple[int, bytes]) -> bytes:
-    """Returns an ELF file with loadable segments. `segments`: the load address and the content of each."""
-    header = 52 + 32 * len(segments)
-    table, content = b"", b""
-    for address, data in segments:
-        table += struct.pack("<8I", 1, header + len(content), 0x20000000, address, len(data), len(data), 5, 4)
-        content += data
-    fields = (2, 40, 1, 0, 52, 0, 0, 52, 32, len(segments), 0, 0, 0)
-    return b"\x7fELF\x01\x01".ljust(16, b"\0") + struct.pack("<2H5I6H", *fields) + table + content
 
 
 STAGE = bytes(range(252)) + bytes(4)
@@ -90,7 +82,7 @@ class Uf2(unittest.TestCase):
                     [str(TOOLCHAIN / words[0]), *map(str, words[1:])], capture_output=True, text=True, check=False
                 )
                 self.assertEqual(done.returncode, 1)
-                problem = "is not a 32-bit little-endian ELF file; name the linked image"
+                problem = "is not a 32-bit little-endian ELF file for Arm; name the linked image"
                 self.assertEqual(done.stderr, f"{image}: {problem}\n")
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import struct
 import subprocess
 import tempfile
 from dataclasses import dataclass
@@ -82,6 +83,17 @@ def check(
             check=False,
         )
     return Verdict(done.returncode == 0, done.stdout, done.stderr)
+
+
+def elf(*segments: tuple[int, bytes]) -> bytes:
+    """Returns an ELF file with loadable segments. `segments`: the load address and the content of each."""
+    header = 52 + 32 * len(segments)
+    table, content = b"", b""
+    for address, data in segments:
+        table += struct.pack("<8I", 1, header + len(content), 0x20000000, address, len(data), len(data), 5, 4)
+        content += data
+    fields = (2, 40, 1, 0, 52, 0, 0, 52, 32, len(segments), 0, 0, 0)
+    return b"\x7fELF\x01\x01".ljust(16, b"\0") + struct.pack("<2H5I6H", *fields) + table + content
 
 
 def holding(code: str) -> str:

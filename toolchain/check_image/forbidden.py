@@ -9,7 +9,7 @@ from collections.abc import Iterable
 
 from check_image.call_graph import Record
 from check_image.disassembly import Disassembly
-from check_image.elf import Elf
+from elf_file import Elf
 
 _SYMBOLS = [
     (re.compile(pattern), what)

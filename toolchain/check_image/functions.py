@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import PurePath
 
-from check_image.elf import Elf, Symbol
+from elf_file import Elf, Symbol
 
 
 @dataclass(frozen=True)

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 from check_image.call_graph import Record, Title
 from check_image.call_sites import CallSite, VirtualCall
 from check_image.disassembly import Disassembly, Instruction, StackPointerUnknown, stack_of
-from check_image.elf import Elf
 from check_image.functions import Function, Functions
 from check_image.stack import Graph, Node
+from elf_file import Elf
 
 
 @dataclass(frozen=True)

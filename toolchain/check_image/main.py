@@ -9,13 +9,13 @@ from pathlib import Path
 
 from check_image import call_graph, call_sites, forbidden, records, sizes
 from check_image.disassembly import Disassembly
-from check_image.elf import Elf, NotAnImage
 from check_image.functions import Functions
 from check_image.disabled_interrupts import DisabledInterrupts
 from check_image.linked_graph import LinkedGraph
 from check_image.records import Figures
 from check_image.stack import EXCEPTION_FRAME, Unbounded, WorstCase, worst_case
 from check_image.vectors import BadVectors, Vectors
+from elf_file import Elf, NotAnImage
 
 _TOP_SYMBOLS = 20
 

@@ -7,8 +7,8 @@ from collections import Counter
 from collections.abc import Mapping
 from pathlib import Path
 
-from check_image.elf import Elf, Section, Symbol
 from check_image.functions import demangle, without_parameters
+from elf_file import Elf, Section, Symbol
 
 # The SRAM region of the system address map. It is the same on all boards (Armv7-M ARM B3.1).
 RAM = range(0x20000000, 0x40000000)

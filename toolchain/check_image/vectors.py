@@ -5,9 +5,9 @@ from __future__ import annotations
 import struct
 from collections.abc import Sequence
 
-from check_image.elf import Elf
 from check_image.functions import Function, Functions
 from check_image.stack import Level
+from elf_file import Elf
 
 _RESET = 1
 _NMI = 2

@@ -4,16 +4,13 @@ from __future__ import annotations
 
 import struct
 
+from elf_file import NotAnImage, segments
+
 _ELF = b"\x7fELF\x01\x01"
-_ELF_LOAD = 1  # p_type
 _UF2 = struct.pack("<2I", 0x0A324655, 0x9E5D5157)
 _UF2_BLOCK = 512
 _UF2_DATA = 476  # the largest number of data bytes in a block
 _HEX_DATA, _HEX_END, _HEX_SEGMENT, _HEX_START_SEGMENT, _HEX_LINEAR, _HEX_START_LINEAR = range(6)
-
-
-class NotAnImage(Exception):
-    """The file is damaged, or it is not a firmware image of this project."""
 
 
 def flash_content(file: bytes) -> bytes:
@@ -22,7 +19,7 @@ def flash_content(file: bytes) -> bytes:
     Raises NotAnImage if the file is damaged, contains no data, or extends over more than 16 MiB of flash.
     """
     if file.startswith(_ELF):
-        pieces = _elf(file)
+        pieces = [(segment.stored_at, segment.content) for segment in segments(file)]
     elif file.startswith(_UF2):
         pieces = _uf2(file)
     elif file.startswith(b":"):
@@ -46,22 +43,6 @@ def _joined(pieces: list[tuple[int, bytes]]) -> bytes:
     for address, data in pieces:
         content[address - begin : address - begin + len(data)] = data
     return bytes(content)
-
-
-def _elf(file: bytes) -> list[tuple[int, bytes]]:
-    """Returns the load address and the content of each loadable segment that has content in the file."""
-    try:
-        offset, size, count = struct.unpack_from("<I", file, 28)[0], *struct.unpack_from("<HH", file, 42)
-        headers = [struct.unpack_from("<5I", file, offset + index * size) for index in range(count)]
-    except struct.error:
-        raise NotAnImage("is a truncated ELF file; build or copy it again") from None
-    pieces = []
-    for kind, begin, _, address, length in headers:
-        if kind == _ELF_LOAD and length:
-            if begin + length > len(file):
-                raise NotAnImage("is a truncated ELF file; build or copy it again")
-            pieces.append((address, file[begin : begin + length]))
-    return pieces
 
 
 def _uf2(file: bytes) -> list[tuple[int, bytes]]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import struct
 
-from image_info.flash_content import NotAnImage
+from elf_file import NotAnImage
 
 # For each family of microcontrollers, the offset of the information from the first address of the flash. The linker
 # scripts check this offset.
