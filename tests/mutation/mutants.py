@@ -1,7 +1,7 @@
 """Applies rules that make small changes to C++ source. A test should detect each change.
 
 Each rule lists the changes that it can make: other operators and constants, removed statements, swapped branches.
-`all_of` omits the changes in a static_assert, because no test at run time can detect them. The rules for operators and
+`all_of` omits the changes that no test at run time can detect, see LEFT_ALONE and MEMBER. The rules for operators and
 constants divide the source into tokens, and skip comments, preprocessor lines, strings and character literals.
 """
 
@@ -57,6 +57,12 @@ NO_STATEMENT = re.compile(
     r"return|static_assert|using|constexpr|const |auto |case |default|break|continue|else|typedef|friend|explicit"
     r"|virtual|delete|struct|class|enum|namespace|template|(?:[a-z]\w*::)*[A-Za-z]\w*[*&]? \w+(?: =|\(|;|{)"
 )
+# A static_assert, and a fence of the compiler.
+LEFT_ALONE = re.compile(r"static_assert\(.*?\);|std::atomic_signal_fence\(.*?\);", re.DOTALL)
+# The initial value of a member: nearly all members get the first value that is used later.
+MEMBER = re.compile(
+    r"^  (?!static|constexpr|const|return)[\w:]+(?:<[^;=\n]*>)? \w+(?: = |\{)(?:-?\d+U?|true|false)\}?;", re.MULTILINE
+)
 CONDITION = re.compile(r"\bif \((?!constexpr)(?P<condition>.*)\) \{$", re.MULTILINE)
 
 
@@ -93,9 +99,9 @@ def tokens(source):
             yield found
 
 
-def left_alone(source):
-    """Returns the start and the end of each static_assert."""
-    return [(each.start(), each.end()) for each in re.finditer(r"static_assert\(.*?\);", source, re.DOTALL)]
+def left_alone(file, source):
+    found = [*LEFT_ALONE.finditer(source), *(MEMBER.finditer(source) if file.endswith(".hpp") else [])]
+    return [each.span() for each in found]
 
 
 def of_operators(file, source):
@@ -142,7 +148,7 @@ def of_branches(file, source):
 
 
 def all_of(file, source):
-    kept = left_alone(source)
+    kept = left_alone(file, source)
     for rule in (of_operators, of_constants, of_statements, of_branches):
         for mutant in rule(file, source):
             if not any(begin <= mutant.begin < end for begin, end in kept):
