@@ -6,60 +6,44 @@ from instruction_counts import execution
 
 
 class Highest:
-    """Keeps the pass with the most instructions. Here a pass is one interrupt or one turn of the main loop."""
+    """Keeps the number of instructions of the longest pass: an interrupt or a turn of the main loop."""
 
     def __init__(self):
-        self.passes = 0
-        self.addresses = []
+        self.passes = self.count = 0
 
-    def note(self, addresses):
+    def note(self, instructions):
         self.passes += 1
-        if len(addresses) > len(self.addresses):
-            self.addresses = addresses
-
-    @property
-    def count(self):
-        return len(self.addresses)
+        self.count = max(self.count, instructions)
 
 
 class Median:
-    """Keeps all passes of a request and returns the pass with the median number of instructions. A single pass is not
-    exact: a tick can occur during the pass, and a turn of the main loop can follow that feeds the watchdog, or that is
-    not necessary for the request."""
+    """Keeps all passes of a request and returns the median. A single pass is not exact: a tick can occur during the
+    pass, and a turn of the main loop can follow that feeds the watchdog, or that is not necessary for the request."""
 
     def __init__(self):
         self._passes = []
 
-    def note(self, addresses):
-        self._passes.append(addresses)
+    def note(self, instructions):
+        self._passes.append(instructions)
 
     @property
     def passes(self):
         return len(self._passes)
 
     @property
-    def addresses(self):
-        return sorted(self._passes, key=len)[(len(self._passes) - 1) // 2]
-
-    @property
     def count(self):
-        return len(self.addresses)
+        return sorted(self._passes)[(len(self._passes) - 1) // 2]
 
 
 class Sum:
-    """Adds up the instructions of all passes. Here a pass is one interrupt or one turn of the main loop."""
+    """Adds up the instructions of all passes: interrupts and turns of the main loop."""
 
     def __init__(self):
-        self.passes = 0
-        self.addresses = []
+        self.passes = self.count = 0
 
-    def note(self, addresses):
+    def note(self, instructions):
         self.passes += 1
-        self.addresses += addresses
-
-    @property
-    def count(self):
-        return len(self.addresses)
+        self.count += instructions
 
 
 class Counter:
@@ -74,7 +58,7 @@ class Counter:
         self._first = {number: execution.as_logged(address) for number, address in handlers.items()}
         self._awake = {execution.as_logged(address + 2) for address in sleeps}
         self._seen = threading.Event()
-        self._pass = None  # addresses of the current pass; None between passes
+        self._pass = None  # number of instructions of the current pass; None between passes
         self.answered = False  # the driver enable has been switched off since `begin`
         self.nothing_happens = False  # set by the caller while it sends no request and changes no input
         # The main loop has gone to sleep. Since then, only the tick and the alarm of this tool have interrupted it.
@@ -94,7 +78,7 @@ class Counter:
 
     def begin(self):
         """Starts a pass of a request. The main loop must be asleep."""
-        self._pass = []
+        self._pass = 0
         self.answered = False
         self.at_rest = True
 
@@ -123,9 +107,9 @@ class Counter:
         if span.addresses[:1] == [self._first.get(span.exception)]:  # the interrupt is logged from its start
             self._note_interrupt(span)
         if self._pass is not None and span.exception != execution.TICK:
-            self._pass += span.addresses
+            self._pass += len(span.addresses)
         if self.nothing_happens:
-            self.idling.note(span.addresses)
+            self.idling.note(len(span.addresses))
         if span.exception == execution.LINE_END:
             self.answered = True
 
@@ -134,18 +118,18 @@ class Counter:
         if main.addresses[0] not in self._awake:
             return  # logging started during this turn
         if self.nothing_happens and main.interrupts:
-            self.idling.note(main.addresses)
+            self.idling.note(len(main.addresses))
         if main.interrupts == [execution.TICK]:
             if self.nothing_happens:
-                self.ticks_turn.note(main.addresses)
+                self.ticks_turn.note(len(main.addresses))
         elif main.interrupts and self._pass is not None:
-            self._pass += main.addresses
+            self._pass += len(main.addresses)
 
     def _note_interrupt(self, span):
         if span.exception == execution.LINE:
             if len(span.received) + span.sent == 1:
-                (self.sent_byte if span.sent else self.received_byte).note(span.addresses)
+                (self.sent_byte if span.sent else self.received_byte).note(len(span.addresses))
         elif span.exception in execution.EDGES:
-            self.edges.setdefault(self.edges_at_once, Highest()).note(span.addresses)
+            self.edges.setdefault(self.edges_at_once, Highest()).note(len(span.addresses))
         else:
-            self.interrupts.setdefault(span.exception, Highest()).note(span.addresses)
+            self.interrupts.setdefault(span.exception, Highest()).note(len(span.addresses))
