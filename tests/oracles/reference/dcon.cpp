@@ -15,13 +15,13 @@ std::string Module::aa() const { return hex(address_, 2); }
 
 /// Returns the fields First and Second of a reply (wire.md 1).
 std::string Module::first_second(unsigned outputs, unsigned inputs) const {
-  if (row_.outputs > 8) {
+  if (row_->outputs > 8) {
     return hex(outputs >> 8, 2) + hex(outputs, 2);
   }
-  if (row_.inputs > 8) {
+  if (row_->inputs > 8) {
     return hex(inputs >> 8, 2) + hex(inputs, 2);
   }
-  return row_.outputs != 0 ? hex(outputs, 2) + hex(inputs, 2) : hex(inputs, 2) + "00";
+  return row_->outputs != 0 ? hex(outputs, 2) + hex(inputs, 2) : hex(inputs, 2) + "00";
 }
 
 /// Processes a frame. Returns no value if there is no reply. `frame`: the characters from the delimiter to
@@ -31,32 +31,32 @@ std::string Module::first_second(unsigned outputs, unsigned inputs) const {
 std::optional<std::string> Module::dcon_frame(std::string frame, bool spoiled) {
   if (spoiled) {
     rule("ASCII frame spoiled");
-    counts_.crc_errors += 1;
+    count(&Counts::crc_errors);
     return std::nullopt;
   }
   // wire.md 3: a frame has at most 32 characters before CR.
   if (frame.size() > 32) {
     rule("ASCII frame too long");
-    counts_.crc_errors += 1;
+    count(&Counts::crc_errors);
     return std::nullopt;
   }
   // CHK follows all other characters. If it is wrong or missing, there is no reply.
   if (checksum_) {
     if (frame.size() < 3) {
       rule("ASCII frame too short");
-      counts_.crc_errors += 1;
+      count(&Counts::crc_errors);
       return std::nullopt;
     }
     const std::string check = frame.substr(frame.size() - 2);
     frame.resize(frame.size() - 2);
     if (check != check_of(frame)) {
       rule("CHK wrong or missing");
-      counts_.crc_errors += 1;
+      count(&Counts::crc_errors);
       return std::nullopt;
     }
     rule("CHK right");
   }
-  counts_.bus_messages += 1;
+  count(&Counts::bus_messages);
   if (frame.size() < 3) {
     rule("ASCII frame too short");
     return std::nullopt;
@@ -64,14 +64,14 @@ std::optional<std::string> Module::dcon_frame(std::string frame, bool spoiled) {
   const std::string address = frame.substr(1, 2);
   if (address == "**") {
     // Broadcasts never get a reply.
-    counts_.server_messages += 1;
+    count(&Counts::server_messages);
     counts_.no_response += 1;
     if (frame == "#**") {
       rule("#**");
       take_sample();
     } else if (frame == "~**") {
       rule(expiry_ ? "~** restarts the host watchdog" : "~**");
-      restart_host_watchdog_by_host_ok();
+      restart_host_watchdog();
     } else {
       rule("unknown broadcast");
     }
@@ -79,10 +79,11 @@ std::optional<std::string> Module::dcon_frame(std::string frame, bool spoiled) {
   }
   if (address != aa()) {
     rule("ASCII frame for another address");
+    counts_.no_response += 1;  // the address was right when the frame was complete: wire.md D16
     return std::nullopt;
   }
-  counts_.server_messages += 1;
-  restart_host_watchdog_by_request();
+  count(&Counts::server_messages);
+  own_ = true;
   std::string reply;
   try {
     reply = dcon_command(frame[0], frame.substr(3));
@@ -95,8 +96,9 @@ std::optional<std::string> Module::dcon_frame(std::string frame, bool spoiled) {
 }
 
 std::string Module::dcon_command(char delimiter, const std::string& body) {
-  if (refuses_extension(is_extension_command(delimiter, body))) {
-    throw Refused{"ASCII extension"};
+  if (!has_extensions() && is_extension_command(delimiter, body)) {
+    needed_extension_ = true;
+    throw Refused{""};
   }
   switch (delimiter) {
     case '%':
@@ -144,9 +146,9 @@ std::string Module::set_configuration(const std::string& body) {
   }
   rule(type == 0x24 ? "%AANNTTCCFF with TT 24" : "%AANNTTCCFF");
   rule(std::string("%AANNTTCCFF ") + name_of(format_of(baud_code)));
-  stored_.address = address;
-  stored_.baud_code = baud_code;
-  stored_.format = format;
+  set().address = address;
+  set().baud_code = baud_code;
+  set().format = format;
   // The new address is in force immediately. In INIT mode the module uses address 00 until reset.
   if (!init_mode_) {
     address_ = address;
@@ -159,11 +161,11 @@ void Module::take_sample() { sample_ = Sample{first_second(outputs_, levels_), f
 std::string Module::hash_command(const std::string& body) {
   const bool one_character = body.size() == 1;
   // wire.md 3: on a model with inputs and outputs, `#AA` and one character is `#AAN`.
-  if (row_.outputs != 0 && !(row_.inputs != 0 && one_character)) {
+  if (row_->outputs != 0 && !(row_->inputs != 0 && one_character)) {
     return set_group_or_single(body);
   }
   const std::optional<unsigned> channel = number(body);
-  if (!one_character || !channel || *channel >= row_.inputs) {
+  if (!one_character || !channel || *channel >= row_->inputs) {
     throw Refused{"#AAN refused"};
   }
   rule("#AAN");
@@ -202,7 +204,7 @@ std::string Module::set_group_or_single(const std::string& body) {
       throw Refused{"#AABBDD BB out of range", true};
     }
     const unsigned channel = digit + (lead == 0xB ? 8 : 0);
-    if (digit > 7 || channel >= row_.outputs) {
+    if (digit > 7 || channel >= row_->outputs) {
       throw Refused{"#AABBDD channel that the model does not have", true};
     }
     if (data > 0x01) {
@@ -213,7 +215,7 @@ std::string Module::set_group_or_single(const std::string& body) {
     reached = "#AABBDD single " + hex(lead, 1) + "c";
   }
   // wire.md 6: the module checks format and range first, then the timeout status.
-  if (stored_.timed_out) {
+  if (refuses_outputs()) {
     rule("#AABBDD blocked by the timeout status");
     return "!";
   }
@@ -255,7 +257,7 @@ std::string Module::dollar_command(const std::string& body) {
     return "!" + aa() + stored_.name;
   }
   if (!body.empty() && body[0] == 'C') {
-    if (row_.inputs == 0) {
+    if (row_->inputs == 0) {
       throw Refused{"$AAC on a model without inputs"};
     }
     if (body == "C") {
@@ -264,7 +266,7 @@ std::string Module::dollar_command(const std::string& body) {
       return "!" + aa();
     }
     const std::optional<unsigned> channel = number(body.substr(1));
-    if (body.size() != 2 || !channel || *channel >= row_.inputs) {
+    if (body.size() != 2 || !channel || *channel >= row_->inputs) {
       throw Refused{"$AACN refused"};
     }
     rule("$AACN");
@@ -272,7 +274,7 @@ std::string Module::dollar_command(const std::string& body) {
     return "!" + aa();
   }
   if (!body.empty() && body[0] == 'L') {
-    if (row_.inputs == 0) {
+    if (row_->inputs == 0) {
       throw Refused{"$AALS on a model without inputs"};
     }
     if (body != "L0" && body != "L1") {
@@ -282,7 +284,7 @@ std::string Module::dollar_command(const std::string& body) {
     return "!" + first_second(0, body == "L1" ? latch_high_ : latch_low_) + "00";
   }
   if (!body.empty() && body[0] == 'P') {
-    if (!row_.both_protocols) {
+    if (!row_->both_protocols) {
       throw Refused{"$AAP on a model without Modbus"};
     }
     if (body == "P") {
@@ -306,7 +308,7 @@ std::string Module::set_protocol(const std::string& body) {
     throw Refused{"$AAPN 1 with a stored address outside 01-F7"};
   }
   rule("$AAPN " + body);
-  stored_.modbus = body == "1";
+  set().modbus = body == "1";
   return "!" + aa();
 }
 
@@ -315,10 +317,10 @@ std::string Module::at_command(const std::string& body) {
     rule("@AA");
     return ">" + first_second(outputs_, levels_);
   }
-  if (row_.outputs == 0) {
+  if (row_->outputs == 0) {
     throw Refused{"@AA(Data) on a model without outputs"};
   }
-  const std::size_t longest = row_.outputs <= 4 ? 1 : row_.outputs <= 8 ? 2 : 4;
+  const std::size_t longest = row_->outputs <= 4 ? 1 : row_->outputs <= 8 ? 2 : 4;
   const std::size_t shorter = longest == 1 ? 1 : longest / 2;  // wire.md E4
   const std::optional<unsigned> data = number(body);
   if ((body.size() != longest && body.size() != shorter) || !data) {
@@ -327,7 +329,7 @@ std::string Module::at_command(const std::string& body) {
   if ((*data & ~all_outputs()) != 0) {
     throw Refused{"@AA(Data) beyond the last channel", true};
   }
-  if (stored_.timed_out) {
+  if (refuses_outputs()) {
     rule("@AA(Data) blocked by the timeout status");
     return "!";
   }
@@ -339,7 +341,7 @@ std::string Module::at_command(const std::string& body) {
 std::string Module::tilde_command(const std::string& body) {
   if (body == "0") {
     // wire.md E7
-    const bool on = row_.status_80_84;
+    const bool on = row_->status_80_84;
     const std::string status = stored_.timed_out ? (on ? "84" : "04") : (on && stored_.enabled ? "80" : "00");
     rule("~AA0 " + status);
     return "!" + aa() + status;
@@ -360,37 +362,37 @@ std::string Module::tilde_command(const std::string& body) {
   }
   if (command == '4' || command == '5') {
     const std::string name = std::string("~AA") + command + "V";
-    if (row_.outputs == 0) {
+    if (row_->outputs == 0) {
       throw Refused{name + " on a model without outputs"};
     }
     if (argument != "P" && argument != "S") {
       throw Refused{name + " refused"};
     }
     rule(name + " " + argument);
-    unsigned& value = argument == "P" ? stored_.power_on : stored_.safe;
+    unsigned Stored::*const value = argument == "P" ? &Stored::power_on : &Stored::safe;
     if (command == '5') {
       // wire.md 6: `~AA5V` works while the timeout status is set, because it drives nothing.
       if (timed_outputs() != 0) {
         rule("~AA5V stores a timed output as off");
       }
-      value = outputs_ & ~timed_outputs();
+      set().*value = overtaken_.value_or(lasting_outputs());
       return "!" + aa();
     }
     // wire.md 4: the reply contains no inputs, even on a model with inputs and outputs.
-    return "!" + aa() + first_second(value, 0);
+    return "!" + aa() + first_second(stored_.*value, 0);
   }
   if (command == 'O') {
     const bool characters = std::all_of(argument.begin(), argument.end(), [](char character) {
       return character >= 0x20 && character <= 0x7E;
     });
-    if (argument.empty() || argument.size() > row_.longest_name) {
+    if (argument.empty() || argument.size() > row_->longest_name) {
       throw Refused{"~AAO(Data) with a wrong length"};
     }
     if (!characters) {
       throw Refused{"~AAO(Data) with a character outside 0x20-0x7E"};
     }
     rule("~AAO(Data) of " + std::to_string(argument.size()));
-    stored_.name = argument;
+    set().name = argument;
     return "!" + aa();
   }
   if (command == 'R') {
@@ -416,8 +418,8 @@ std::string Module::set_host_watchdog(const std::string& body) {
        : stored_.timed_out ? "~AA3EVV enables while the status is set"
        : stored_.enabled   ? "~AA3EVV restarts"
                            : "~AA3EVV enables");
-  stored_.enabled = enable;
-  stored_.timeout = *timeout;
+  set().enabled = enable;
+  set().timeout = *timeout;
   restart_host_watchdog();
   return "!" + aa();
 }

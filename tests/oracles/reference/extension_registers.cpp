@@ -38,17 +38,16 @@ ExtensionRow extension_row(const ModelRow& model, unsigned address) {
 /// Returns a line tally; index 0 is register 0x0308. The tallies of overruns and lost frames are 0, because
 /// no session has an overrun or loses a frame.
 unsigned Module::tally(unsigned index) const {
-  const unsigned tallies[] = {counts_.bus_messages, counts_.crc_errors,
-                              counts_.exceptions,   counts_.server_messages,
-                              counts_.no_response,  0,
-                              counts_.bad_bytes,    0};
+  const unsigned tallies[] = {counts_.bus_messages,    counts_.crc_errors,  counts_.exceptions,
+                              counts_.server_messages, counts_.no_response, counts_.lost,
+                              counts_.bad_bytes,       counts_.lost};
   return tallies[index];
 }
 
 /// Returns the value of a register. If the register is a part of a 32-bit value, returns the 32-bit value.
 /// Sets `left_open_` if the value is not known.
 unsigned Module::extension_value(unsigned address) {
-  const ExtensionRow row = extension_row(row_, address);
+  const ExtensionRow row = extension_row(*row_, address);
   switch (row.row) {
     case Extension::InputFilters:
       return stored_.filters[address - row.first];
@@ -71,12 +70,12 @@ unsigned Module::extension_value(unsigned address) {
       rule(timeouts_ != 0 ? "0x0304 reads timeouts" : "0x0304 reads 0");
       return timeouts_;
     case Extension::Stores:
-      if (now_ < timeout_stored_) {
-        left_open_ = "the number of stores is not known while the module may be storing a timeout";
-      }
       rule(stores_ != 0 ? "0x0305 reads stores" : "0x0305 reads 0");
       return stores_;
     case Extension::SettingsSource:
+      if (doubts_memory_) {
+        return choice(5);
+      }
       rule(read_blank_memory_ ? "0x0306 reads 4" : "0x0306 reads 0");
       return read_blank_memory_ ? 4 : 0;
     case Extension::Tallies:
@@ -91,13 +90,13 @@ unsigned Module::extension_value(unsigned address) {
 }
 
 unsigned Module::extension_word(unsigned address) {
-  const ExtensionRow row = extension_row(row_, address);
+  const ExtensionRow row = extension_row(*row_, address);
   const unsigned value = extension_value(address);
   return row.wide && (address - row.first) % 2 == 0 ? value >> 16 : value & 0xFFFFU;
 }
 
 void Module::set_extension(unsigned address, unsigned value) {
-  const ExtensionRow row = extension_row(row_, address);
+  const ExtensionRow row = extension_row(*row_, address);
   switch (row.row) {
     case Extension::InputFilters:
       set_filter(address - row.first, value);
@@ -106,7 +105,7 @@ void Module::set_extension(unsigned address, unsigned value) {
       set_inversion(value);
       break;
     case Extension::Setting:
-      stored_.*row.setting = value;
+      set().*row.setting = value;
       break;
     case Extension::TimedOutputs:
       set_timed_output(address - row.first, value);
@@ -133,7 +132,7 @@ std::string Module::delay_command(const std::string& body) {
     throw Refused{"~AARDVV out of range"};
   }
   rule("~AARDVV");
-  stored_.delay = *delay;
+  set().delay = *delay;
   return "!" + aa();
 }
 
@@ -145,7 +144,7 @@ std::string Module::extension_command(const std::string& body) {
   }
   const bool writes = body.size() == 8;
   const unsigned address = writes ? *digits >> 16 : *digits;
-  const ExtensionRow row = extension_row(row_, address);
+  const ExtensionRow row = extension_row(*row_, address);
   if (row.row == Extension::None) {
     throw Refused{"~AAX register that the model does not have"};
   }
@@ -163,7 +162,7 @@ std::string Module::extension_command(const std::string& body) {
   if (value > row.highest) {
     throw Refused{std::string("~AAXRRRRVVVV ") + row.name + " out of range"};
   }
-  if (row.row == Extension::TimedOutputs && stored_.timed_out) {
+  if (row.row == Extension::TimedOutputs && refuses_outputs()) {
     rule("~AAXRRRRVVVV blocked by the timeout status");
     return "!";
   }

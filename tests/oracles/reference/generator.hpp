@@ -3,18 +3,10 @@
 // requires an extension, except by chance.
 #pragma once
 
+#include "tests/oracles/reference/module.hpp"
 #include "tests/oracles/reference/random.hpp"
-#include "tests/oracles/reference/session.hpp"
 
 namespace ex9000::reference {
-
-/// Returns the first steps of a session: either none, or steps that configure the module in INIT mode.
-/// `%AANNTTCCFF` sets the address, CC and FF. On an -M model, `$AAPN` then sets the protocol. Random steps
-/// alone rarely have this order.
-std::vector<Step> first_steps(const Module& module, Random& random);
-
-/// Returns the next step, in most cases a request.
-Step next_step(const Module& module, Random& random);
 
 /// Returns a command with CR, and with CHK before the CR if the module uses the checksum. Some commands have
 /// a mistake, no CR, or other bytes before them. Some results are only random characters.

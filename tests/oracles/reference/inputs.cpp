@@ -6,7 +6,7 @@
 namespace ex9000::reference {
 
 void Module::set_input(unsigned channel, bool level, Time now) {
-  if (channel >= row_.inputs || ((terminals_ >> channel & 1U) != 0) == level) {
+  if (channel >= row_->inputs || ((terminals_ >> channel & 1U) != 0) == level) {
     return;
   }
   terminals_ ^= 1U << channel;
@@ -26,7 +26,7 @@ void Module::set_input(unsigned channel, bool level, Time now) {
 }
 
 void Module::pulse_input(unsigned channel, std::uint32_t count, Time now) {
-  if (!powered_ || channel >= row_.inputs || count == 0) {
+  if (!powered_ || channel >= row_->inputs || count == 0) {
     return;
   }
   last_edges_[channel] = now;
@@ -50,22 +50,22 @@ void Module::take_level(unsigned channel) {
 }
 
 /// Sets a filter time, which applies from the last edge at the terminal. If this time is already over, the
-/// module accepts the level as soon as the setting is stored. The store of the setting may have to wait until
-/// a timeout of the host watchdog has been stored.
+/// module accepts the level as soon as the setting is stored.
 void Module::set_filter(unsigned channel, unsigned milliseconds) {
   if (settling_[channel] && milliseconds != stored_.filters[channel]) {
     const Time settled = last_edges_[channel] + std::chrono::milliseconds(milliseconds);
-    rule(settled <= now_ ? "new time of the input filter is over" : "new time of the input filter runs");
-    settling_[channel] = Moment{std::max(now_, settled), std::max(now_ + 2 * kLongestStore, settled)};
+    rule(settled <= now_.earliest ? "new time of the input filter is over"
+                                  : "new time of the input filter runs");
+    settling_[channel] = Moment{std::max(now_.earliest, settled), std::max(now_.latest, settled)};
   }
-  stored_.filters[channel] = milliseconds;
+  set().filters[channel] = milliseconds;
 }
 
 /// Sets the inversion. The levels before and after the filter change together, so there is no edge.
 void Module::set_inversion(unsigned inversion) {
   rule(inversion == stored_.inversion ? "inversion stays" : "inversion changes");
   levels_ ^= inversion ^ stored_.inversion;
-  stored_.inversion = inversion;
+  set().inversion = inversion;
 }
 
 void Module::edge(unsigned channel, bool rising, std::uint32_t count) {
@@ -91,7 +91,7 @@ void Module::clear_latches() {
 }
 
 std::optional<unsigned> Module::settling_input() const {
-  for (unsigned channel = 0; channel < row_.inputs; ++channel) {
+  for (unsigned channel = 0; channel < row_->inputs; ++channel) {
     if (settling_[channel]) {
       return channel;
     }

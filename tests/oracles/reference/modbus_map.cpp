@@ -111,7 +111,7 @@ void all_registers_listed(const ModelRow& model, unsigned first, unsigned quanti
 }  // namespace
 
 bool Module::coil(unsigned address) const {
-  const CoilRow row = coil_row(row_, address);
+  const CoilRow row = coil_row(*row_, address);
   const unsigned channel = address - row.first;
   const auto bit = [channel](unsigned value) { return (value >> channel & 1U) != 0; };
   switch (row.row) {
@@ -148,8 +148,8 @@ Bytes Module::read_bits(const Bytes& frame) {
   const unsigned quantity = word(frame, 4);
   quantity_must_be(quantity, 2000, function);
   if (function == 0x01) {
-    rule(std::string("FC01 ") + listed_coils(row_, first, quantity, function).name);
-  } else if (first + quantity > row_.inputs) {
+    rule(std::string("FC01 ") + listed_coils(*row_, first, quantity, function).name);
+  } else if (first + quantity > row_->inputs) {
     throw Exception{0x02, "FC02 02"};
   } else {
     rule("FC02");
@@ -168,9 +168,9 @@ Bytes Module::read_bits(const Bytes& frame) {
 unsigned Module::register_value(unsigned address) {
   switch (address) {
     case 0x01E2:
-      return row_.code >> 8;
+      return row_->code >> 8;
     case 0x01E3:
-      return unsigned{row_.code} << 8U & 0xFF00U;
+      return unsigned{row_->code} << 8U & 0xFF00U;
     case 0x01E4:
       return stored_.address;
     case 0x01E5:
@@ -189,10 +189,10 @@ Bytes Module::read_registers(const Bytes& frame) {
   const unsigned first = word(frame, 2);
   const unsigned quantity = word(frame, 4);
   quantity_must_be(quantity, 125, function);
-  all_registers_listed(row_, first, quantity, function);
+  all_registers_listed(*row_, first, quantity, function);
   Bytes reply = {frame[0], frame[1], static_cast<std::uint8_t>(2 * quantity)};
   for (unsigned i = 0; i < quantity; ++i) {
-    rule(function_name(function) + " " + register_name(row_, first + i));
+    rule(function_name(function) + " " + register_name(*row_, first + i));
     append_word(reply, register_value(first + i));
   }
   return reply;
@@ -200,7 +200,7 @@ Bytes Module::read_registers(const Bytes& frame) {
 
 /// Checks the values, then the timeout status. The caller has checked format and range.
 void Module::judge_coils(unsigned first, const std::vector<bool>& values, unsigned function) {
-  const CoilRow row = coil_row(row_, first);
+  const CoilRow row = coil_row(*row_, first);
   const std::string value_refused = function_name(function) + " 03 " + row.name;
   switch (row.row) {
     case Row::Enable:
@@ -224,7 +224,7 @@ void Module::judge_coils(unsigned first, const std::vector<bool>& values, unsign
     case Row::Safe:
     case Row::PowerOn:
       // wire.md 6: commands that drive outputs are refused while the timeout status is set.
-      if (stored_.timed_out) {
+      if (refuses_outputs()) {
         throw Exception{0x04, function_name(function) + " 04 " + row.name};
       }
       break;
@@ -234,7 +234,7 @@ void Module::judge_coils(unsigned first, const std::vector<bool>& values, unsign
 }
 
 void Module::set_coils(unsigned first, const std::vector<bool>& values) {
-  const CoilRow row = coil_row(row_, first);
+  const CoilRow row = coil_row(*row_, first);
   for (unsigned i = 0; i < values.size(); ++i) {
     const unsigned channel = first + i - row.first;
     const auto put = [&](unsigned& value) {
@@ -246,18 +246,18 @@ void Module::set_coils(unsigned first, const std::vector<bool>& values) {
         break;
       case Row::Safe:
         // A write of the safe value or of the power-on value also drives the outputs.
-        put(stored_.safe);
+        put(set().safe);
         drive(1U << channel, values[i] ? 1U << channel : 0U);
         break;
       case Row::PowerOn:
-        put(stored_.power_on);
+        put(set().power_on);
         drive(1U << channel, values[i] ? 1U << channel : 0U);
         break;
       case Row::Protocol:
-        stored_.modbus = values[i];
+        set().modbus = values[i];
         break;
       case Row::Enable:
-        stored_.enabled = values[i];
+        set().enabled = values[i];
         restart_host_watchdog();
         break;
       case Row::ClearLatches:
@@ -268,7 +268,7 @@ void Module::set_coils(unsigned first, const std::vector<bool>& values) {
         break;
       case Row::CountingEdge:
         // This setting takes effect immediately. Bit 7 of FF in `%AANNTTCCFF` takes effect at the next reset.
-        stored_.format = values[i] ? stored_.format | 0x80U : stored_.format & 0x7FU;
+        set().format = values[i] ? stored_.format | 0x80U : stored_.format & 0x7FU;
         counts_rising_ = values[i];
         break;
       case Row::ClearCounters:
@@ -289,7 +289,7 @@ Bytes Module::write_coil(const Bytes& frame) {
   if (value != 0xFF00 && value != 0x0000) {
     throw Exception{0x03, "FC05 03 neither FF00 nor 0000"};
   }
-  const CoilRow row = listed_coils(row_, address, 1, 0x05);
+  const CoilRow row = listed_coils(*row_, address, 1, 0x05);
   const std::vector<bool> values = {value == 0xFF00};
   judge_coils(address, values, 0x05);
   // A broadcast never changes the protocol or the counting edge.
@@ -314,7 +314,7 @@ Bytes Module::write_coils(const Bytes& frame) {
     throw Exception{0x03, "FC0F 03 byte count"};
   }
   length_must_be(frame, 7 + bytes);
-  const CoilRow row = listed_coils(row_, first, quantity, 0x0F);
+  const CoilRow row = listed_coils(*row_, first, quantity, 0x0F);
   std::vector<bool> values;
   for (unsigned i = 0; i < quantity; ++i) {
     values.push_back((frame[7 + i / 8] >> i % 8 & 1U) != 0);
@@ -349,13 +349,13 @@ void Module::judge_registers(unsigned first, const std::vector<unsigned>& values
         }
         break;
       default:
-        if (value > extension_row(row_, first + i).highest) {
-          throw Exception{0x03, "register " + register_name(row_, first + i) + " 03"};
+        if (value > extension_row(*row_, first + i).highest) {
+          throw Exception{0x03, "register " + register_name(*row_, first + i) + " 03"};
         }
         break;
     }
   }
-  if (extension_row(row_, first).row == Extension::TimedOutputs && stored_.timed_out) {
+  if (extension_row(*row_, first).row == Extension::TimedOutputs && refuses_outputs()) {
     throw Exception{0x04, "register 0x0280 04"};
   }
 }
@@ -364,14 +364,14 @@ void Module::set_registers(unsigned first, const std::vector<unsigned>& values) 
   for (unsigned i = 0; i < values.size(); ++i) {
     switch (first + i) {
       case 0x01E4:
-        stored_.address = values[i];  // takes effect at the next reset
+        set().address = values[i];  // takes effect at the next reset
         break;
       case 0x01E5:
         rule(std::string("register 0x01E5 ") + name_of(format_of(values[i])));
-        stored_.baud_code = values[i];  // takes effect at the next reset
+        set().baud_code = values[i];  // takes effect at the next reset
         break;
       case 0x01E8:
-        stored_.timeout = values[i];
+        set().timeout = values[i];
         restart_host_watchdog();
         break;
       default:
@@ -388,11 +388,11 @@ bool Module::broadcast_ignored(unsigned first) {
     rule("broadcast ignored: configuration");
     return true;
   }
-  if (extension_row(row_, first).row == Extension::TimedOutputs) {
+  if (extension_row(*row_, first).row == Extension::TimedOutputs) {
     rule("broadcast to timed outputs");
     return false;
   }
-  if (extension_row(row_, first).row != Extension::None) {
+  if (extension_row(*row_, first).row != Extension::None) {
     rule("broadcast ignored: extension register");
     return true;
   }
@@ -402,12 +402,12 @@ bool Module::broadcast_ignored(unsigned first) {
 Bytes Module::write_register(const Bytes& frame) {
   length_must_be(frame, 6);
   const unsigned address = word(frame, 2);
-  all_registers_listed(row_, address, 1, 0x06);
+  all_registers_listed(*row_, address, 1, 0x06);
   judge_registers(address, {word(frame, 4)});
   if (frame[0] == 0 && broadcast_ignored(address)) {
     return {};
   }
-  rule("FC06 " + register_name(row_, address) + (address == 0x01E8 && stored_.enabled ? " restarts" : ""));
+  rule("FC06 " + register_name(*row_, address) + (address == 0x01E8 && stored_.enabled ? " restarts" : ""));
   set_registers(address, {word(frame, 4)});
   return frame;
 }
@@ -423,7 +423,7 @@ Bytes Module::write_registers(const Bytes& frame) {
     throw Exception{0x03, "FC10 03 byte count"};
   }
   length_must_be(frame, 7 + 2 * quantity);
-  all_registers_listed(row_, first, quantity, 0x10);
+  all_registers_listed(*row_, first, quantity, 0x10);
   std::vector<unsigned> values;
   for (unsigned i = 0; i < quantity; ++i) {
     values.push_back(word(frame, 7 + 2 * i));
@@ -436,10 +436,10 @@ Bytes Module::write_registers(const Bytes& frame) {
     rule("FC10 0x01E4 and 0x01E5");
   } else {
     for (unsigned i = 0; i < quantity; ++i) {
-      rule("FC10 " + register_name(row_, first + i) +
+      rule("FC10 " + register_name(*row_, first + i) +
            (first == 0x01E8 && stored_.enabled ? " restarts" : ""));
     }
-    if (register_name(row_, first) != register_name(row_, first + quantity - 1)) {
+    if (register_name(*row_, first) != register_name(*row_, first + quantity - 1)) {
       rule("FC10 several rows of extension registers");
     }
   }

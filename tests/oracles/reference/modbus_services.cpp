@@ -40,7 +40,7 @@ Bytes Module::diagnostics(const Bytes& frame) {
       count = counts_.no_response;
       break;
     case 0x12:
-      count = 0;  // no session has an overrun or loses a frame
+      count = counts_.lost;
       break;
     default:
       throw Exception{0x01, "FC08 01"};
@@ -63,7 +63,7 @@ Bytes Module::server_id(const Bytes& frame) {
   length_must_be(frame, 2);
   rule("FC11");
   Bytes reply = {frame[0], 0x11, static_cast<std::uint8_t>(3 + stored_.name.size())};
-  append_word(reply, row_.code);
+  append_word(reply, row_->code);
   reply.push_back(0xFF);
   append_text(reply, stored_.name);
   return reply;
@@ -83,8 +83,8 @@ Bytes Module::device_identification(const Bytes& frame) {
   if (asked < 0x01 || asked > 0x04) {
     throw Exception{0x03, "FC2B 03 code"};
   }
-  const std::string texts[] = {"OpenEX9000",  row_.designation, "D01.00",    "",
-                               row_.in_words, row_.designation, stored_.name};
+  const std::string texts[] = {"OpenEX9000",   row_->designation, "D01.00",    "",
+                               row_->in_words, row_->designation, stored_.name};
   const auto present = [](unsigned id) { return id <= 0x06 && id != 0x03; };
   unsigned last = asked == 0x01 ? 0x02 : 0x06;
   if (asked == 0x04) {
@@ -118,7 +118,7 @@ Bytes Module::function_46(const Bytes& frame) {
     length_must_be(frame, 3);
     rule("FC46 00");
     Bytes reply = {frame[0], 0x46, 0x00, 0x00};
-    append_word(reply, row_.code);
+    append_word(reply, row_->code);
     reply.push_back(0x00);
     return reply;
   }
@@ -133,7 +133,7 @@ Bytes Module::function_46(const Bytes& frame) {
     throw Exception{0x03, "FC46 03 reserved"};
   }
   rule("FC46 04");
-  stored_.address = frame[3];
+  set().address = frame[3];
   return {frame[0], 0x46, 0x04, 0x00, 0x00, 0x00, 0x00};
 }
 

@@ -3,33 +3,14 @@
 
 #include <algorithm>
 
+#include "tests/oracles/reference/dcon_check.hpp"
+#include "tests/oracles/reference/modbus_refusal.hpp"
+
 namespace ex9000::reference {
 
 namespace {
 
 constexpr std::chrono::milliseconds kTimeoutUnit{100};  // wire.md 6: VV x 0.1 s
-/// Covers one tick, and the time from the end of the silence after a request until the main loop of the
-/// firmware executes the request.
-constexpr std::chrono::milliseconds kTick{3};
-/// The longest silence that ends a Modbus frame: 32.08 ms at 1200 baud (wire.md 7), rounded up. The time
-/// between an ASCII frame and its judgement is shorter.
-constexpr std::chrono::milliseconds kLongestSilence{33};
-
-/// Returns the level after the data bits: the parity bit, or the first stop bit if there is no parity.
-bool ninth_bit(std::uint8_t byte, LineFormat format) {
-  unsigned ones = 0;
-  for (unsigned bit = 0; bit < 8; ++bit) {
-    ones += byte >> bit & 1U;
-  }
-  switch (format) {
-    case LineFormat::k8E1:
-      return ones % 2 != 0;
-    case LineFormat::k8O1:
-      return ones % 2 == 0;
-    default:
-      return true;
-  }
-}
 
 }  // namespace
 
@@ -64,10 +45,8 @@ const char* name_of(LineFormat format) {
   }
 }
 
-Module::Module(const ModelRow& row, Extensions extensions) : row_(row), extensions_(extensions) {
-  // wire.md 2, factory settings.
-  stored_.modbus = row.both_protocols;
-  stored_.name = row.name;
+Module::Module(const ModelRow& row, Extensions extensions) : row_(&row), extensions_(extensions) {
+  use_factory_settings();
 }
 
 unsigned Module::rate() const {
@@ -82,7 +61,7 @@ bool Module::waits_for_reset() const {
                           stored_.baud_code != baud_code_ || ((stored_.format & 0x40) != 0) != checksum_;
 }
 
-void Module::power(bool on, Time now) {
+void Module::power(bool on, Moment when) {
   powered_ = on;
   outputs_ = 0;
   expiry_.reset();
@@ -90,18 +69,18 @@ void Module::power(bool on, Time now) {
   timers_ = {};
   if (on) {
     reset_reason_ = 1;  // power-on
-    come_up(now);
+    come_up(when);
   }
 }
 
-void Module::reset(Time now) {
+void Module::reset(Moment when, unsigned reason) {
   if (powered_) {
-    reset_reason_ = 4;  // reset pin
-    come_up(now);
+    reset_reason_ = reason;
+    come_up(when);
   }
 }
 
-void Module::come_up(Time now) {
+void Module::come_up(Moment when) {
   // wire.md 2: the module selects its mode only at reset. If INIT* is asserted then, the module uses ASCII,
   // address 00, 9600 baud, 8N1 and no checksum.
   init_mode_ = init_asserted_;
@@ -123,65 +102,40 @@ void Module::come_up(Time now) {
   levels_ = raw_levels();
   settling_ = {};
   sample_.reset();
-  framing_ = Framing::Nothing;
-  frame_.clear();
-  spoiled_ = false;
   counts_ = {};
-  came_up_ = now;
+  came_up_ = when;
   timeouts_ = 0;
   stores_ = 0;
   read_blank_memory_ = blank_memory_;
-  stored_by_ = Time(0);
-  timeout_stored_ = Time(0);
   // wire.md 6: if the host watchdog is enabled, every reset starts it with its full timeout, in every mode.
   expiry_.reset();
   if (stored_.enabled) {
     rule("reset starts the host watchdog");
-    expiry_ = Moment{now + stored_.timeout * kTimeoutUnit, now + kComingUp + stored_.timeout * kTimeoutUnit};
+    expiry_ = when + stored_.timeout * kTimeoutUnit;
   }
 }
 
-/// Returns the value of registers 0x0302 and 0x0303. Sets `left_open_` if the value is not known.
-unsigned Module::seconds_since_reset() {
-  const auto seconds = [](Time time) { return std::chrono::duration_cast<std::chrono::seconds>(time); };
-  const auto least = seconds(now_ - came_up_ - kComingUp);
-  const auto most = seconds(now_ - came_up_ + kLongestStore);
-  if (least != most) {
-    left_open_ = "the exact time of the reset is not known, and the request may wait for a store";
+void Module::started(Time by) {
+  if (expiry_) {
+    expiry_->latest = by + stored_.timeout * kTimeoutUnit;
   }
-  return static_cast<unsigned>(least.count());
+}
+
+/// Returns the value of registers 0x0302 and 0x0303.
+unsigned Module::seconds_since_reset() {
+  const auto seconds = [](Time time) {
+    return static_cast<unsigned>(std::chrono::duration_cast<std::chrono::seconds>(time).count());
+  };
+  const unsigned least = seconds(std::max(now_.earliest - came_up_.latest, Time(0)));
+  return least + choice(seconds(now_.latest - came_up_.earliest) - least + 1);
 }
 
 // --- wire.md 6 ---
 
-/// Restarts the host watchdog by a command, if the host watchdog is enabled. If the command changes settings,
-/// the restart happens when they are stored.
+/// Restarts the host watchdog, if it is enabled.
 void Module::restart_host_watchdog() {
   if (stored_.enabled) {
-    restarted_ = true;
-    expiry_ =
-        Moment{now_ + stored_.timeout * kTimeoutUnit, now_ + kLongestStore + stored_.timeout * kTimeoutUnit};
-  }
-}
-
-void Module::restart_host_watchdog_by_host_ok() {
-  if (stored_.enabled) {
-    // The module may still be storing a command that restarts the host watchdog. The restart by that command
-    // then happens after the restart by the host OK.
-    const Time latest = now_ + kLongestSilence + stored_.timeout * kTimeoutUnit;
-    expiry_ =
-        Moment{now_ + stored_.timeout * kTimeoutUnit, expiry_ ? std::max(expiry_->latest, latest) : latest};
-  }
-}
-
-/// Restarts the host watchdog if it is enabled and register 0x0251 is 1. Call this for each correctly
-/// received request with this module's own address, before the module executes the request.
-void Module::restart_host_watchdog_by_request() {
-  if (stored_.restarted_by_requests == 1) {
-    rule(!expiry_       ? "request does not start a host watchdog that does not run"
-         : runs_modbus_ ? "Modbus request restarts the host watchdog"
-                        : "ASCII request restarts the host watchdog");
-    restart_host_watchdog_by_host_ok();
+    expiry_ = now_ + stored_.timeout * kTimeoutUnit;
   }
 }
 
@@ -189,11 +143,14 @@ void Module::restart_host_watchdog_by_request() {
 
 /// Sets outputs by a command. The command ends the timers of all channels that it covers.
 void Module::drive(unsigned channels, unsigned values) {
+  if (stored_.timed_out) {
+    return;  // overtaken by a timeout: wire.md D6
+  }
   outputs_ = (outputs_ & ~channels) | (values & channels);
   if ((timed_outputs() & channels) != 0) {
     rule("command ends a timed output");
   }
-  for (unsigned channel = 0; channel < row_.outputs; ++channel) {
+  for (unsigned channel = 0; channel < row_->outputs; ++channel) {
     if ((channels >> channel & 1U) != 0) {
       timers_[channel].reset();
     }
@@ -205,26 +162,23 @@ void Module::set_timed_output(unsigned channel, unsigned time) {
   rule(time == 0 ? "timed output of 0" : "timed output starts");
   const unsigned bit = 1U << channel;
   drive(bit, time != 0 ? bit : 0);
-  if (time != 0) {
-    timers_[channel] = Moment{now_ + time * kTimeoutUnit, executed_by() + time * kTimeoutUnit};
-    timers_started_ |= bit;
+  if (time != 0 && !stored_.timed_out) {
+    timers_[channel] = now_ + time * kTimeoutUnit;
   }
 }
 
-/// Returns the remaining time of a timed output in units of 0.1 s, rounded up; 0 if no time is running. Sets
-/// `left_open_` if the remaining time is not known.
+/// Returns the remaining time of a timed output in units of 0.1 s, rounded up; 0 if no time is running.
 unsigned Module::time_left(unsigned channel) {
   const std::optional<Moment>& timer = timers_[channel];
   rule(timer ? "0x0280 reads the remaining time" : "0x0280 reads 0");
   if (!timer) {
     return 0;
   }
-  const auto rounded_up = [](Time time) { return (time + kTimeoutUnit - Time(1)) / kTimeoutUnit; };
-  const auto most = rounded_up(timer->latest + kTick - now_);
-  if (most != rounded_up(timer->earliest - kTick - executed_by())) {
-    left_open_ = "the remaining time of a timed output is not known exactly";
-  }
-  return static_cast<unsigned>(most);
+  const auto rounded_up = [](Time time) {
+    return static_cast<unsigned>((std::max(time, Time(0)) + kTimeoutUnit - Time(1)) / kTimeoutUnit);
+  };
+  const unsigned least = rounded_up(timer->earliest - now_.latest);
+  return least + choice(rounded_up(timer->latest - now_.earliest) - least + 1);
 }
 
 void Module::end_timed_outputs(const std::string& by) {
@@ -237,133 +191,104 @@ void Module::end_timed_outputs(const std::string& by) {
 /// Returns the channels with a running timer.
 unsigned Module::timed_outputs() const {
   unsigned channels = 0;
-  for (unsigned channel = 0; channel < row_.outputs; ++channel) {
+  for (unsigned channel = 0; channel < row_->outputs; ++channel) {
     channels |= timers_[channel] ? 1U << channel : 0U;
   }
   return channels;
 }
 
-/// Returns the latest time at which the module executes a request that it has received at `now_`, if the
-/// request itself stores nothing. The request may wait while something else is being stored.
-Time Module::executed_by() const { return std::max({now_ + kLongestSilence, stored_by_, timeout_stored_}); }
-
-void Module::replied(Time now) {
-  if (restarted_ && expiry_) {
-    expiry_->latest = now + stored_.timeout * kTimeoutUnit;
-  }
-  for (unsigned channel = 0; channel < row_.outputs; ++channel) {
-    if ((timers_started_ >> channel & 1U) != 0 && timers_[channel]) {
-      timers_[channel]->latest = now + (timers_[channel]->earliest - now_);
-    }
-  }
+void Module::use_factory_settings() {
+  stored_ = {};
+  stored_.modbus = row_->both_protocols;
+  stored_.name = row_->name;
 }
 
-std::vector<Module::Moment> Module::moments() const {
-  std::vector<Moment> moments;
-  if (expiry_) {
-    moments.push_back(*expiry_);
-  }
-  for (unsigned channel = 0; channel < 16; ++channel) {
-    for (const std::optional<Moment>& moment : {settling_[channel], timers_[channel]}) {
-      if (moment) {
-        moments.push_back(*moment);
-      }
-    }
-  }
-  return moments;
+void Module::expire() {
+  rule(stored_.timed_out ? "host watchdog expires again" : "host watchdog expires");
+  outputs_ = stored_.safe;
+  stored_.timed_out = true;
+  stored_.enabled = false;
+  timeouts_ += 1;
+  expiry_.reset();
+  end_timed_outputs("host watchdog");
 }
 
-void Module::pass(Time now) {
-  if (powered_ && expiry_ && now > expiry_->latest) {
-    rule(stored_.timed_out ? "host watchdog expires again" : "host watchdog expires");
-    outputs_ = stored_.safe;
-    stored_.timed_out = true;
-    stored_.enabled = false;
-    timeouts_ += 1;
-    stores_ += 1;
-    blank_memory_ = false;
-    timeout_stored_ = expiry_->latest + kLongestStore;
-    expiry_.reset();
-    end_timed_outputs("host watchdog");
-  }
-  for (unsigned channel = 0; channel < row_.outputs; ++channel) {
-    if (timers_[channel] && now > timers_[channel]->latest) {
-      rule("timed output ends");
-      timers_[channel].reset();
-      outputs_ &= ~(1U << channel);
-    }
-  }
-  for (unsigned channel = 0; channel < row_.inputs; ++channel) {
-    if (settling_[channel] && now > settling_[channel]->latest) {
-      rule("the input filter accepts the level");
-      settling_[channel].reset();
-      take_level(channel);
-    }
-  }
+void Module::timeout_stored() {
+  stores_ += 1;
+  blank_memory_ = false;
 }
 
-// --- whole requests ---
+void Module::end_timed_output(unsigned channel) {
+  rule("timed output ends");
+  timers_[channel].reset();
+  outputs_ &= ~(1U << channel);
+}
 
-Answer Module::on_bytes(const Bytes& bytes, LineFormat sent_in, Time now) {
+void Module::settle_input(unsigned channel) {
+  rule("the input filter accepts the level");
+  settling_[channel].reset();
+  take_level(channel);
+}
+
+// --- whole frames ---
+
+Answer Module::on_frame_without_store(const Bytes& bytes, const std::vector<bool>& bad, Moment when) {
+  Module trial = *this;
+  Answer answer = trial.on_frame(bytes, bad, when);
+  counts_ = trial.counts_;
+  answer.stores = false;
+  if (!answer.reply.empty()) {
+    counts_.exceptions += 1;
+    if (runs_modbus_) {
+      answer.reply = with_crc({answer.reply[0], static_cast<std::uint8_t>(answer.reply[1] | 0x80U), 0x04});
+    } else {
+      const std::string reply = "?" + aa();
+      const std::string line = reply + (checksum_ ? check_of(reply) : "") + "\r";
+      answer.reply.assign(line.begin(), line.end());
+    }
+  }
+  return answer;
+}
+
+bool Module::on_receipt(const Bytes& bytes, const std::vector<bool>& bad, Moment when) {
+  Module trial = *this;
+  trial.tell_rules(nullptr);
+  trial.received_ = Counts();
+  trial.on_frame(bytes, bad, when);
+  const Counts& seen = trial.received_;
+  counts_.bus_messages += seen.bus_messages;
+  counts_.server_messages += seen.server_messages;
+  counts_.crc_errors += seen.crc_errors;
+  if (trial.own_ && stored_.restarted_by_requests == 1) {
+    rule(!expiry_       ? "request does not start a host watchdog that does not run"
+         : runs_modbus_ ? "Modbus request restarts the host watchdog"
+                        : "ASCII request restarts the host watchdog");
+    now_ = when;
+    restart_host_watchdog();
+  }
+  return seen.server_messages != 0;
+}
+
+void Module::lose_frame() {
+  counts_.server_messages -= 1;
+  counts_.lost += 1;
+}
+
+Answer Module::on_frame(const Bytes& bytes, const std::vector<bool>& bad, Moment when,
+                        std::optional<unsigned> overtaken) {
   Answer answer;
-  if (!powered_) {
-    return answer;
-  }
-  now_ = now;
-  restarted_ = false;
-  timers_started_ = 0;
-  left_open_ = nullptr;
+  now_ = when;
+  overtaken_ = overtaken;
+  own_ = sets_ = false;
   const Stored before = stored_;
   const bool delayed = reply_delay() != Time(0);
-  // A byte is bad if the bit after its data bits differs from the bit that the module expects there: the
-  // correct parity bit, or the stop bit if the module uses no parity.
-  std::vector<bool> bad;
-  for (const std::uint8_t byte : bytes) {
-    bad.push_back(ninth_bit(byte, sent_in) != ninth_bit(byte, format()));
-    counts_.bad_bytes += bad.back() ? 1U : 0U;
-  }
   if (runs_modbus_) {
     answer.reply = modbus_frame(bytes, bad);
   } else {
-    // wire.md 3: outside a frame, a delimiter begins a frame, and `!`, `>` or `?` begins another module's
-    // reply. The module skips this reply up to its CR.
-    for (std::size_t i = 0; i < bytes.size(); ++i) {
-      const char character = static_cast<char>(bytes[i]);
-      // `now_` is the time at which this byte ends. If one of several frames restarts the host watchdog, the
-      // restart happens at the end of that frame.
-      now_ = now - Time((bytes.size() - 1 - i) * character_bits(sent_in) * 1'000'000'000ULL / rate());
-      if (!answer.reply.empty()) {
-        left_open_ =
-            "the effect of bytes that arrive while the module replies depends on the time of the reply";
-      }
-      if (bad[i]) {
-        // A bad byte in a frame spoils the frame. The module ignores any other bad byte. A CR with a line
-        // error is not a CR.
-        rule(framing_ == Framing::Nothing ? "bad byte outside an ASCII frame"
-                                          : "bad byte in an ASCII frame or in a skipped reply");
-        spoiled_ = true;
-      } else if (framing_ == Framing::Nothing) {
-        spoiled_ = false;
-        if (std::string("#$%@~").find(character) != std::string::npos) {
-          framing_ = Framing::Open;
-          frame_ = character;
-        } else if (std::string("!>?").find(character) != std::string::npos) {
-          rule("another module's reply is skipped");
-          framing_ = Framing::ToTheCr;
-        }
-      } else if (character != '\r') {
-        frame_ += character;
-      } else {
-        const bool judged = framing_ == Framing::Open;
-        framing_ = Framing::Nothing;
-        if (judged) {
-          const std::optional<std::string> reply = dcon_frame(frame_, spoiled_);
-          if (reply) {
-            answer.reply.assign(reply->begin(), reply->end());
-          }
-        }
-        frame_.clear();
-      }
+    const bool spoiled = std::find(bad.begin(), bad.end(), true) != bad.end();
+    const auto reply = dcon_frame(std::string(bytes.begin(), bytes.end() - 1), spoiled);
+    if (reply) {
+      answer.reply.assign(reply->begin(), reply->end());
     }
   }
   if (!answer.reply.empty() && before.delay != 0) {
@@ -372,14 +297,47 @@ Answer Module::on_bytes(const Bytes& bytes, LineFormat sent_in, Time now) {
   if (!stored_.enabled) {
     expiry_.reset();
   }
+  if (overtaken && stored_.timed_out) {
+    outputs_ = stored_.safe;
+  }
+  answer.sets = sets_;
   answer.stores = !(stored_ == before);
   if (answer.stores) {
     stores_ += 1;
     blank_memory_ = false;
-    stored_by_ = answer.reply.empty() ? now_ + kLongestStore : stored_by_;
   }
-  answer.left_open = left_open_;
   return answer;
+}
+
+bool Module::is_like(const Module& other) const {
+  const auto state = [](const Module& m) {
+    return std::tie(m.stored_, m.blank_memory_, m.powered_, m.init_asserted_, m.init_mode_, m.runs_modbus_,
+                    m.address_, m.baud_code_, m.checksum_, m.counts_rising_, m.outputs_, m.reset_status_,
+                    m.terminals_, m.last_edges_, m.levels_, m.latch_high_, m.latch_low_, m.counters_,
+                    m.wide_counters_, m.sample_, m.counts_, m.reset_reason_, m.timeouts_, m.stores_,
+                    m.read_blank_memory_, m.doubts_memory_);
+  };
+  const auto same = [](const std::optional<Moment>& a, const std::optional<Moment>& b) {
+    return a.has_value() == b.has_value();
+  };
+  return same(expiry_, other.expiry_) &&
+         std::equal(timers_.begin(), timers_.end(), other.timers_.begin(), same) &&
+         std::equal(settling_.begin(), settling_.end(), other.settling_.begin(), same) &&
+         state(*this) == state(other);
+}
+
+void Module::widen(const Module& other) {
+  const auto widen = [](std::optional<Moment>& mine, const std::optional<Moment>& its) {
+    if (mine) {
+      mine = hull(*mine, *its);
+    }
+  };
+  widen(expiry_, other.expiry_);
+  for (unsigned channel = 0; channel < timers_.size(); ++channel) {
+    widen(timers_[channel], other.timers_[channel]);
+    widen(settling_[channel], other.settling_[channel]);
+  }
+  came_up_ = hull(came_up_, other.came_up_);
 }
 
 }  // namespace ex9000::reference

@@ -5,6 +5,7 @@
 // wire.md.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cstdint>
@@ -24,10 +25,20 @@ using Bytes = std::vector<std::uint8_t>;
 using Time = std::chrono::nanoseconds;
 /// wire.md 2: the longest time from power-on or reset until the module listens.
 inline constexpr std::chrono::milliseconds kComingUp{100};
-/// The longest time from the last byte of a request until its settings are stored. This is the sum of 200 ms
-/// for the store (wire.md 3), and about 32 ms for the silence that ends a Modbus frame at 1200 baud
-/// (wire.md 7).
-inline constexpr std::chrono::milliseconds kLongestStore{232};
+/// A time that is only known to lie between two.
+struct Moment {
+  Time earliest;
+  Time latest;
+};
+inline bool operator==(const Moment& a, const Moment& b) {
+  return a.earliest == b.earliest && a.latest == b.latest;
+}
+inline Moment hull(const Moment& a, const Moment& b) {
+  return {std::min(a.earliest, b.earliest), std::max(a.latest, b.latest)};
+}
+inline Moment operator+(const Moment& moment, Time time) {
+  return {moment.earliest + time, moment.latest + time};
+}
 /// extensions.md: the longest response delay, in ms.
 inline constexpr unsigned kLongestDelay = 0x1E;
 
@@ -71,10 +82,8 @@ inline bool operator==(const Stored& a, const Stored& b) {
 /// The module's reaction to a request.
 struct Answer {
   Bytes reply;          ///< empty: no reply
+  bool sets = false;    ///< gives settings values, which they may already have
   bool stores = false;  ///< settings change; storing takes up to 200 ms
-  /// If not null, the reference cannot predict what the module does; the text says why. The other members are
-  /// not valid then.
-  const char* left_open = nullptr;
 };
 
 /// A module. Its supply is off at first.
@@ -90,33 +99,66 @@ class Module {
     stored_ = stored;
     blank_memory_ = false;
   }
-  /// Switches the supply. A module that is switched on has 100 ms to start. Its reset is at an unknown time
-  /// within these 100 ms.
-  void power(bool on, Time now);
-  /// Resets the module, which then has 100 ms to start. Has no effect while the supply is off.
-  void reset(Time now);
+  /// Switches the supply. `when`: the reset.
+  void power(bool on, Moment when);
+  /// Resets the module. Has no effect while the supply is off. `reason`: the value of register 0x0301.
+  void reset(Moment when, unsigned reason = 4);
+  /// The start is over: the host watchdog of this reset runs since then at the latest.
+  void started(Time by);
   void set_init(bool asserted) { init_asserted_ = asserted; }
   void set_input(unsigned channel, bool level, Time now);
   void pulse_input(unsigned channel, std::uint32_t count, Time now);
-  /// Processes all bytes that the master has sent. The last byte ended at `now`, and a silence follows.
-  Answer on_request(const Bytes& bytes, Time now) { return on_bytes(bytes, format(), now); }
-  /// Like `on_request`, for a master that uses another line format. If the module uses parity, `sent_in` must
-  /// not be 8N1, because the module cannot determine where such bytes end if there is no gap between them.
-  Answer on_bytes(const Bytes& bytes, LineFormat sent_in, Time now);
-  /// Reports that the first byte of the reply to the last request began at `now`. All effects of the request
-  /// are complete by then.
-  void replied(Time now);
-  /// Lets time pass until `now`, which must not lie within one of the `moments`.
-  void pass(Time now);
+  /// Executes a frame: all bytes between two silences in Modbus; from its delimiter to its CR in ASCII.
+  /// `bad`: which of its bytes have a line error. `when`: the execution. `overtaken`: if the host watchdog
+  /// has expired since the module has judged the frame, the `lasting_outputs` before that (wire.md D6 and
+  /// D17).
+  Answer on_frame(const Bytes& bytes, const std::vector<bool>& bad, Moment when,
+                  std::optional<unsigned> overtaken = {});
+  /// The settings could not be read (wire.md 2): the module uses the factory settings.
+  void use_factory_settings();
+  /// A store was interrupted or has failed: register 0x0306 may read anything that it can.
+  void doubt_memory() { doubts_memory_ = true; }
+  /// Stores the settings in force although no setting has changed (wire.md 8).
+  void store_again() { stores_ += 1; }
+  /// The same, but the store of the settings fails (wire.md 8).
+  Answer on_frame_without_store(const Bytes& bytes, const std::vector<bool>& bad, Moment when);
+  /// The frame is complete: counts it. Returns whether it concerns this module, so that it must be executed.
+  /// `when`: its end.
+  bool on_receipt(const Bytes& bytes, const std::vector<bool>& bad, Moment when);
+  /// The last complete frame is lost, because no buffer is free.
+  void lose_frame();
+  /// Bytes that are no frame.
+  void count_remains() { counts_.crc_errors += 1; }
+  /// A byte with a line error.
+  void on_bad_byte() { counts_.bad_bytes += 1; }
+  /// Where the specification permits several replies, the next frame takes these choices, in this order; each
+  /// is less than the number in `alternatives` at its place. Missing choices are 0.
+  void choose(std::vector<unsigned> choices) {
+    choices_ = std::move(choices);
+    alternatives_.clear();
+  }
+  /// The number of alternatives of each choice of the last frame.
+  [[nodiscard]] const std::vector<unsigned>& alternatives() const { return alternatives_; }
+  /// The host watchdog expires; the timeout is stored later.
+  void expire();
+  void timeout_stored();
+  void end_timed_output(unsigned channel);
+  void settle_input(unsigned channel);
+
+  /// Returns whether the modules differ at most in their moments.
+  [[nodiscard]] bool is_like(const Module& other) const;
+  /// Makes the moments cover those of a module that is like this one.
+  void widen(const Module& other);
 
   // --- visible state ---
 
-  /// Returns the rules that have been applied since the last `take_rules`, as rules.cpp names them.
-  [[nodiscard]] const std::vector<std::string>& rules() const { return rules_; }
-  std::vector<std::string> take_rules() { return std::exchange(rules_, {}); }
+  /// The rules that are applied from now on, as rules.cpp names them, are added to `rules`.
+  void tell_rules(std::vector<std::string>* rules) { rules_ = rules; }
 
   [[nodiscard]] bool powered() const { return powered_; }
   [[nodiscard]] unsigned outputs() const { return outputs_; }
+  /// What `~AA5V` stores: a timed output is off (extensions.md).
+  [[nodiscard]] unsigned lasting_outputs() const { return outputs_ & ~timed_outputs(); }
   /// Returns whether the timeout status is set. The LED of a powered module then flashes (wire.md 6).
   [[nodiscard]] bool led_flashes() const { return stored_.timed_out; }
   [[nodiscard]] unsigned rate() const;
@@ -133,35 +175,61 @@ class Module {
   /// line format or checksum in force.
   [[nodiscard]] bool waits_for_reset() const;
   [[nodiscard]] const Stored& stored() const { return stored_; }
-  [[nodiscard]] const ModelRow& row() const { return row_; }
+  [[nodiscard]] unsigned reset_reason() const { return reset_reason_; }
+  [[nodiscard]] const ModelRow& row() const { return *row_; }
   [[nodiscard]] bool has_extensions() const { return extensions_ == Extensions::Present; }
+  /// The module without extensions has executed a frame that requires one.
+  [[nodiscard]] bool needed_extension() const { return needed_extension_; }
 
-  /// The module changes by itself between these two times. The exact time is unknown if the time of the
-  /// cause, for example of a command or a reset, is not visible from outside.
-  struct Moment {
-    Time earliest;
-    Time latest;
-  };
-  /// Returns when the host watchdog expires, if it is running.
+  /// When the module changes by itself. A moment is longer than an instant if its cause, for example a
+  /// command or a reset, is not visible from outside.
   [[nodiscard]] const std::optional<Moment>& expiry() const { return expiry_; }
-  /// Returns all moments at which the module changes by itself: the expiry of the host watchdog, the ends of
-  /// the running filter times, and the ends of timed outputs.
-  [[nodiscard]] std::vector<Moment> moments() const;
+  [[nodiscard]] const std::optional<Moment>& end_of_output(unsigned channel) const {
+    return timers_[channel];
+  }
+  [[nodiscard]] const std::optional<Moment>& settling(unsigned channel) const { return settling_[channel]; }
   /// Returns the lowest channel number of the inputs whose filter times are running, if there is one.
   [[nodiscard]] std::optional<unsigned> settling_input() const;
 
  private:
-  void rule(const std::string& rule) { rules_.push_back(rule); }
-  /// Returns whether the request requires an extension that this module does not have. In this case, sets
-  /// `left_open_`. `needed`: whether the request requires an extension.
-  bool refuses_extension(bool needed) {
-    const bool refuses = needed && !has_extensions();
-    left_open_ = refuses ? "this request requires an extension that the module does not have" : left_open_;
-    return refuses;
+  /// The line tallies (extensions.md), except those of overruns. In Modbus, the first five are counters of
+  /// function 08.
+  struct Counts {
+    unsigned bus_messages = 0;
+    unsigned crc_errors = 0;
+    unsigned exceptions = 0;
+    unsigned server_messages = 0;
+    unsigned no_response = 0;
+    unsigned bad_bytes = 0;
+    unsigned lost = 0;
+
+    friend bool operator==(const Counts& a, const Counts& b) {
+      const auto members = [](const Counts& c) {
+        return std::tie(c.bus_messages, c.crc_errors, c.exceptions, c.server_messages, c.no_response,
+                        c.bad_bytes, c.lost);
+      };
+      return members(a) == members(b);
+    }
+  };
+
+  void rule(const std::string& rule) {
+    if (rules_ != nullptr && !rule.empty()) {
+      rules_->push_back(rule);
+    }
+  }
+  /// A command gives settings values.
+  Stored& set() {
+    sets_ = true;
+    return stored_;
+  }
+  /// Returns the next of the choices.
+  unsigned choice(unsigned alternatives) {
+    alternatives_.push_back(alternatives);
+    return alternatives_.size() <= choices_.size() ? choices_[alternatives_.size() - 1] : 0;
   }
 
   // wire.md 2 and 12
-  void come_up(Time now);
+  void come_up(Moment when);
   unsigned seconds_since_reset();
   // wire.md 5 and 12, inputs.cpp
   [[nodiscard]] unsigned raw_levels() const { return terminals_ ^ stored_.inversion; }
@@ -174,19 +242,17 @@ class Module {
   [[nodiscard]] std::uint32_t counter_modulus() const { return runs_modbus_ ? 65536 : 100000; }
   // wire.md 6 and 12
   void restart_host_watchdog();
-  void restart_host_watchdog_by_host_ok();
-  void restart_host_watchdog_by_request();
-  void clear_timeout_status() { stored_.timed_out = false; }
-  [[nodiscard]] unsigned all_outputs() const { return (1U << row_.outputs) - 1; }
+  void clear_timeout_status() { set().timed_out = stored_.timed_out && overtaken_.has_value(); }
+  /// wire.md 6: output commands are refused while the timeout status is set.
+  [[nodiscard]] bool refuses_outputs() const { return stored_.timed_out && !overtaken_; }
+  [[nodiscard]] unsigned all_outputs() const { return (1U << row_->outputs) - 1; }
   void drive(unsigned channels, unsigned values);
   void set_timed_output(unsigned channel, unsigned time);
   unsigned time_left(unsigned channel);
   void end_timed_outputs(const std::string& by);
   [[nodiscard]] unsigned timed_outputs() const;
-  [[nodiscard]] Time executed_by() const;
 
   // wire.md 3 and 4, dcon.cpp
-  enum class Framing { Nothing, Open, ToTheCr };
   std::optional<std::string> dcon_frame(std::string frame, bool spoiled);
   std::string dcon_command(char delimiter, const std::string& body);
   std::string set_configuration(const std::string& body);
@@ -224,6 +290,7 @@ class Module {
   bool broadcast_ignored(unsigned first);
 
   // extensions.md, extension_registers.cpp
+  void count(unsigned Counts::*what) { received_.*what += 1; }
   [[nodiscard]] unsigned tally(unsigned index) const;
   unsigned extension_value(unsigned address);
   unsigned extension_word(unsigned address);
@@ -231,9 +298,9 @@ class Module {
   std::string delay_command(const std::string& body);
   std::string extension_command(const std::string& body);
 
-  const ModelRow& row_;
+  const ModelRow* row_;
   Extensions extensions_;
-  std::vector<std::string> rules_;
+  std::vector<std::string>* rules_ = nullptr;
   Stored stored_;
   bool blank_memory_ = true;  ///< nothing has been stored yet
 
@@ -262,35 +329,30 @@ class Module {
   struct Sample {
     std::string first_second;
     bool read = false;
+
+    friend bool operator==(const Sample& a, const Sample& b) {
+      return a.first_second == b.first_second && a.read == b.read;
+    }
   };
   std::optional<Sample> sample_;
-  Framing framing_ = Framing::Nothing;
-  std::string frame_;
-  bool spoiled_ = false;  ///< in a frame: one of its bytes had a line error
-  /// The line tallies (extensions.md), except those of overruns and of lost frames. In Modbus, the first five
-  /// are counters of function 08.
-  struct Counts {
-    unsigned bus_messages = 0;
-    unsigned crc_errors = 0;
-    unsigned exceptions = 0;
-    unsigned server_messages = 0;
-    unsigned no_response = 0;
-    unsigned bad_bytes = 0;
-  } counts_;
+  Counts counts_;
   std::optional<Moment> expiry_;
-  Time came_up_{0};                 ///< the earliest possible time of the last reset
+  Moment came_up_{};                ///< the last reset
   unsigned reset_reason_ = 0;       ///< register 0x0301
   unsigned timeouts_ = 0;           ///< register 0x0304
   unsigned stores_ = 0;             ///< register 0x0305
   bool read_blank_memory_ = false;  ///< the last reset found nothing stored
-  Time stored_by_{0};               ///< the time by which the last command without a reply has been stored
-  Time timeout_stored_{0};          ///< the time by which the last timeout has been stored
+  bool doubts_memory_ = false;
 
-  // State of the latest request.
-  Time now_{0};
-  bool restarted_ = false;
-  unsigned timers_started_ = 0;  ///< bit n is channel n
-  const char* left_open_ = nullptr;
+  // State of the latest frame.
+  Moment now_{};
+  Counts received_;  ///< what its receipt counts
+  bool sets_ = false;
+  bool needed_extension_ = false;
+  bool own_ = false;  ///< it is for this module alone
+  std::optional<unsigned> overtaken_;
+  std::vector<unsigned> choices_;
+  std::vector<unsigned> alternatives_;
 };
 
 }  // namespace ex9000::reference

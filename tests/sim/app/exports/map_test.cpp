@@ -38,13 +38,11 @@ std::set<std::string> listed(const Model& model) {
 /// Returns whether a new module of the reference has the function and the address: it does not reply with
 /// exception 01 or 02.
 bool is_accepted(const reference::ModelRow& model, unsigned function, unsigned address) {
-  using std::chrono::milliseconds;
   reference::Module module(model);
   reference::Stored stored;
   stored.modbus = true;
   module.store(stored);
-  module.power(true, milliseconds(0));
-  module.pass(milliseconds(200));
+  module.power(true, {});
   const auto high = static_cast<std::uint8_t>(address >> 8);
   const auto low = static_cast<std::uint8_t>(address & 0xFF);
   reference::Bytes request{0x01, static_cast<std::uint8_t>(function), high, low, 0x00, 0x01};
@@ -56,7 +54,8 @@ bool is_accepted(const reference::ModelRow& model, unsigned function, unsigned a
   } else if (function == 0x10) {
     request.insert(request.end(), {0x02, 0x00, 0x01});
   }
-  const reference::Bytes reply = module.on_request(with_crc(request), milliseconds(300)).reply;
+  const reference::Bytes frame = with_crc(request);
+  const reference::Bytes reply = module.on_frame(frame, std::vector<bool>(frame.size()), {}).reply;
   return reply.size() != 5 || reply[1] != (function | 0x80U) || reply[2] > 0x02;
 }
 

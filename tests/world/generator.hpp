@@ -1,0 +1,38 @@
+// Builds a plant and its history from one number.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "tests/oracles/reference/random.hpp"
+#include "tests/world/plant.hpp"
+
+namespace ex9000::world {
+
+class Generator {
+ public:
+  explicit Generator(std::uint64_t seed);
+
+  [[nodiscard]] const Setup& setup() const { return setup_; }
+  /// The next step, given what the plant is in.
+  Step next(const Plant& plant);
+
+ private:
+  Member member();
+  [[nodiscard]] bool often(unsigned what, unsigned times);
+  Bytes request(const Possible& target);
+  Step noted(const Step& step, Time now);
+
+  reference::Random random_;
+  unsigned left_out_;  ///< a mask: each run leaves out a random part
+  Setup setup_;
+  unsigned waits_ = 0;
+  std::optional<std::size_t> aim_;  ///< the module that gets the next step
+  /// wire.md does not say what a module does with an INIT* that changes while it starts. From when on it is
+  /// up, and from when on its INIT* has settled.
+  std::vector<Time> up_;
+  std::vector<Time> init_settled_;
+  std::vector<bool> init_;
+};
+
+}  // namespace ex9000::world

@@ -1,0 +1,126 @@
+// One state that a module may be in, as far as its wires and terminals tell.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tests/oracles/reference/module.hpp"
+
+namespace ex9000::world {
+
+using reference::Bytes;
+using reference::Moment;
+using reference::Time;
+
+/// A frame that the module has received and not executed yet.
+struct Waiting {
+  Bytes bytes;
+  std::vector<bool> bad;  ///< which bytes have a line error
+  Time last{0};           ///< the end of its last stop bit
+  Moment judged{};        ///< when the module can judge it
+};
+
+/// A reply that the module has to send.
+struct Due {
+  Bytes bytes;
+  Moment begins{};
+};
+
+/// Adds to the reference, which executes whole frames, what happens around that: bytes become frames, frames
+/// wait, settings are stored, and each has its time. Something that happens at an unknown time is an event
+/// with a window; `futures` returns the states after the events whose windows are open.
+class Possible {
+ public:
+  Possible(const reference::ModelRow& row, reference::Extensions extensions)
+      : module_(row, extensions), saved_(module_.stored()) {}
+
+  // --- what happens to the module; before each, call `futures` with the same time ---
+
+  void store(const reference::Stored& stored);
+  /// After `off` or a reset, the memory has the content of one of the results.
+  [[nodiscard]] std::vector<Possible> power_off() const;
+  void power_on(Time now);
+  [[nodiscard]] std::vector<Possible> reset(unsigned reason, Time now) const;
+  void hang(Time now) { hung_ = now; }
+  void init(bool asserted, Time now);
+  void memory_fails(bool fails, Time now);
+  void input(unsigned channel, bool level, Time now) { module_.set_input(channel, level, now); }
+  void pulse(unsigned channel, std::uint32_t count, Time now) { module_.pulse_input(channel, count, now); }
+  /// `end`: the end of the first stop bit.
+  [[nodiscard]] std::vector<Possible> hear(std::uint8_t byte, bool good, Time end) const;
+
+  // --- what the module does ---
+
+  /// The module begins to reply. The result is empty if it must not send this reply now.
+  [[nodiscard]] std::vector<Possible> reply(const Bytes& bytes, Time begins) const;
+  void replied(Time end);
+
+  /// Adds to `after` the states after each event that may have happened between `since` and `now`. Returns
+  /// whether this state is still possible, because no event is overdue.
+  bool futures(Time since, Time now, std::vector<Possible>& after) const;
+
+  [[nodiscard]] const reference::Module& module() const { return module_; }
+  reference::Module& module() { return module_; }
+  [[nodiscard]] unsigned outputs() const { return coming_up_ ? 0 : module_.outputs(); }
+  /// Returns whether the LED may be dark.
+  [[nodiscard]] bool may_be_dark() const {
+    return !module_.powered() || coming_up_ || module_.led_flashes() || unreadable_;
+  }
+  /// Returns whether the LED may have been lit since `since`.
+  [[nodiscard]] bool may_be_lit(Time since, Time now) const;
+  [[nodiscard]] bool at_rest() const { return waiting_.empty() && !due_ && !sending_; }
+  /// The module has had to execute a request that only extensions know, but the reference has none.
+  [[nodiscard]] bool needed_extension() const { return module_.needed_extension(); }
+  /// For people.
+  [[nodiscard]] std::string text() const;
+
+  /// Returns whether the states differ at most in times that are not exactly known.
+  [[nodiscard]] bool is_like(const Possible& other) const;
+  /// Makes the times cover those of a state that is like this one.
+  void widen(const Possible& other);
+
+ private:
+  [[nodiscard]] Time half_bits(unsigned count) const;
+  [[nodiscard]] Time stop_bits_left() const;
+  [[nodiscard]] bool is_whole() const;
+  [[nodiscard]] std::vector<Possible> frame_ends(Moment judged) const;
+  [[nodiscard]] Time frame_limit() const;
+  void come_up(Time since, Time now, std::vector<Possible>& after) const;
+  void execute(Time since, Time now, std::vector<Possible>& after) const;
+  [[nodiscard]] bool first_stores() const;
+  [[nodiscard]] Time first_by(bool stores) const;
+  [[nodiscard]] std::vector<reference::Stored> may_be_stored() const;
+
+  reference::Module module_;
+  std::optional<Time> coming_up_;  ///< the cause of the reset, until the outputs are driven
+  bool reset_ = false;             ///< while `coming_up_`: the inputs count
+  struct InitChange {
+    bool asserted;
+    Time when;
+  };
+  std::optional<InitChange> init_changes_;
+  // The frame that is not over.
+  Bytes open_;
+  std::vector<bool> bad_;
+  Time last_{0};           ///< the end of the first stop bit of its last byte
+  bool skipping_ = false;  ///< ASCII: another module's reply
+  std::vector<Waiting> waiting_;
+  /// If the first one of `waiting_` was judged before the last timeout, the lasting outputs before that.
+  std::optional<unsigned> overtaken_;
+  std::optional<Due> due_;
+  bool sending_ = false;
+  std::optional<Time> hung_;  ///< since when
+  Time free_{0};              ///< by then the module has nothing else to do
+  reference::Stored saved_;
+  bool unreadable_ = false;                ///< the module could not read its settings
+  bool stores_again_ = false;              ///< a reset might not load the settings in force (wire.md 8)
+  std::vector<reference::Stored> ghosts_;  ///< that an interrupted store may have left
+  std::optional<Moment> timeout_unsaved_;  ///< the timeout that is not stored yet
+  Time memory_fails_until_ = Time::min();
+  Time flashes_since_{0};  ///< if the LED flashes
+};
+
+}  // namespace ex9000::world

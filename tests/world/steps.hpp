@@ -1,0 +1,83 @@
+// What happens to a plant.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "hal/serial_mode.hpp"
+#include "sim/virtual_line/faults/noise.hpp"
+#include "tests/oracles/reference/module.hpp"
+
+namespace ex9000::world {
+
+using reference::Bytes;
+using reference::Time;
+
+struct Send {
+  std::size_t master;
+  hal::SerialMode mode;
+  Bytes bytes;
+};
+struct Wait {
+  Time time;
+};
+struct Power {
+  std::size_t module;
+  bool on;
+};
+struct Reset {
+  std::size_t module;
+};
+struct Init {
+  std::size_t module;
+  bool asserted;
+};
+struct Input {
+  std::size_t module;
+  unsigned channel;
+  bool level;
+};
+struct Pulse {
+  std::size_t module;
+  unsigned channel;
+  std::uint32_t count;
+};
+struct Hang {
+  std::size_t module;
+};
+struct MemoryFails {
+  std::size_t module;
+  bool on;
+};
+/// The next reply does not reach the wires, or late.
+struct SpoilReply {
+  std::size_t module;
+  Time late_by;  ///< 0: lost
+};
+struct Noise {
+  sim::NoiseRates rates;
+};
+
+using Step = std::variant<Send, Wait, Power, Reset, Init, Input, Pulse, Hang, MemoryFails, SpoilReply, Noise>;
+
+std::string text_of(const Step& step);
+
+/// A module of a plant.
+struct Member {
+  const reference::ModelRow* row;
+  bool blank;  ///< the memory is blank, so `stored` has the factory settings
+  reference::Stored stored;
+};
+
+struct Setup {
+  std::vector<Member> members;
+  Time begins{0};  ///< the line's time at first
+  std::size_t masters = 1;
+  reference::Extensions extensions = reference::Extensions::Present;
+};
+
+std::string text_of(const Setup& setup);
+
+}  // namespace ex9000::world
