@@ -324,7 +324,8 @@ void Possible::come_up(Time since, Time now, std::vector<Possible>& after) const
   for (const bool asserted : inits) {
     reset(asserted);
   }
-  if (memory_fails_until_ >= *coming_up_) {
+  // A failed store leaves a memory that is no longer blank and has no good copy (wire.md D8).
+  if (memory_fails_until_ >= *coming_up_ || module_.may_have_spoilt_blank_memory()) {
     next.unreadable_ = next.stores_again_ = true;
     next.module_.use_factory_settings();
     next.module_.doubt_memory();

@@ -118,6 +118,7 @@ class Module {
   void use_factory_settings();
   /// A store was interrupted or has failed: register 0x0306 may read anything that it can.
   void doubt_memory() { doubts_memory_ = true; }
+  [[nodiscard]] bool may_have_spoilt_blank_memory() const { return doubts_memory_ && blank_memory_; }
   /// Stores the settings in force although no setting has changed (wire.md 8).
   void store_again() { stores_ += 1; }
   /// The same, but the store of the settings fails (wire.md 8).
