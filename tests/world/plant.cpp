@@ -185,6 +185,9 @@ void Plant::run_until(Time until) {
     line_->wires().run_next(until);
     look();
   }
+  if (gave_up_) {
+    return;
+  }
   line_->clock().set(std::max(until, now()));
   for (const auto& subject : subjects_) {
     if (objection_.empty()) {
