@@ -194,8 +194,4 @@ void Judge::replied(Time end) {
   each(end, [&](Possible& each) { each.replied(end); });
 }
 
-bool Judge::at_rest() const {
-  return std::all_of(all_.begin(), all_.end(), [](const Possible& each) { return each.at_rest(); });
-}
-
 }  // namespace ex9000::world

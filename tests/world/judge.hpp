@@ -48,15 +48,12 @@ class Judge {
   /// Returns one of the states.
   [[nodiscard]] const Possible& likely() const { return all_.front(); }
   [[nodiscard]] std::size_t size() const { return all_.size(); }
-  [[nodiscard]] bool at_rest() const;
   /// The module may be in too many states to be judged.
   [[nodiscard]] bool gave_up() const { return gave_up_; }
 
  private:
   template <class Change>
   void each(Time now, Change change);
-  template <class Keep>
-  void keep(Time now, const std::string& what, Keep keep);
   void fork(Time now, const std::string& what,
             const std::function<std::vector<Possible>(const Possible&)>& after);
   void replace(std::vector<Possible> by, Time now, const std::string& what);

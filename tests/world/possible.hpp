@@ -71,7 +71,6 @@ class Possible {
   }
   /// Returns whether the LED may have been lit since `since`.
   [[nodiscard]] bool may_be_lit(Time since, Time now) const;
-  [[nodiscard]] bool at_rest() const { return waiting_.empty() && !due_ && !sending_; }
   /// The module has had to execute a request that only extensions know, but the reference has none.
   [[nodiscard]] bool needed_extension() const { return module_.needed_extension(); }
   /// For people.

@@ -1,4 +1,4 @@
-// Plays random worlds: a plant and its history, both built from one number. See tests/world/README.md.
+// Plays random worlds: a plant and its history, both built from one number. See "A world" in tests/README.md.
 //     EX9000_SEED           of the first world; each further one adds 1; default 1
 //     EX9000_WORLDS         how many; default 3
 //     EX9000_WORLD_SECONDS  plays worlds for this processor time instead

@@ -45,7 +45,6 @@ unsigned Module::tally(unsigned index) const {
 }
 
 /// Returns the value of a register. If the register is a part of a 32-bit value, returns the 32-bit value.
-/// Sets `left_open_` if the value is not known.
 unsigned Module::extension_value(unsigned address) {
   const ExtensionRow row = extension_row(*row_, address);
   switch (row.row) {

@@ -1,5 +1,5 @@
-// Generates random steps for a session. Most of these steps suit the model and the current protocol, address
-// and checksum of the reference module. For a module without extensions, the steps contain no request that
+// Generates random requests. Most of them suit the model and the current protocol, address
+// and checksum of the reference module. For a module without extensions, no request
 // requires an extension, except by chance.
 #pragma once
 
