@@ -37,9 +37,6 @@ Generator::Generator(std::uint64_t seed) : random_(seed), left_out_(random_.belo
   for (unsigned i = 0; i < count; ++i) {
     setup_.members.push_back(member());
   }
-  up_.resize(count);
-  init_settled_.resize(count);
-  init_.resize(count);
   setup_.masters = 1 + random_.below(3);
   // The clock of the firmware wraps after 2^32 us.
   constexpr microseconds kWrap{4'294'967'296};
@@ -117,30 +114,12 @@ Bytes Generator::request(const Possible& target) {
   return bytes;
 }
 
-/// Notes when the module is up again and when its INIT* has settled.
-Step Generator::noted(const Step& step, Time now) {
-  constexpr milliseconds kStart{150};
-  constexpr milliseconds kSettles{30};
-  if (const auto* power = std::get_if<Power>(&step)) {
-    up_[power->module] = now + kStart;
-  } else if (const auto* reset = std::get_if<Reset>(&step)) {
-    up_[reset->module] = now + kStart;
-  } else if (const auto* hang = std::get_if<Hang>(&step)) {
-    up_[hang->module] = now + milliseconds(1600) + kStart;
-  } else if (const auto* init = std::get_if<Init>(&step)) {
-    init_settled_[init->module] = now + kSettles;
-    init_[init->module] = init->asserted;
-  }
-  return step;
-}
-
 Step Generator::next(const Plant& plant) {
   const std::size_t index =
       aim_ ? *std::exchange(aim_, {}) : random_.below(static_cast<unsigned>(plant.size()));
   const Time now = plant.now();
-  const bool settled = now >= init_settled_[index];
-  if (!plant.powered(index) && settled && random_.once_in(3)) {
-    return noted(Power{index, true}, now);
+  if (!plant.powered(index) && random_.once_in(3)) {
+    return Power{index, true};
   }
   const Possible& target = plant.likely(index);
   if (waits_ != 0) {
@@ -151,18 +130,18 @@ Step Generator::next(const Plant& plant) {
     return Wait{random_.once_in(30) ? Time(milliseconds(random_.below(3000)))
                                     : Time(milliseconds(20 + random_.below(40)))};
   }
-  if (settled && often(kPower, 60)) {
-    return noted(Power{index, !plant.powered(index)}, now);
+  if (often(kPower, 60)) {
+    return Power{index, !plant.powered(index)};
   }
   // A module whose settings or INIT* wait for a reset gets one more often.
-  if (settled && often(kReset, target.module().powered() && target.module().waits_for_reset() ? 10 : 60)) {
-    return noted(Reset{index}, now);
+  if (often(kReset, target.module().powered() && target.module().waits_for_reset() ? 10 : 60)) {
+    return Reset{index};
   }
-  if (settled && often(kHang, 400)) {
-    return noted(Hang{index}, now);
+  if (often(kHang, 400)) {
+    return Hang{index};
   }
-  if (now >= up_[index] && settled && often(kInit, init_[index] ? 20 : 40)) {
-    return noted(Init{index, !init_[index]}, now);
+  if (often(kInit, target.module().init_asserted() ? 20 : 40)) {
+    return Init{index, !target.module().init_asserted()};
   }
   if (often(kMemory, 100)) {
     return MemoryFails{index, random_.once_in(3)};

@@ -21,18 +21,12 @@ class Generator {
   Member member();
   [[nodiscard]] bool often(unsigned what, unsigned times);
   Bytes request(const Possible& target);
-  Step noted(const Step& step, Time now);
 
   reference::Random random_;
   unsigned left_out_;  ///< a mask: each run leaves out a random part
   Setup setup_;
   unsigned waits_ = 0;
   std::optional<std::size_t> aim_;  ///< the module that gets the next step
-  /// wire.md does not say what a module does with an INIT* that changes while it starts. From when on it is
-  /// up, and from when on its INIT* has settled.
-  std::vector<Time> up_;
-  std::vector<Time> init_settled_;
-  std::vector<bool> init_;
 };
 
 }  // namespace ex9000::world

@@ -179,10 +179,8 @@ void Judge::light(bool on, Time now) {
 
 void Judge::listen(unsigned rate, LineFormat format, Time now) {
   pass(now);
-  fork(now, "listens at " + std::to_string(rate), [&](const Possible& each) {
-    return each.module().rate() == rate && each.module().format() == format ? std::vector<Possible>{each}
-                                                                            : std::vector<Possible>();
-  });
+  fork(now, "listens at " + std::to_string(rate),
+       [&](const Possible& each) { return each.listen(rate, format, now); });
 }
 
 void Judge::reply(const Bytes& bytes, Time begins) {

@@ -92,7 +92,6 @@ std::vector<Possible> Possible::power_off() const {
         next.ghosts_.push_back(other);
       }
     }
-    next.coming_up_.reset();
     next.open_.clear();
     next.bad_.clear();
     next.skipping_ = next.sending_ = next.unreadable_ = next.stores_again_ = false;
@@ -108,8 +107,8 @@ std::vector<Possible> Possible::power_off() const {
 
 void Possible::power_on(Time now) {
   module_.power(true, {now, now + reference::kComingUp});
-  coming_up_ = now;
-  reset_ = false;
+  start_ = Start::Begins;
+  reset_at_ = now;
 }
 
 std::vector<Possible> Possible::reset(unsigned reason, Time now) const {
@@ -122,6 +121,9 @@ std::vector<Possible> Possible::reset(unsigned reason, Time now) const {
 }
 
 void Possible::init(bool asserted, Time now) {
+  if (init_changes_ && init_changes_->asserted == asserted) {
+    return;
+  }
   init_changes_.reset();
   if (asserted != module_.init_asserted()) {
     init_changes_ = InitChange{asserted, now};
@@ -241,9 +243,12 @@ bool Possible::futures(Time since, Time now, std::vector<Possible>& after) const
   if (!module_.powered()) {
     return stays;
   }
-  if (coming_up_) {
-    come_up(since, now, after);
-    return stays && (hung_ || now <= *coming_up_ + reference::kComingUp);
+  if (start_ != Start::Over) {
+    stays = stays && (hung_ || now <= reset_at_ + reference::kComingUp);
+    if (start_ != Start::Driven) {
+      come_up(since, now, after);
+      return stays;
+    }
   }
   if (module_.runs_modbus() && !open_.empty()) {
     const Time limit = frame_limit();
@@ -299,40 +304,43 @@ bool Possible::futures(Time since, Time now, std::vector<Possible>& after) const
   return stays;
 }
 
-/// The module resets, and later drives its outputs.
+/// The inputs begin to count, and later the outputs are driven.
 void Possible::come_up(Time since, Time now, std::vector<Possible>& after) const {
   Possible next = *this;
-  if (reset_) {
-    next.coming_up_.reset();
-    next.free_ = next.flashes_since_ = now;
+  next.flashes_since_ = now;
+  if (start_ == Start::InputsCount) {
+    next.start_ = Start::Driven;
     next.module_.started(now);
     after.push_back(next);
     return;
   }
-  next.reset_ = true;
-  next.flashes_since_ = now;
-  std::vector<bool> inits{module_.init_asserted()};
-  if (init_changes_) {
-    inits = {false, true};
-  }
-  const auto reset = [&](bool asserted) {
-    next.module_.set_init(asserted);
-    next.module_.reset({std::max(since, *coming_up_), now}, module_.reset_reason());
-    next.module_.set_init(module_.init_asserted());
-    after.push_back(next);
-  };
-  for (const bool asserted : inits) {
-    reset(asserted);
-  }
+  next.start_ = Start::InputsCount;
+  next.module_.reset({std::max(since, reset_at_), now}, module_.reset_reason());
+  after.push_back(next);
   // A failed store leaves a memory that is no longer blank and has no good copy (wire.md D8).
-  if (memory_fails_until_ >= *coming_up_ || module_.may_have_spoilt_blank_memory()) {
+  if (memory_fails_until_ >= reset_at_ || module_.may_have_spoilt_blank_memory()) {
     next.unreadable_ = next.stores_again_ = true;
     next.module_.use_factory_settings();
     next.module_.doubt_memory();
-    for (const bool asserted : inits) {
-      reset(asserted);
+    next.module_.reset({std::max(since, reset_at_), now}, module_.reset_reason());
+    after.push_back(next);
+  }
+}
+
+std::vector<Possible> Possible::listen(unsigned rate, LineFormat format, Time now) const {
+  std::vector<Possible> after;
+  for (const bool init : {false, true}) {
+    if (start_ == Start::Driven && (init_changes_ || init == module_.init_asserted())) {
+      Possible next = *this;
+      next.start_ = Start::Over;
+      next.free_ = now;
+      next.module_.select_mode(init);
+      if (next.module_.rate() == rate && next.module_.format() == format) {
+        after.push_back(next);
+      }
     }
   }
+  return after;
 }
 
 bool Possible::first_stores() const {
@@ -400,7 +408,7 @@ void Possible::execute(Time since, Time now, std::vector<Possible>& after) const
 }
 
 bool Possible::may_be_lit(Time since, Time now) const {
-  if (!module_.powered() || coming_up_ || hung_) {
+  if (!module_.powered() || start_ != Start::Over || hung_) {
     return true;
   }
   // Two flashes every 2 s, or flashes at 2 Hz.
@@ -441,7 +449,7 @@ void Possible::replied(Time end) {
 
 bool Possible::is_like(const Possible& other) const {
   const auto state = [](const Possible& p) {
-    return std::tie(p.coming_up_, p.reset_, p.open_, p.bad_, p.last_, p.skipping_, p.overtaken_, p.sending_,
+    return std::tie(p.start_, p.reset_at_, p.open_, p.bad_, p.last_, p.skipping_, p.overtaken_, p.sending_,
                     p.hung_, p.saved_, p.unreadable_, p.stores_again_, p.ghosts_, p.memory_fails_until_);
   };
   return state(*this) == state(other) && due_.has_value() == other.due_.has_value() &&
@@ -475,7 +483,7 @@ std::string Possible::text() const {
   if (!module_.powered()) {
     return text + ", no power";
   }
-  if (coming_up_) {
+  if (start_ != Start::Over) {
     text += ", starts";
   }
   text += std::string(unreadable_ ? ", settings unreadable" : "") + (stores_again_ ? ", stores again" : "") +

@@ -49,6 +49,8 @@ class Possible {
   void memory_fails(bool fails, Time now);
   void input(unsigned channel, bool level, Time now) { module_.set_input(channel, level, now); }
   void pulse(unsigned channel, std::uint32_t count, Time now) { module_.pulse_input(channel, count, now); }
+  /// The module begins to listen, the last step of its start.
+  [[nodiscard]] std::vector<Possible> listen(unsigned rate, LineFormat format, Time now) const;
   /// `end`: the end of the first stop bit.
   [[nodiscard]] std::vector<Possible> hear(std::uint8_t byte, bool good, Time end) const;
 
@@ -64,10 +66,10 @@ class Possible {
 
   [[nodiscard]] const reference::Module& module() const { return module_; }
   reference::Module& module() { return module_; }
-  [[nodiscard]] unsigned outputs() const { return coming_up_ ? 0 : module_.outputs(); }
+  [[nodiscard]] unsigned outputs() const { return start_ < Start::Driven ? 0 : module_.outputs(); }
   /// Returns whether the LED may be dark.
   [[nodiscard]] bool may_be_dark() const {
-    return !module_.powered() || coming_up_ || module_.led_flashes() || unreadable_;
+    return !module_.powered() || start_ != Start::Over || module_.led_flashes() || unreadable_;
   }
   /// Returns whether the LED may have been lit since `since`.
   [[nodiscard]] bool may_be_lit(Time since, Time now) const;
@@ -94,8 +96,9 @@ class Possible {
   [[nodiscard]] std::vector<reference::Stored> may_be_stored() const;
 
   reference::Module module_;
-  std::optional<Time> coming_up_;  ///< the cause of the reset, until the outputs are driven
-  bool reset_ = false;             ///< while `coming_up_`: the inputs count
+  enum class Start { Begins, InputsCount, Driven, Over };
+  Start start_ = Start::Over;
+  Time reset_at_{0};  ///< the cause of the reset
   struct InitChange {
     bool asserted;
     Time when;

@@ -81,16 +81,7 @@ void Module::reset(Moment when, unsigned reason) {
 }
 
 void Module::come_up(Moment when) {
-  // wire.md 2: the module selects its mode only at reset. If INIT* is asserted then, the module uses ASCII,
-  // address 00, 9600 baud, 8N1 and no checksum.
-  init_mode_ = init_asserted_;
-  runs_modbus_ = !init_mode_ && stored_.modbus;
-  address_ = init_mode_ ? 0x00 : stored_.address;
-  baud_code_ = init_mode_ ? 0x06 : stored_.baud_code;
-  checksum_ = !init_mode_ && (stored_.format & 0x40) != 0;
   counts_rising_ = (stored_.format & 0x80) != 0;
-  rule(init_mode_ ? "reset into INIT mode" : runs_modbus_ ? "reset into Modbus" : "reset into ASCII");
-  rule(std::string("reset into ") + name_of(format()));
   outputs_ = stored_.timed_out ? stored_.safe : stored_.power_on;
   rule(stored_.timed_out ? "reset to the safe value" : "reset to the power-on value");
   end_timed_outputs("reset");
@@ -113,6 +104,17 @@ void Module::come_up(Moment when) {
     rule("reset starts the host watchdog");
     expiry_ = when + stored_.timeout * kTimeoutUnit;
   }
+}
+
+void Module::select_mode(bool init) {
+  // wire.md 2: INIT mode uses ASCII, address 00, 9600 baud, 8N1 and no checksum.
+  init_mode_ = init;
+  runs_modbus_ = !init_mode_ && stored_.modbus;
+  address_ = init_mode_ ? 0x00 : stored_.address;
+  baud_code_ = init_mode_ ? 0x06 : stored_.baud_code;
+  checksum_ = !init_mode_ && (stored_.format & 0x40) != 0;
+  rule(init_mode_ ? "reset into INIT mode" : runs_modbus_ ? "reset into Modbus" : "reset into ASCII");
+  rule(std::string("reset into ") + name_of(format()));
 }
 
 void Module::started(Time by) {

@@ -103,8 +103,10 @@ class Module {
   void power(bool on, Moment when);
   /// Resets the module. Has no effect while the supply is off. `reason`: the value of register 0x0301.
   void reset(Moment when, unsigned reason = 4);
-  /// The start is over: the host watchdog of this reset runs since then at the latest.
+  /// The outputs are driven: the host watchdog of this reset runs since then at the latest.
   void started(Time by);
+  /// The module begins to listen. `init`: whether in INIT mode, which INIT* decides.
+  void select_mode(bool init);
   void set_init(bool asserted) { init_asserted_ = asserted; }
   void set_input(unsigned channel, bool level, Time now);
   void pulse_input(unsigned channel, std::uint32_t count, Time now);
