@@ -118,6 +118,10 @@ Step Generator::next(const Plant& plant) {
   const std::size_t index =
       aim_ ? *std::exchange(aim_, {}) : random_.below(static_cast<unsigned>(plant.size()));
   const Time now = plant.now();
+  if (pulses_ != 0) {  // so many pulses that counters wrap, but not faster than an input can count them
+    --pulses_;
+    return pulses_ % 2 == 0 ? Step(Wait{milliseconds(1000)}) : Step(pulsing_);
+  }
   if (!plant.powered(index) && random_.once_in(3)) {
     return Power{index, true};
   }
@@ -161,6 +165,10 @@ Step Generator::next(const Plant& plant) {
   }
   if (target.module().row().inputs != 0 && often(kInputs, 4)) {
     const unsigned channel = random_.below(target.module().row().inputs);
+    if (random_.once_in(40)) {
+      pulses_ = 2 * (1 + random_.below(6));
+      pulsing_ = Pulse{index, channel, 20'000};
+    }
     return random_.once_in(2) ? Step(Input{index, channel, random_.once_in(2)})
                               : Step(Pulse{index, channel, 1 + random_.below(5)});
   }

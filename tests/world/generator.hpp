@@ -26,6 +26,8 @@ class Generator {
   unsigned left_out_;  ///< a mask: each run leaves out a random part
   Setup setup_;
   unsigned waits_ = 0;
+  unsigned pulses_ = 0;
+  Pulse pulsing_{};
   std::optional<std::size_t> aim_;  ///< the module that gets the next step
 };
 

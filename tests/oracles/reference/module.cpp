@@ -66,7 +66,7 @@ void Module::power(bool on, Moment when) {
   outputs_ = 0;
   expiry_.reset();
   settling_ = {};
-  timers_ = {};
+  end_timed_outputs("reset");
   if (on) {
     reset_reason_ = 1;  // power-on
     come_up(when);
@@ -84,7 +84,6 @@ void Module::come_up(Moment when) {
   counts_rising_ = (stored_.format & 0x80) != 0;
   outputs_ = stored_.timed_out ? stored_.safe : stored_.power_on;
   rule(stored_.timed_out ? "reset to the safe value" : "reset to the power-on value");
-  end_timed_outputs("reset");
   reset_status_ = true;
   counters_ = {};
   wide_counters_ = {};
@@ -254,10 +253,14 @@ Answer Module::on_frame_without_store(const Bytes& bytes, const std::vector<bool
 
 bool Module::on_receipt(const Bytes& bytes, const std::vector<bool>& bad, Moment when) {
   Module trial = *this;
-  trial.tell_rules(nullptr);
+  std::vector<std::string> rules;
+  trial.tell_rules(&rules);
   trial.received_ = Counts();
   trial.on_frame(bytes, bad, when);
   const Counts& seen = trial.received_;
+  if (seen.server_messages == 0) {  // it is not executed later
+    std::for_each(rules.begin(), rules.end(), [this](const std::string& each) { rule(each); });
+  }
   counts_.bus_messages += seen.bus_messages;
   counts_.server_messages += seen.server_messages;
   counts_.crc_errors += seen.crc_errors;
