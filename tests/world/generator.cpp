@@ -55,7 +55,7 @@ Member Generator::member() {
   };
   const bool extended = setup_.extensions == reference::Extensions::Present;
   const reference::ModelRow* row = any_row();
-  while (row->extension && !extended) {
+  while ((row->extension && !extended) || (!row->both_protocols && random_.once_in(2))) {
     row = any_row();
   }
   Member member{row, random_.once_in(4), {}};
@@ -69,7 +69,7 @@ Member Generator::member() {
   stored.baud_code =
       reference::baud_code_with(random_.once_in(2) ? 0x06 : random_.between(0x03, 0x0A), module, random_);
   stored.format = random_.one_of({0x00U, 0x40U, 0x80U, 0xC0U});
-  stored.modbus = member.row->both_protocols && random_.once_in(2);
+  stored.modbus = member.row->both_protocols && !random_.once_in(3);
   const unsigned all = (1U << member.row->outputs) - 1;
   stored.power_on = random_.below(0x10000) & all;
   stored.safe = random_.below(0x10000) & all;
@@ -81,8 +81,9 @@ Member Generator::member() {
   }
   stored.restarted_by_requests = random_.once_in(4) ? 1 : 0;
   stored.delay = random_.once_in(4) ? random_.below(31) : 0;
+  const bool filters = random_.once_in(2);
   for (unsigned channel = 0; channel < member.row->inputs; ++channel) {
-    stored.filters[channel] = random_.once_in(4) ? random_.below(100) : 0;
+    stored.filters[channel] = filters && random_.once_in(2) ? random_.below(200) : 0;
   }
   stored.inversion = random_.once_in(4) ? random_.below(0x10000) & ((1U << member.row->inputs) - 1) : 0;
   return member;
@@ -90,6 +91,9 @@ Member Generator::member() {
 
 Bytes Generator::request(const Possible& target) {
   const reference::Module& module = target.module();
+  if (module.settling_input() && module.has_extensions() && random_.once_in(4)) {
+    return reference::filter_request(module, *module.settling_input(), random_);
+  }
   const bool mistaken = module.row().both_protocols && random_.once_in(50);
   Bytes bytes = module.runs_modbus() != mistaken ? reference::modbus_request(module, random_)
                                                  : reference::dcon_request(module, random_);
@@ -141,7 +145,7 @@ Step Generator::next(const Plant& plant) {
   if (often(kReset, target.module().powered() && target.module().waits_for_reset() ? 10 : 60)) {
     return Reset{index};
   }
-  if (often(kHang, 400)) {
+  if (often(kHang, 200)) {
     return Hang{index};
   }
   if (often(kInit, target.module().init_asserted() ? 20 : 40)) {
@@ -164,11 +168,15 @@ Step Generator::next(const Plant& plant) {
     return Noise{rates};
   }
   if (target.module().row().inputs != 0 && often(kInputs, 4)) {
-    const unsigned channel = random_.below(target.module().row().inputs);
+    unsigned channel = random_.below(target.module().row().inputs);
+    if (target.module().settling_input() && random_.once_in(2)) {
+      channel = *target.module().settling_input();
+    }
     if (random_.once_in(40)) {
       pulses_ = 2 * (1 + random_.below(6));
       pulsing_ = Pulse{index, channel, 20'000};
     }
+    aim_ = index;  // a request often arrives while the time of a filter runs
     return random_.once_in(2) ? Step(Input{index, channel, random_.once_in(2)})
                               : Step(Pulse{index, channel, 1 + random_.below(5)});
   }

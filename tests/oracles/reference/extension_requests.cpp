@@ -2,8 +2,11 @@
 #include <optional>
 #include <vector>
 
+#include "sim/app/play/modbus_frame.hpp"
+#include "tests/oracles/reference/dcon_check.hpp"
 #include "tests/oracles/reference/extension_registers.hpp"
 #include "tests/oracles/reference/generator.hpp"
+#include "tests/oracles/reference/hexadecimal.hpp"
 
 namespace ex9000::reference {
 
@@ -42,8 +45,8 @@ unsigned extension_address(const Module& module, Random& random) {
       return random.one_of({0x023FU, 0x0240U, 0x024FU, 0x0250U, 0x0253U, 0x025FU, 0x0260U, 0x027FU, 0x0280U,
                             0x0290U, 0x02FFU, 0x0307U, 0x0310U, 0x0311U});
     case 1:
-      return random.one_of({0x0302U, 0x0304U, 0x0304U, 0x0305U});
     case 2:
+      return random.one_of({0x0301U, 0x0301U, 0x0302U, 0x0304U, 0x0304U, 0x0305U, 0x0306U, 0x0250U});
     case 3:
     case 4:
     case 5:
@@ -73,6 +76,20 @@ unsigned extension_content(const Module& module, unsigned address, Random& rando
     default:
       return random.below(3);
   }
+}
+
+Bytes filter_request(const Module& module, unsigned channel, Random& random) {
+  const unsigned address = 0x0240 + channel;
+  const unsigned time = extension_content(module, address, random);
+  if (module.runs_modbus()) {
+    Bytes frame{static_cast<std::uint8_t>(module.address()), 0x06};
+    append_word(frame, address);
+    append_word(frame, time);
+    return with_crc(frame);
+  }
+  const std::string command = "~" + hex(module.address(), 2) + "X" + hex(address, 4) + hex(time, 4);
+  const std::string line = command + (module.checksum() ? check_of(command) : "") + "\r";
+  return Bytes(line.begin(), line.end());
 }
 
 }  // namespace ex9000::reference

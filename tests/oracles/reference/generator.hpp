@@ -27,4 +27,7 @@ unsigned extension_content(const Module& module, unsigned address, Random& rando
 /// Returns a frame, in most cases with a correct CRC.
 Bytes modbus_request(const Module& module, Random& random);
 
+/// A request that sets the filter time of an input.
+Bytes filter_request(const Module& module, unsigned channel, Random& random);
+
 }  // namespace ex9000::reference

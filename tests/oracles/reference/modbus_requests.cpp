@@ -34,6 +34,10 @@ unsigned coil_address(const Module& module, Random& random) {
 }
 
 unsigned coil_quantity(const Module& module, unsigned address, Random& random) {
+  const bool single = (address >= 0x0100 && address < 0x0110) || address == 0x08CA;
+  if (single && !random.once_in(4)) {
+    return 1;
+  }
   switch (random.below(8)) {
     case 0:
       return random.one_of({0U, 1U, 1968U, 1969U, 2000U, 2001U, 0xFFFFU});
@@ -91,8 +95,8 @@ unsigned register_content(unsigned address, const Module& module, Random& random
   if (address >= 0x0240 && address < 0x0310) {
     return extension_content(module, address, random);
   }
-  if (address == 0x01E8 && random.once_in(4)) {
-    return 0;
+  if (address == 0x01E8 && random.once_in(3)) {
+    return random.one_of({0U, 0U, 256U});
   }
   if (module.has_extensions() && address == 0x01E5 && random.once_in(8)) {
     return random.one_of({0x40U, 0x42U, 0x4BU, 0x80U, 0x82U, 0x8BU, 0xC0U, 0xC2U, 0xCBU, 0x0143U, 0x8006U});
