@@ -25,11 +25,14 @@ enum What : unsigned {
   kEarly,
   kOthers,
   kInit,
+  kDelays,
+  kTick,
+  kCount,
 };
 
 }  // namespace
 
-Generator::Generator(std::uint64_t seed) : random_(seed), left_out_(random_.below(1U << 12U)) {
+Generator::Generator(std::uint64_t seed) : random_(seed), left_out_(random_.below(1U << kCount)) {
   if (random_.once_in(8)) {
     setup_.extensions = reference::Extensions::Absent;
   }
@@ -146,7 +149,13 @@ Step Generator::next(const Plant& plant) {
     return Reset{index};
   }
   if (often(kHang, 200)) {
-    return Hang{index};
+    return Hang{index, Time(0)};
+  }
+  if (often(kDelays, 60)) {
+    return Hang{index, microseconds(random_.below(random_.once_in(4) ? 1'000'000 : 30'000))};
+  }
+  if (often(kTick, 400)) {
+    return TickStops{index};
   }
   if (often(kInit, target.module().init_asserted() ? 20 : 40)) {
     return Init{index, !target.module().init_asserted()};

@@ -135,8 +135,12 @@ void Judge::reset(unsigned reason, Time now) {
   outputs_ = 0;
 }
 
-void Judge::hang(Time now) {
-  each(now, [&](Possible& each) { each.hang(now); });
+void Judge::hang(Time time, Time now) {
+  each(now, [&](Possible& each) { each.hang(time, now); });
+}
+
+void Judge::tick_stops(Time now) {
+  each(now, [&](Possible& each) { each.tick_stops(now); });
 }
 
 void Judge::init(bool asserted, Time now) {

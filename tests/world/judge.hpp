@@ -28,7 +28,8 @@ class Judge {
   void store(const reference::Stored& stored);
   void power(bool on, Time now);
   void reset(unsigned reason, Time now);
-  void hang(Time now);
+  void hang(Time time, Time now);
+  void tick_stops(Time now);
   void init(bool asserted, Time now);
   void memory_fails(bool fails, Time now);
   void input(unsigned channel, bool level, Time now);

@@ -241,9 +241,15 @@ void Plant::play(const Step& step) {
       of(pulse.module).pulse_input(pulse.channel, pulse.count);
     }
     void operator()(const Hang& hang) const {
-      if (of(hang.module).powered()) {
-        judged(hang.module).hang(at);
-        of(hang.module).hang();
+      if (of(hang.module).powered() && !judged(hang.module).likely().hangs(at)) {
+        judged(hang.module).hang(hang.time, at);
+        of(hang.module).hang(hang.time == Time(0) ? sim::kNever : hang.time);
+      }
+    }
+    void operator()(const TickStops& tick) const {
+      if (of(tick.module).powered()) {
+        judged(tick.module).tick_stops(at);
+        of(tick.module).stop_tick();
       }
     }
     void operator()(const MemoryFails& fails) const {

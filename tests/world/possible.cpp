@@ -24,10 +24,12 @@ constexpr milliseconds kStores{200};
 /// wire.md D15
 constexpr milliseconds kRetry{1000};
 constexpr milliseconds kModuleWatchdog{1600};
+constexpr unsigned kResetByWatchdog = 2;
 /// wire.md D13
 constexpr milliseconds kInitSettled{10};
 constexpr milliseconds kInitTaken{20};
 constexpr std::size_t kLongestFrame = 256;
+constexpr unsigned kChannels = 16;
 
 /// Calls `run` for each combination of choices that `module` has in it.
 template <class Run>
@@ -43,6 +45,18 @@ void for_each_choice(const reference::Module& module, Run run) {
       choices.pop_back();
     }
   } while (!choices.empty());
+}
+
+/// Returns whether the event of `channel` may be the first one of all channels.
+template <class Moments>
+bool may_be_next(unsigned channel, Moments moment_of) {
+  const std::optional<Moment> mine = moment_of(channel);
+  bool may = mine.has_value();
+  for (unsigned other = 0; may && other < kChannels; ++other) {
+    const std::optional<Moment> its = moment_of(other);
+    may = !its || !(its->latest < mine->earliest || (*its == *mine && other < channel));
+  }
+  return may;
 }
 
 }  // namespace
@@ -96,6 +110,8 @@ std::vector<Possible> Possible::power_off() const {
     next.bad_.clear();
     next.skipping_ = next.sending_ = next.unreadable_ = next.stores_again_ = false;
     next.hung_.reset();
+    next.tick_stopped_.reset();
+    next.hangs_until_ = Time::min();
     next.overtaken_.reset();
     next.waiting_.clear();
     next.due_.reset();
@@ -112,6 +128,9 @@ void Possible::power_on(Time now) {
 }
 
 std::vector<Possible> Possible::reset(unsigned reason, Time now) const {
+  if (reason == kResetByWatchdog && !hung_ && !tick_stopped_) {
+    return {};
+  }
   std::vector<Possible> after = power_off();
   for (Possible& next : after) {
     next.power_on(now);
@@ -119,6 +138,16 @@ std::vector<Possible> Possible::reset(unsigned reason, Time now) const {
   }
   return after;
 }
+
+void Possible::hang(Time time, Time now) {
+  if (time == Time(0)) {
+    hung_ = now;
+  } else {
+    hangs_until_ = now + time;
+  }
+}
+
+void Possible::tick_stops(Time now) { tick_stopped_ = now; }
 
 void Possible::init(bool asserted, Time now) {
   if (init_changes_ && init_changes_->asserted == asserted) {
@@ -175,10 +204,14 @@ std::vector<Possible> Possible::frame_ends(Moment judged) const {
     return {next};
   }
   std::vector<Possible> after;
-  // wire.md 8: while a command is executed, at least one more frame is kept.
-  if (waiting_.size() + (due_ || sending_ ? 1 : 0) >= 2) {
+  // wire.md 8: while a command is executed, at least one more frame is kept; no module has room for three.
+  const std::size_t kept = waiting_.size() + (due_ || sending_ || hangs(judged.earliest) ? 1 : 0);
+  if (kept >= 2) {
     after.push_back(next);
     after.back().module_.lose_frame();
+    if (kept == 3) {
+      return after;
+    }
   }
   next.waiting_.push_back(frame);
   after.push_back(next);
@@ -227,15 +260,16 @@ std::vector<Possible> Possible::hear(std::uint8_t byte, bool good, Time end) con
 bool Possible::futures(Time since, Time now, std::vector<Possible>& after) const {
   bool stays = true;
   const auto happens = [&](Time earliest, Time latest, auto event) {
-    if (earliest <= now) {
+    if (earliest <= now && now >= hangs_until_) {
       Possible next = *this;
       event(next);
       after.push_back(next);
-      stays = stays && now <= latest;
+      stays = stays && (now <= latest || now <= hangs_until_ + kLate);
     }
   };
   if (init_changes_) {
-    happens(init_changes_->when + kInitSettled, init_changes_->when + kInitTaken, [](Possible& next) {
+    const Time taken = std::max(init_changes_->when, hangs_until_) + kInitTaken;
+    happens(init_changes_->when + kInitSettled, tick_stopped_ ? kNever : taken, [](Possible& next) {
       next.module_.set_init(next.init_changes_->asserted);
       next.init_changes_.reset();
     });
@@ -244,7 +278,7 @@ bool Possible::futures(Time since, Time now, std::vector<Possible>& after) const
     return stays;
   }
   if (start_ != Start::Over) {
-    stays = stays && (hung_ || now <= reset_at_ + reference::kComingUp);
+    stays = stays && (hung_ || now <= std::max(reset_at_, hangs_until_) + reference::kComingUp);
     if (start_ != Start::Driven) {
       come_up(since, now, after);
       return stays;
@@ -262,6 +296,10 @@ bool Possible::futures(Time since, Time now, std::vector<Possible>& after) const
   if (hung_) {
     return stays && now <= *hung_ + kModuleWatchdog;
   }
+  stays = stays && (!tick_stopped_ || now <= std::max(*tick_stopped_, hangs_until_) + kModuleWatchdog);
+  if (now < hangs_until_) {
+    return stays;
+  }
   if (module_.expiry()) {
     happens(module_.expiry()->earliest, module_.expiry()->latest + kLate, [&](Possible& next) {
       next.module_.expire();
@@ -275,7 +313,7 @@ bool Possible::futures(Time since, Time now, std::vector<Possible>& after) const
     });
   }
   if (timeout_unsaved_) {
-    const Time works = std::max(timeout_unsaved_->latest, memory_fails_until_);
+    const Time works = std::max({timeout_unsaved_->latest, memory_fails_until_, hangs_until_});
     const Time retry = memory_fails_until_ > timeout_unsaved_->earliest ? Time(kRetry) : Time(0);
     happens(timeout_unsaved_->earliest, works == kNever ? kNever : works + retry + 2 * kStores,
             [](Possible& next) {
@@ -284,18 +322,20 @@ bool Possible::futures(Time since, Time now, std::vector<Possible>& after) const
               next.timeout_unsaved_.reset();
             });
   }
-  for (unsigned channel = 0; channel < 16; ++channel) {
-    if (const auto& ends = module_.end_of_output(channel)) {
-      happens(ends->earliest, ends->latest + kLate,
+  for (unsigned channel = 0; channel < kChannels; ++channel) {
+    if (may_be_next(channel, [this](unsigned each) { return module_.end_of_output(each); })) {
+      const Moment ends = *module_.end_of_output(channel);
+      happens(ends.earliest, ends.latest + kLate,
               [=](Possible& next) { next.module_.end_timed_output(channel); });
     }
-    if (const auto& settles = module_.settling(channel)) {
-      happens(settles->earliest, settles->latest + kLate,
+    if (may_be_next(channel, [this](unsigned each) { return module_.settling(each); })) {
+      const Moment settles = *module_.settling(channel);
+      happens(settles.earliest, settles.latest + kLate,
               [=](Possible& next) { next.module_.settle_input(channel); });
     }
   }
   if (due_) {
-    return stays && now <= due_->begins.latest;
+    return stays && now <= std::max(due_->begins.latest, hangs_until_ + kReplies);
   }
   if (!waiting_.empty() && !sending_) {
     execute(since, now, after);
@@ -309,6 +349,9 @@ void Possible::come_up(Time since, Time now, std::vector<Possible>& after) const
   Possible next = *this;
   next.flashes_since_ = now;
   if (start_ == Start::InputsCount) {
+    if (now < hangs_until_) {
+      return;
+    }
     next.start_ = Start::Driven;
     next.module_.started(now);
     after.push_back(next);
@@ -355,8 +398,9 @@ bool Possible::first_stores() const {
 /// When the reply to the first frame must have begun.
 Time Possible::first_by(bool stores) const {
   const Time limit = stores ? Time(kStores) : Time(kReplies);
-  return std::max({waiting_[0].judged.latest, free_, waiting_[0].last + module_.reply_delay()}) + limit +
-         (timeout_unsaved_ ? Time(kStores) : Time(0));
+  return std::max(
+             {waiting_[0].judged.latest, free_, hangs_until_, waiting_[0].last + module_.reply_delay()}) +
+         limit + (timeout_unsaved_ ? Time(kStores) : Time(0));
 }
 
 void Possible::execute(Time since, Time now, std::vector<Possible>& after) const {
@@ -408,18 +452,20 @@ void Possible::execute(Time since, Time now, std::vector<Possible>& after) const
 }
 
 bool Possible::may_be_lit(Time since, Time now) const {
-  if (!module_.powered() || start_ != Start::Over || hung_) {
+  if (!module_.powered() || start_ != Start::Over || hangs(now) || tick_stopped_) {
     return true;
   }
   // Two flashes every 2 s, or flashes at 2 Hz.
   const Time longest = module_.led_flashes() ? Time(milliseconds(300)) : Time(milliseconds(2100));
-  return !(module_.led_flashes() || unreadable_) || now - std::max(since, flashes_since_) <= longest;
+  return !(module_.led_flashes() || unreadable_) ||
+         now - std::max({since, flashes_since_, hangs_until_}) <= longest;
 }
 
 // --- replies ---
 
 std::vector<Possible> Possible::reply(const Bytes& bytes, Time begins) const {
-  if (!due_ || due_->bytes != bytes || begins < due_->begins.earliest || begins > due_->begins.latest) {
+  if (!due_ || due_->bytes != bytes || begins < due_->begins.earliest ||
+      begins > std::max(due_->begins.latest, hangs_until_ + kReplies)) {
     return {};
   }
   Possible next = *this;
@@ -450,7 +496,8 @@ void Possible::replied(Time end) {
 bool Possible::is_like(const Possible& other) const {
   const auto state = [](const Possible& p) {
     return std::tie(p.start_, p.reset_at_, p.open_, p.bad_, p.last_, p.skipping_, p.overtaken_, p.sending_,
-                    p.hung_, p.saved_, p.unreadable_, p.stores_again_, p.ghosts_, p.memory_fails_until_);
+                    p.hung_, p.tick_stopped_, p.hangs_until_, p.saved_, p.unreadable_, p.stores_again_,
+                    p.ghosts_, p.memory_fails_until_);
   };
   return state(*this) == state(other) && due_.has_value() == other.due_.has_value() &&
          (!due_ || due_->bytes == other.due_->bytes) &&

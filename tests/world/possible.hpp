@@ -44,7 +44,9 @@ class Possible {
   [[nodiscard]] std::vector<Possible> power_off() const;
   void power_on(Time now);
   [[nodiscard]] std::vector<Possible> reset(unsigned reason, Time now) const;
-  void hang(Time now) { hung_ = now; }
+  /// `time` 0: until a reset.
+  void hang(Time time, Time now);
+  void tick_stops(Time now);
   void init(bool asserted, Time now);
   void memory_fails(bool fails, Time now);
   void input(unsigned channel, bool level, Time now) { module_.set_input(channel, level, now); }
@@ -67,6 +69,8 @@ class Possible {
   [[nodiscard]] const reference::Module& module() const { return module_; }
   reference::Module& module() { return module_; }
   [[nodiscard]] unsigned outputs() const { return start_ < Start::Driven ? 0 : module_.outputs(); }
+  /// The main loop does nothing.
+  [[nodiscard]] bool hangs(Time now) const { return hung_ || now < hangs_until_; }
   /// Returns whether the LED may be dark.
   [[nodiscard]] bool may_be_dark() const {
     return !module_.powered() || start_ != Start::Over || module_.led_flashes() || unreadable_;
@@ -114,8 +118,10 @@ class Possible {
   std::optional<unsigned> overtaken_;
   std::optional<Due> due_;
   bool sending_ = false;
-  std::optional<Time> hung_;  ///< since when
-  Time free_{0};              ///< by then the module has nothing else to do
+  std::optional<Time> hung_;          ///< since when
+  std::optional<Time> tick_stopped_;  ///< since when
+  Time hangs_until_ = Time::min();    ///< by then, the main loop runs again
+  Time free_{0};                      ///< by then the module has nothing else to do
   reference::Stored saved_;
   bool unreadable_ = false;                ///< the module could not read its settings
   bool stores_again_ = false;              ///< a reset might not load the settings in force (wire.md 8)

@@ -35,7 +35,10 @@ struct Text {
     return number(pulse.module) + " pulse " + std::to_string(pulse.channel) + " x" +
            std::to_string(pulse.count);
   }
-  std::string operator()(const Hang& hang) const { return number(hang.module) + " hang"; }
+  std::string operator()(const Hang& hang) const {
+    return number(hang.module) + " hang for " + std::to_string(hang.time.count()) + " ns";
+  }
+  std::string operator()(const TickStops& tick) const { return number(tick.module) + " tick stops"; }
   std::string operator()(const MemoryFails& fails) const {
     return number(fails.module) + " memory fails" + on_off(fails.on);
   }

@@ -44,7 +44,12 @@ struct Pulse {
   unsigned channel;
   std::uint32_t count;
 };
+/// The main loop does nothing.
 struct Hang {
+  std::size_t module;
+  Time time;  ///< 0: until a reset
+};
+struct TickStops {
   std::size_t module;
 };
 struct MemoryFails {
@@ -60,7 +65,8 @@ struct Noise {
   sim::NoiseRates rates;
 };
 
-using Step = std::variant<Send, Wait, Power, Reset, Init, Input, Pulse, Hang, MemoryFails, SpoilReply, Noise>;
+using Step = std::variant<Send, Wait, Power, Reset, Init, Input, Pulse, Hang, TickStops, MemoryFails,
+                          SpoilReply, Noise>;
 
 std::string text_of(const Step& step);
 

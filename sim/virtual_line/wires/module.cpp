@@ -89,7 +89,7 @@ void SimulatedModule::restart(ResetReason reason) {
 }
 
 void SimulatedModule::start(ResetReason reason) {
-  hung_ = false;
+  hangs_until_ = VirtualTime(0);
   in_dcon_frame_ = false;
   stores_ = 0;
   mcu_.emplace(*this);
@@ -168,6 +168,11 @@ void SimulatedModule::end_reply_delays(std::size_t fault) {
   settle();
 }
 
+void SimulatedModule::hang(VirtualTime time) {
+  hangs_until_ = time == kNever ? kNever : clock_.virtual_now() + time;
+  settle();
+}
+
 void SimulatedModule::stop_tick() {
   mcu_->tick.stop();
   settle();
@@ -200,7 +205,10 @@ void SimulatedModule::settle() {
   if (mcu_) {
     const VirtualTime sends = std::min(wire_.next(), mcu_->line.next());
     const VirtualTime stores = memory_.next();
-    const VirtualTime wakes = std::min(mcu_->wake_timer.next(), mcu_->tick.next());
+    VirtualTime wakes = std::min(mcu_->wake_timer.next(), mcu_->tick.next());
+    if (hangs_until_ != VirtualTime(0)) {
+      wakes = std::min(wakes, hangs_until_);
+    }
     next_without_silence_ = std::min(std::min(sends, stores), std::min(wakes, mcu_->watchdog.next()));
     wait();
   } else {
@@ -224,7 +232,11 @@ void SimulatedModule::run() {
   run_memory();
   end_silence();
   run_timers();
-  if (mcu_->device.has_work()) {
+  const bool resumes = hangs_until_ != VirtualTime(0) && hangs_until_ <= clock_.virtual_now();
+  if (resumes) {
+    hangs_until_ = VirtualTime(0);
+  }
+  if (resumes || mcu_->device.has_work()) {
     turn();
     say_stores();
   }
@@ -327,7 +339,7 @@ void SimulatedModule::work() {
 
 /// Runs the main loop until it has no work, unless `hang` has stopped the main loop. Takes no virtual time.
 void SimulatedModule::turn() {
-  if (hung_) {
+  if (hangs_until_ != VirtualTime(0)) {
     return;
   }
   while (mcu_->device.turn() || mcu_->device.has_work()) {

@@ -60,8 +60,8 @@ class SimulatedModule final : public Station {
   /// Applies `count` pulses to an input channel, counted from 0. Each pulse changes the level and changes it
   /// back. The pulses take no virtual time.
   void pulse_input(unsigned channel, std::uint32_t count);
-  /// Stops the main loop until the next reset.
-  void hang() { hung_ = true; }
+  /// Stops the main loop for `time`, by default until the next reset. Interrupts go on.
+  void hang(VirtualTime time = kNever);
   /// Makes the driver stay enabled longer after each reply. `by`: the additional time. Resets and power
   /// cycles do not change this setting.
   void release_driver_late(VirtualTime by);
@@ -190,7 +190,7 @@ class SimulatedModule final : public Station {
   VirtualTime driver_late_by_{0};
   bool switched_on_ = false;
   bool supply_interrupted_ = false;
-  bool hung_ = false;
+  VirtualTime hangs_until_{0};  ///< 0: the main loop runs
   bool in_dcon_frame_ = false;  ///< perhaps: since the last CR or reply, a byte has arrived
   std::uint64_t watchdog_resets_ = 0;
   SerialMode listens_in_;  ///< the mode that the last call of `WireEnd::listen` has set
