@@ -11,11 +11,14 @@
 // The following bytes are the content of the memory from address 0. Memory after these bytes is erased.
 #include <algorithm>
 #include <array>
-#include <cstring>
-#include <initializer_list>
 #include <string>
+#include <vector>
 
-#include "tests/fuzz/session.hpp"
+#include "sim/app/play/modbus_frame.hpp"
+#include "sim/notation/module_notation.hpp"
+#include "sim/virtual_line/line/line.hpp"
+#include "tests/fuzz/require.hpp"
+#include "tests/oracles/reference/dcon_check.hpp"
 #include "tests/support/stored_settings.hpp"
 
 namespace ex9000::fuzz {
@@ -42,8 +45,11 @@ Expected expected_of(const Model& model, const std::uint8_t* memory, bool answer
 class Trial {
  public:
   Trial(const Model& model, std::uint8_t flags, const std::uint8_t* contents, std::size_t size)
-      : model_(model), session_(model, false) {
-    auto& memory = session_.around().memory;
+      : model_(model),
+        line_({sim::factory_fresh(model)}, sim::kPaced,
+              [this](std::uint8_t byte, ByteStatus) { heard_.push_back(byte); }),
+        module_(line_.module(0)) {
+    std::vector<std::uint8_t>& memory = module_.memory().contents();
     std::copy_n(contents, std::min(size, memory.size()), memory.begin());
     constexpr std::array<std::uint8_t, kStoredPlaces.size()> kSealed{0x10, 0x20};
     for (std::size_t place = 0; place < kStoredPlaces.size(); ++place) {
@@ -51,46 +57,52 @@ class Trial {
         StoredCopy::seal(model, memory.data(), kStoredPlaces[place]);
       }
     }
-    session_.around().init_asserted = (flags & 4U) != 0;
-    session_.around().memory_answers = (flags & 8U) == 0;
+    module_.set_init((flags & 4U) != 0);
+    fails_ = (flags & 8U) != 0;
+    module_.memory().fail(fails_);
   }
 
   void run() {
-    const Expected expected =
-        expected_of(model_, session_.around().memory.data(), session_.around().memory_answers);
-    session_.reset();
+    const Expected expected = expected_of(model_, module_.memory().contents().data(), !fails_);
     come_up_with(expected.settings);
-    require(session_.module().module().settings_unreadable() == expected.unreadable,
+    require(module_.module().settings_unreadable() == expected.unreadable,
             "unreadable settings are distinguished from an erased memory");
-    session_.around().memory_answers = true;
+    module_.memory().fail(false);
     tells(expected.settings);
     store_something();
     wait_for_leftovers();
     const Settings before = state().settings;
-    session_.reset();
     come_up_with(before);
     tells(before);
   }
 
  private:
-  const State& state() { return session_.module().module().state(); }
+  [[nodiscard]] const State& state() const { return module_.module().state(); }
+
+  void wait(std::chrono::milliseconds time) { line_.wires().run_until(line_.clock().virtual_now() + time); }
 
   /// Waits until no store is pending. The host watchdog can expire at any time, and the module then stores
   /// that the watchdog is disabled and that the timeout status is set. If the settings change during the
   /// wait, waits again.
   void wait_for_leftovers() {
-    constexpr Microseconds kLongest = 1500 * kMillisecond;
     Settings before;
     do {
       before = state().settings;
-      session_.wait(kLongest);
+      wait(std::chrono::milliseconds(1500));
     } while (state().settings != before);
   }
 
   void come_up_with(const Settings& settings) {
-    const bool init = session_.around().init_asserted;
-    const InForce& in_force = session_.in_force();
-    // The host watchdog cannot have expired yet: its shortest timeout is 0.1 s, and `reset` returns earlier.
+    module_.power(false);
+    module_.power(true);
+    const auto starts = line_.clock().virtual_now();
+    while (!module_.module().listening()) {  // wire.md D13
+      require(line_.clock().virtual_now() < starts + std::chrono::milliseconds(100),
+              "a module listens within 100 ms of a reset");
+      wait(std::chrono::milliseconds(1));
+    }
+    const bool init = module_.init_asserted();
+    const InForce& in_force = state().in_force;
     require(state().settings == settings,
             "the module uses the newest valid copy, or else the factory settings");
     require(state().outputs == (settings.timeout_status ? settings.safe_value : settings.power_on_value),
@@ -102,52 +114,64 @@ class Trial {
             "the stored settings or, in INIT mode, the settings of INIT mode are in force");
   }
 
-  Bytes ask(std::string_view command) {
-    const std::uint8_t address = session_.in_force().address;
-    text_.assign(command);
-    text_[1] = static_cast<char>(upper_hex(address / 16U));
-    text_[2] = static_cast<char>(upper_hex(address));
-    return session_.ask({reinterpret_cast<const std::uint8_t*>(text_.data()), text_.size()});
+  [[nodiscard]] bool speaks_modbus() const { return state().in_force.protocol == Protocol::ModbusRtu; }
+
+  /// Sends the request with its check, and returns the reply without it.
+  std::vector<std::uint8_t> ask(std::vector<std::uint8_t> request) {
+    heard_.clear();
+    line_.master().set_mode(module_.mode());
+    request = with_crc(std::move(request));
+    line_.master().send(request.data(), request.size());
+    wait(std::chrono::milliseconds(400));
+    require(heard_.size() > 4, "the module replies");
+    return {heard_.begin(), heard_.end() - 2};
   }
-  Bytes ask(std::initializer_list<std::uint8_t> request) {
-    return session_.ask({request.begin(), request.size()});
+  std::string ask(const std::string& delimiter, const std::string& body) {
+    heard_.clear();
+    line_.master().set_mode(module_.mode());
+    std::string text = delimiter + reference::hex(state().in_force.address, 2) + body;
+    const std::size_t check = state().in_force.checksum ? 2 : 0;
+    text += (check != 0 ? reference::check_of(text) : "") + "\r";
+    line_.master().send(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
+    wait(std::chrono::milliseconds(800));
+    require(heard_.size() >= 4 + check, "the module replies");
+    return {heard_.begin(), heard_.end() - 1 - static_cast<std::ptrdiff_t>(check)};
   }
 
   void tells(const Settings& settings) {
-    if (session_.speaks_modbus()) {
-      const Bytes reply = ask({settings.address, 0x03, 0x01, 0xE4, 0x00, 0x02});
-      require(reply.size == 7 && reply.word(3) == settings.address && reply.word(5) == settings.baud_code,
+    if (speaks_modbus()) {
+      const auto reply = ask({settings.address, 0x03, 0x01, 0xE4, 0x00, 0x02});
+      require(reply.size() == 7 && reply[4] == settings.address && reply[6] == settings.baud_code,
               "the module returns the stored address and baud rate");
       return;
     }
-    const Bytes configuration = ask("$..2");
-    require(configuration.size == 9 && are_digits_of(configuration.data + 1, settings.address) &&
-                are_digits_of(configuration.data + 5, settings.baud_code) &&
-                are_digits_of(configuration.data + 7, settings.format),
+    require(ask("$", "2") == "!" + reference::hex(settings.address, 2) + "40" +
+                                 reference::hex(settings.baud_code, 2) + reference::hex(settings.format, 2),
             "the module returns the stored configuration");
-    const Bytes name = ask("$..M").from(3);
-    require(Name(name) == settings.name, "the module returns the stored name");
+    const Bytes name = settings.name.bytes();
+    require(ask("$", "M").substr(3) == std::string(name.data, name.data + name.size),
+            "the module returns the stored name");
   }
 
   void store_something() {
-    if (session_.speaks_modbus()) {
+    if (speaks_modbus()) {
       const auto next = static_cast<std::uint8_t>(state().settings.address % 247 + 1);
-      const std::uint8_t own = session_.in_force().address;
-      require(ask({own, 0x06, 0x01, 0xE4, 0x00, next}).size == 6 && state().settings.address == next,
+      const std::uint8_t own = state().in_force.address;
+      require(ask({own, 0x06, 0x01, 0xE4, 0x00, next}).size() == 6 && state().settings.address == next,
               "an address is stored");
       return;
     }
     const bool is_pump = state().settings.name == Name(std::string_view("pump"));
-    const std::string_view name = is_pump ? "fan" : "pump";
-    require(ask("~..O" + std::string(name)).size == 3 && state().settings.name == Name(name),
+    const std::string name = is_pump ? "fan" : "pump";
+    require(ask("~", "O" + name).size() == 3 && state().settings.name == Name(std::string_view(name)),
             "a name is stored");
   }
-  Bytes ask(const std::string& command) { return ask(std::string_view(command)); }
-  Bytes ask(const char* command) { return ask(std::string_view(command)); }
 
   const Model& model_;
-  Session session_;
-  std::string text_;
+  std::vector<std::uint8_t> heard_;
+  sim::Line line_;
+  sim::SimulatedModule& module_;
+  bool fails_ = false;
 };
 
 }  // namespace

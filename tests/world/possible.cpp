@@ -352,6 +352,14 @@ void Possible::come_up(Time since, Time now, std::vector<Possible>& after) const
     if (now < hangs_until_) {
       return;
     }
+    // A failed store leaves a memory that is no longer blank and has no good copy (wire.md D8).
+    const bool may_be_unreadable = memory_fails_until_ >= reset_at_ || module_.may_have_spoilt_blank_memory();
+    if (unreadable_ && !may_be_unreadable) {
+      return;
+    }
+    if (unreadable_) {
+      next.module_.doubt_memory();
+    }
     next.start_ = Start::Driven;
     next.module_.started(now);
     after.push_back(next);
@@ -360,14 +368,10 @@ void Possible::come_up(Time since, Time now, std::vector<Possible>& after) const
   next.start_ = Start::InputsCount;
   next.module_.reset({std::max(since, reset_at_), now}, module_.reset_reason());
   after.push_back(next);
-  // A failed store leaves a memory that is no longer blank and has no good copy (wire.md D8).
-  if (memory_fails_until_ >= reset_at_ || module_.may_have_spoilt_blank_memory()) {
-    next.unreadable_ = next.stores_again_ = true;
-    next.module_.use_factory_settings();
-    next.module_.doubt_memory();
-    next.module_.reset({std::max(since, reset_at_), now}, module_.reset_reason());
-    after.push_back(next);
-  }
+  next.unreadable_ = next.stores_again_ = true;
+  next.module_.use_factory_settings();
+  next.module_.reset({std::max(since, reset_at_), now}, module_.reset_reason());
+  after.push_back(next);
 }
 
 std::vector<Possible> Possible::listen(unsigned rate, LineFormat format, Time now) const {
