@@ -3,8 +3,6 @@
 #include <iterator>
 #include <utility>
 
-#include "tests/oracles/reference/generator.hpp"
-
 namespace ex9000::world {
 
 namespace {
@@ -32,10 +30,8 @@ enum What : unsigned {
 
 }  // namespace
 
-Generator::Generator(std::uint64_t seed) : random_(seed), left_out_(random_.below(1U << kCount)) {
-  if (random_.once_in(8)) {
-    setup_.extensions = reference::Extensions::Absent;
-  }
+Generator::Generator(std::uint64_t seed, const Requests& requests)
+    : requests_(requests), random_(seed), left_out_(random_.below(1U << kCount)) {
   const unsigned count = random_.once_in(3) ? 1 + random_.below(12) : 1 + random_.below(3);
   for (unsigned i = 0; i < count; ++i) {
     setup_.members.push_back(member());
@@ -56,21 +52,22 @@ Member Generator::member() {
   const auto any_row = [this] {
     return &reference::kModelRows[random_.below(static_cast<unsigned>(std::size(reference::kModelRows)))];
   };
-  const bool extended = setup_.extensions == reference::Extensions::Present;
   const reference::ModelRow* row = any_row();
-  while ((row->extension && !extended) || (!row->both_protocols && random_.once_in(2))) {
+  if (!row->both_protocols && random_.once_in(2)) {
     row = any_row();
   }
   Member member{row, random_.once_in(4), {}};
-  const reference::Module module(*member.row, setup_.extensions);
+  const reference::Module module(*member.row);
   member.stored = module.stored();
   if (member.blank) {
     return member;
   }
   reference::Stored& stored = member.stored;
   stored.address = random_.once_in(6) ? random_.between(1, 247) : random_.between(1, 12);
-  stored.baud_code =
-      reference::baud_code_with(random_.once_in(2) ? 0x06 : random_.between(0x03, 0x0A), module, random_);
+  stored.baud_code = random_.once_in(2) ? 0x06 : random_.between(0x03, 0x0A);
+  if (random_.once_in(2)) {
+    stored.baud_code |= random_.below(4) << 6U;
+  }
   stored.format = random_.one_of({0x00U, 0x40U, 0x80U, 0xC0U});
   stored.modbus = member.row->both_protocols && !random_.once_in(3);
   const unsigned all = (1U << member.row->outputs) - 1;
@@ -79,9 +76,6 @@ Member Generator::member() {
   stored.enabled = random_.once_in(2);
   stored.timeout = random_.once_in(2) ? 1 + random_.below(10) : 1 + random_.below(255);
   stored.timed_out = random_.once_in(8);
-  if (!extended) {
-    return member;
-  }
   stored.restarted_by_requests = random_.once_in(4) ? 1 : 0;
   stored.delay = random_.once_in(4) ? random_.below(31) : 0;
   const bool filters = random_.once_in(2);
@@ -94,12 +88,10 @@ Member Generator::member() {
 
 Bytes Generator::request(const Possible& target) {
   const reference::Module& module = target.module();
-  if (module.settling_input() && module.has_extensions() && random_.once_in(4)) {
-    return reference::filter_request(module, *module.settling_input(), random_);
+  if (module.settling_input() && random_.once_in(4)) {
+    return requests_.set_filter(module, *module.settling_input(), random_);
   }
-  const bool mistaken = module.row().both_protocols && random_.once_in(50);
-  Bytes bytes = module.runs_modbus() != mistaken ? reference::modbus_request(module, random_)
-                                                 : reference::dcon_request(module, random_);
+  Bytes bytes = requests_.next(module, random_);
   if (often(kDamaged, 12) && !bytes.empty()) {
     switch (random_.below(4)) {
       case 0:

@@ -6,12 +6,13 @@
 
 #include "tests/oracles/reference/random.hpp"
 #include "tests/world/plant.hpp"
+#include "tests/world/requests.hpp"
 
 namespace ex9000::world {
 
 class Generator {
  public:
-  explicit Generator(std::uint64_t seed);
+  Generator(std::uint64_t seed, const Requests& requests);
 
   [[nodiscard]] const Setup& setup() const { return setup_; }
   /// The next step, given what the plant is in.
@@ -22,6 +23,7 @@ class Generator {
   [[nodiscard]] bool often(unsigned what, unsigned times);
   Bytes request(const Possible& target);
 
+  const Requests& requests_;
   reference::Random random_;
   unsigned left_out_;  ///< a mask: each run leaves out a random part
   Setup setup_;

@@ -33,11 +33,8 @@ void add(std::vector<Possible>& all, Possible&& one) {
 
 }  // namespace
 
-Judge::Judge(const reference::ModelRow& row, reference::Extensions extensions,
-             std::vector<std::string>& rules, Object object)
-    : all_{Possible(row, extensions)}, object_(std::move(object)) {
-  all_[0].module().tell_rules(&rules);
-}
+Judge::Judge(const reference::ModelRow& row, Object object)
+    : all_{Possible(row)}, object_(std::move(object)) {}
 
 /// Lets time pass: adds what may have happened by now, and removes what contradicts the outputs.
 void Judge::pass(Time now) {
@@ -65,8 +62,7 @@ void Judge::pass(Time now) {
       add(seen, std::move(each));
     }
   }
-  if (seen.size() > 4 * kMost ||
-      std::any_of(found.begin(), found.end(), [](const Possible& each) { return each.needed_extension(); })) {
+  if (seen.size() > 4 * kMost) {
     gave_up_ = true;
     return;
   }

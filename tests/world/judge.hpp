@@ -17,9 +17,7 @@ class Judge {
  public:
   using Object = std::function<void(const std::string& objection)>;
 
-  /// Adds the rules of the reference that may have been applied to `rules`.
-  Judge(const reference::ModelRow& row, reference::Extensions extensions, std::vector<std::string>& rules,
-        Object object);
+  Judge(const reference::ModelRow& row, Object object);
   Judge(const Judge&) = delete;
   Judge& operator=(const Judge&) = delete;
 

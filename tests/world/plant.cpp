@@ -46,8 +46,7 @@ struct Plant::Subject final : sim::Station, sim::WireObserver {
         clock(its_line.clock()),
         end(its_line.wires().attach(*this)),
         station(its_index + 1),
-        judge(*setup.members[its_index].row, setup.extensions, its_plant.rules_,
-              [this](const std::string& text) { object(text); }) {
+        judge(*setup.members[its_index].row, [this](const std::string& text) { object(text); }) {
     const Member& member = setup.members[its_index];
     if (!member.blank) {
       judge.store(member.stored);

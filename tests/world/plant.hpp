@@ -30,8 +30,6 @@ class Plant {
   [[nodiscard]] Time now() const { return line_->clock().virtual_now(); }
   [[nodiscard]] bool gave_up() const { return gave_up_; }
   [[nodiscard]] std::size_t widest() const { return widest_; }
-  /// The rules of the reference that may have been applied since the last call.
-  std::vector<std::string> take_rules() { return std::exchange(rules_, {}); }
   [[nodiscard]] std::uint64_t requests() const { return requests_; }
   [[nodiscard]] std::uint64_t replies() const { return replies_; }
 
@@ -46,7 +44,6 @@ class Plant {
   std::unique_ptr<sim::Noise> noise_;
   std::vector<std::unique_ptr<sim::Master>> others_;
   std::string objection_;
-  std::vector<std::string> rules_;
   bool gave_up_ = false;
   std::size_t widest_ = 0;
   std::uint64_t requests_ = 0;

@@ -80,7 +80,6 @@ std::vector<reference::Stored> Possible::may_be_stored() const {
   }
   if (first_stores()) {
     reference::Module trial = module_;
-    trial.tell_rules(nullptr);
     trial.on_frame(waiting_[0].bytes, waiting_[0].bad, {}, overtaken_);
     all.push_back(trial.stored());
   }
@@ -200,21 +199,31 @@ std::vector<Possible> Possible::frame_ends(Moment judged) const {
   if (concerns && host_ok) {
     next.module_.on_frame(frame.bytes, frame.bad, judged);
   }
-  if (!concerns || host_ok || hung_) {
-    return {next};
+  const bool executed = concerns && !host_ok && !hung_;
+  // wire.md 8: while a command is executed, at least one more frame is kept; no module has room for three.
+  const std::size_t others = waiting_.size() + (due_ || sending_ || hangs(judged.earliest) ? 1 : 0);
+  const bool may_be_lost = executed && others >= 2;
+  std::vector<Possible> received{next};
+  // A lost frame need not restart the host watchdog. A main loop that hung may see the end of the timeout
+  // later than a frame that came too late.
+  if (module_.expiry() && next.module_.expiry() &&
+      (may_be_lost || module_.expiry()->earliest <= judged.latest)) {
+    received.push_back(next);
+    received.back().module_.keep_expiry(*module_.expiry());
   }
   std::vector<Possible> after;
-  // wire.md 8: while a command is executed, at least one more frame is kept; no module has room for three.
-  const std::size_t kept = waiting_.size() + (due_ || sending_ || hangs(judged.earliest) ? 1 : 0);
-  if (kept >= 2) {
-    after.push_back(next);
-    after.back().module_.lose_frame();
-    if (kept == 3) {
-      return after;
+  for (Possible& each : received) {
+    if (may_be_lost) {
+      after.push_back(each);
+      after.back().module_.lose_frame();
+    }
+    if (executed && others < 3) {
+      each.waiting_.push_back(frame);
+    }
+    if (!executed || others < 3) {
+      after.push_back(each);
     }
   }
-  next.waiting_.push_back(frame);
-  after.push_back(next);
   return after;
 }
 
@@ -395,7 +404,6 @@ bool Possible::first_stores() const {
     return false;
   }
   reference::Module trial = module_;
-  trial.tell_rules(nullptr);
   return trial.on_frame(waiting_[0].bytes, waiting_[0].bad, {}, overtaken_).stores;
 }
 
@@ -415,7 +423,9 @@ void Possible::execute(Time since, Time now, std::vector<Possible>& after) const
   const Moment when{std::max(first.judged.earliest, std::min(since, now)), now};
   const Time gap =
       module_.runs_modbus() ? Time(0) : half_bits(2 * reference::character_bits(module_.format()));
-  const auto done = [&](const reference::Module& module, const Bytes& reply, bool stores, bool saves) {
+  const auto done = [&](const reference::Module& module, const reference::Answer& answer, bool stores,
+                        bool saves) {
+    const Bytes& reply = answer.reply;
     Possible next = *this;
     next.module_ = module;
     next.overtaken_.reset();
@@ -431,24 +441,25 @@ void Possible::execute(Time since, Time now, std::vector<Possible>& after) const
       const Time earliest = module_.runs_modbus() ? first.judged.earliest : first.last + gap - kExact;
       next.due_ =
           Due{reply,
+              answer.refusal,
               {std::max(earliest, first.last + module_.reply_delay()) - microseconds(2), first_by(stores)}};
     }
     after.push_back(next);
   };
   for_each_choice(module_, [&](reference::Module& module) {
     const reference::Answer answer = module.on_frame(first.bytes, first.bad, when, overtaken_);
-    done(module, answer.reply, answer.stores, answer.stores);
+    done(module, answer, answer.stores, answer.stores);
     const bool stores_again = (stores_again_ || timeout_unsaved_) && answer.sets && !answer.stores;
     if (stores_again) {
       reference::Module again = module;
       again.store_again();
-      done(again, answer.reply, true, true);
+      done(again, answer, true, true);
     }
     if ((answer.stores || stores_again) && memory_fails_until_ >= now) {
       reference::Module refusing = module_;
-      const Bytes reply = refusing.on_frame_without_store(first.bytes, first.bad, when).reply;
+      const reference::Answer refused = refusing.on_frame_without_store(first.bytes, first.bad, when);
       refusing.doubt_memory();
-      done(refusing, reply, true, false);
+      done(refusing, refused, true, false);
       after.back().ghosts_ = {module.stored()};
       after.back().stores_again_ = true;
     }
@@ -562,7 +573,8 @@ std::string Possible::text() const {
       text += reference::hex(byte, 2);
     }
     text += " at " + std::to_string(due_->begins.earliest.count()) + " to " +
-            std::to_string(due_->begins.latest.count());
+            std::to_string(due_->begins.latest.count()) +
+            (due_->refusal.empty() ? "" : " (" + due_->refusal + ")");
   }
   return text + (sending_ ? ", sends" : "") + (hung_ ? ", hangs" : "") + (skipping_ ? ", skips" : "");
 }

@@ -26,6 +26,7 @@ struct Waiting {
 /// A reply that the module has to send.
 struct Due {
   Bytes bytes;
+  std::string refusal;  ///< why the request is refused, for people
   Moment begins{};
 };
 
@@ -34,8 +35,7 @@ struct Due {
 /// with a window; `futures` returns the states after the events whose windows are open.
 class Possible {
  public:
-  Possible(const reference::ModelRow& row, reference::Extensions extensions)
-      : module_(row, extensions), saved_(module_.stored()) {}
+  explicit Possible(const reference::ModelRow& row) : module_(row), saved_(module_.stored()) {}
 
   // --- what happens to the module; before each, call `futures` with the same time ---
 
@@ -77,8 +77,6 @@ class Possible {
   }
   /// Returns whether the LED may have been lit since `since`.
   [[nodiscard]] bool may_be_lit(Time since, Time now) const;
-  /// The module has had to execute a request that only extensions know, but the reference has none.
-  [[nodiscard]] bool needed_extension() const { return module_.needed_extension(); }
   /// For people.
   [[nodiscard]] std::string text() const;
 

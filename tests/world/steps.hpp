@@ -81,7 +81,6 @@ struct Setup {
   std::vector<Member> members;
   Time begins{0};  ///< the line's time at first
   std::size_t masters = 1;
-  reference::Extensions extensions = reference::Extensions::Present;
 };
 
 std::string text_of(const Setup& setup);

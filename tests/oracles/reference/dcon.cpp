@@ -3,7 +3,6 @@
 
 #include "tests/oracles/reference/dcon_check.hpp"
 #include "tests/oracles/reference/dcon_refusal.hpp"
-#include "tests/oracles/reference/extension_forms.hpp"
 #include "tests/oracles/reference/hexadecimal.hpp"
 #include "tests/oracles/reference/module.hpp"
 
@@ -30,35 +29,29 @@ std::string Module::first_second(unsigned outputs, unsigned inputs) const {
 /// this request.
 std::optional<std::string> Module::dcon_frame(std::string frame, bool spoiled) {
   if (spoiled) {
-    rule("ASCII frame spoiled");
     count(&Counts::crc_errors);
     return std::nullopt;
   }
   // wire.md 3: a frame has at most 32 characters before CR.
   if (frame.size() > 32) {
-    rule("ASCII frame too long");
     count(&Counts::crc_errors);
     return std::nullopt;
   }
   // CHK follows all other characters. If it is wrong or missing, there is no reply.
   if (checksum_) {
     if (frame.size() < 3) {
-      rule("ASCII frame too short");
       count(&Counts::crc_errors);
       return std::nullopt;
     }
     const std::string check = frame.substr(frame.size() - 2);
     frame.resize(frame.size() - 2);
     if (check != check_of(frame)) {
-      rule("CHK wrong or missing");
       count(&Counts::crc_errors);
       return std::nullopt;
     }
-    rule("CHK right");
   }
   count(&Counts::bus_messages);
   if (frame.size() < 3) {
-    rule("ASCII frame too short");
     return std::nullopt;
   }
   const std::string address = frame.substr(1, 2);
@@ -67,18 +60,13 @@ std::optional<std::string> Module::dcon_frame(std::string frame, bool spoiled) {
     count(&Counts::server_messages);
     counts_.no_response += 1;
     if (frame == "#**") {
-      rule("#**");
       take_sample();
     } else if (frame == "~**") {
-      rule(expiry_ ? "~** restarts the host watchdog" : "~**");
       restart_host_watchdog();
-    } else {
-      rule("unknown broadcast");
     }
     return std::nullopt;
   }
   if (address != aa()) {
-    rule("ASCII frame for another address");
     counts_.no_response += 1;  // the address was right when the frame was complete: wire.md D16
     return std::nullopt;
   }
@@ -88,18 +76,14 @@ std::optional<std::string> Module::dcon_frame(std::string frame, bool spoiled) {
   try {
     reply = dcon_command(frame[0], frame.substr(3));
   } catch (const Refused& refused) {
-    rule(refused.rule);
     counts_.exceptions += 1;
+    refusal_ = refused.reason;
     reply = refused.bare ? "?" : "?" + aa();
   }
   return reply + (checksum_ ? check_of(reply) : "") + "\r";
 }
 
 std::string Module::dcon_command(char delimiter, const std::string& body) {
-  if (!has_extensions() && is_extension_command(delimiter, body)) {
-    needed_extension_ = true;
-    throw Refused{""};
-  }
   switch (delimiter) {
     case '%':
       return set_configuration(body);
@@ -144,8 +128,6 @@ std::string Module::set_configuration(const std::string& body) {
                       ? "%AANNTTCCFF without permission for another line format"
                       : "%AANNTTCCFF without permission"};
   }
-  rule(type == 0x24 ? "%AANNTTCCFF with TT 24" : "%AANNTTCCFF");
-  rule(std::string("%AANNTTCCFF ") + name_of(format_of(baud_code)));
   set().address = address;
   set().baud_code = baud_code;
   set().format = format;
@@ -168,7 +150,6 @@ std::string Module::hash_command(const std::string& body) {
   if (!one_character || !channel || *channel >= row_->inputs) {
     throw Refused{"#AAN refused"};
   }
-  rule("#AAN");
   std::string digits = std::to_string(counters_[*channel]);
   digits.insert(0, 5 - digits.size(), '0');
   return "!" + aa() + digits;
@@ -216,44 +197,36 @@ std::string Module::set_group_or_single(const std::string& body) {
   }
   // wire.md 6: the module checks format and range first, then the timeout status.
   if (refuses_outputs()) {
-    rule("#AABBDD blocked by the timeout status");
     return "!";
   }
-  rule(reached);
   drive(channels, wanted);
   return ">";
 }
 
 std::string Module::dollar_command(const std::string& body) {
   if (body == "2") {
-    rule(init_mode_ ? "$002 in INIT mode" : "$AA2");
     return "!" + hex(stored_.address, 2) + "40" + hex(stored_.baud_code, 2) + hex(stored_.format, 2);
   }
   if (body == "4") {
     if (!sample_) {
       throw Refused{"$AA4 without a sample"};
     }
-    rule(sample_->read ? "$AA4 again" : "$AA4");
     const std::string first_time = sample_->read ? "0" : "1";
     sample_->read = true;
     return "!" + first_time + sample_->first_second + "00";
   }
   if (body == "5") {
-    rule(reset_status_ ? "$AA5" : "$AA5 again");
     const std::string status = reset_status_ ? "1" : "0";
     reset_status_ = false;
     return "!" + aa() + status;
   }
   if (body == "6") {
-    rule("$AA6");
     return "!" + first_second(outputs_, levels_) + "00";
   }
   if (body == "F") {
-    rule("$AAF");
     return "!" + aa() + "D01.00";
   }
   if (body == "M") {
-    rule("$AAM");
     return "!" + aa() + stored_.name;
   }
   if (!body.empty() && body[0] == 'C') {
@@ -261,7 +234,6 @@ std::string Module::dollar_command(const std::string& body) {
       throw Refused{"$AAC on a model without inputs"};
     }
     if (body == "C") {
-      rule("$AAC");
       clear_latches();
       return "!" + aa();
     }
@@ -269,7 +241,6 @@ std::string Module::dollar_command(const std::string& body) {
     if (body.size() != 2 || !channel || *channel >= row_->inputs) {
       throw Refused{"$AACN refused"};
     }
-    rule("$AACN");
     clear_counter(*channel);
     return "!" + aa();
   }
@@ -280,7 +251,6 @@ std::string Module::dollar_command(const std::string& body) {
     if (body != "L0" && body != "L1") {
       throw Refused{"$AALS refused"};
     }
-    rule("$AALS " + body.substr(1));
     return "!" + first_second(0, body == "L1" ? latch_high_ : latch_low_) + "00";
   }
   if (!body.empty() && body[0] == 'P') {
@@ -288,7 +258,6 @@ std::string Module::dollar_command(const std::string& body) {
       throw Refused{"$AAP on a model without Modbus"};
     }
     if (body == "P") {
-      rule(stored_.modbus ? "$AAP Modbus" : "$AAP ASCII");
       return "!" + aa() + (stored_.modbus ? "11" : "10");
     }
     return set_protocol(body.substr(1));
@@ -307,14 +276,12 @@ std::string Module::set_protocol(const std::string& body) {
   if (body == "1" && (stored_.address < 0x01 || stored_.address > 0xF7)) {
     throw Refused{"$AAPN 1 with a stored address outside 01-F7"};
   }
-  rule("$AAPN " + body);
   set().modbus = body == "1";
   return "!" + aa();
 }
 
 std::string Module::at_command(const std::string& body) {
   if (body.empty()) {
-    rule("@AA");
     return ">" + first_second(outputs_, levels_);
   }
   if (row_->outputs == 0) {
@@ -330,10 +297,8 @@ std::string Module::at_command(const std::string& body) {
     throw Refused{"@AA(Data) beyond the last channel", true};
   }
   if (refuses_outputs()) {
-    rule("@AA(Data) blocked by the timeout status");
     return "!";
   }
-  rule("@AA(Data) of " + std::to_string(body.size()));
   drive(all_outputs(), *data);
   return ">";
 }
@@ -343,16 +308,13 @@ std::string Module::tilde_command(const std::string& body) {
     // wire.md E7
     const bool on = row_->status_80_84;
     const std::string status = stored_.timed_out ? (on ? "84" : "04") : (on && stored_.enabled ? "80" : "00");
-    rule("~AA0 " + status);
     return "!" + aa() + status;
   }
   if (body == "1") {
-    rule(stored_.timed_out ? "~AA1 clears" : "~AA1");
     clear_timeout_status();
     return "!" + aa();
   }
   if (body == "2") {
-    rule("~AA2");
     return "!" + aa() + (stored_.enabled ? "1" : "0") + hex(stored_.timeout, 2);
   }
   const char command = body.empty() ? ' ' : body[0];
@@ -368,13 +330,9 @@ std::string Module::tilde_command(const std::string& body) {
     if (argument != "P" && argument != "S") {
       throw Refused{name + " refused"};
     }
-    rule(name + " " + argument);
     unsigned Stored::*const value = argument == "P" ? &Stored::power_on : &Stored::safe;
     if (command == '5') {
       // wire.md 6: `~AA5V` works while the timeout status is set, because it drives nothing.
-      if (timed_outputs() != 0) {
-        rule("~AA5V stores a timed output as off");
-      }
       set().*value = overtaken_.value_or(lasting_outputs());
       return "!" + aa();
     }
@@ -391,7 +349,6 @@ std::string Module::tilde_command(const std::string& body) {
     if (!characters) {
       throw Refused{"~AAO(Data) with a character outside 0x20-0x7E"};
     }
-    rule("~AAO(Data) of " + std::to_string(argument.size()));
     set().name = argument;
     return "!" + aa();
   }
@@ -414,10 +371,6 @@ std::string Module::set_host_watchdog(const std::string& body) {
     throw Refused{"~AA3EVV VV out of range"};
   }
   const bool enable = body[0] == '1';
-  rule(!enable             ? "~AA3EVV disables"
-       : stored_.timed_out ? "~AA3EVV enables while the status is set"
-       : stored_.enabled   ? "~AA3EVV restarts"
-                           : "~AA3EVV enables");
   set().enabled = enable;
   set().timeout = *timeout;
   restart_host_watchdog();

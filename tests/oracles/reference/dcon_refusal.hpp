@@ -9,7 +9,7 @@ namespace ex9000::reference {
 /// arguments have a wrong format or range, or because the configuration permission is missing. Nothing
 /// changes, and the reply is `?AA` or, with `bare`, `?`.
 struct Refused {
-  std::string rule;
+  std::string reason;
   bool bare = false;
 };
 

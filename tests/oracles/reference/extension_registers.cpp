@@ -61,27 +61,19 @@ unsigned Module::extension_value(unsigned address) {
     case Extension::Version:
       return 0x0100;  // D01.00
     case Extension::ResetReason:
-      rule(std::string("0x0301 reads ") + std::to_string(reset_reason_));
       return reset_reason_;
     case Extension::Uptime:
       return seconds_since_reset();
     case Extension::Timeouts:
-      rule(timeouts_ != 0 ? "0x0304 reads timeouts" : "0x0304 reads 0");
       return timeouts_;
     case Extension::Stores:
-      rule(stores_ != 0 ? "0x0305 reads stores" : "0x0305 reads 0");
       return stores_;
     case Extension::SettingsSource:
       if (doubts_memory_) {
         return choice(5);
       }
-      rule(read_blank_memory_ ? "0x0306 reads 4" : "0x0306 reads 0");
       return read_blank_memory_ ? 4 : 0;
     case Extension::Tallies:
-      rule((runs_modbus_ ? "Modbus tally 0x" : "ASCII tally 0x") + hex(address, 4));
-      if (address == 0x030E && counts_.bad_bytes != 0) {
-        rule("0x030E reads bad bytes");
-      }
       return tally(address - row.first);
     default:
       return 0;  // not in the table
@@ -120,7 +112,6 @@ void Module::set_extension(unsigned address, unsigned value) {
 /// Executes `~AARD` and `~AARDVV`.
 std::string Module::delay_command(const std::string& body) {
   if (body == "D") {
-    rule("~AARD");
     return "!" + aa() + hex(stored_.delay, 2);
   }
   const std::optional<unsigned> delay = number(body.size() == 3 ? body.substr(1) : "");
@@ -130,7 +121,6 @@ std::string Module::delay_command(const std::string& body) {
   if (*delay > kLongestDelay) {
     throw Refused{"~AARDVV out of range"};
   }
-  rule("~AARDVV");
   set().delay = *delay;
   return "!" + aa();
 }
@@ -151,7 +141,6 @@ std::string Module::extension_command(const std::string& body) {
     if (row.wide && (address - row.first) % 2 != 0) {
       throw Refused{"~AAXRRRR low word"};
     }
-    rule(std::string("~AAXRRRR ") + row.name);
     return "!" + aa() + hex(extension_value(address), row.wide ? 8 : 4);
   }
   if (!row.written) {
@@ -162,10 +151,8 @@ std::string Module::extension_command(const std::string& body) {
     throw Refused{std::string("~AAXRRRRVVVV ") + row.name + " out of range"};
   }
   if (row.row == Extension::TimedOutputs && refuses_outputs()) {
-    rule("~AAXRRRRVVVV blocked by the timeout status");
     return "!";
   }
-  rule(std::string("~AAXRRRRVVVV ") + row.name);
   set_extension(address, value);
   return "!" + aa();
 }

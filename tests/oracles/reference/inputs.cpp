@@ -17,7 +17,6 @@ void Module::set_input(unsigned channel, bool level, Time now) {
   if (stored_.filters[channel] == 0) {
     take_level(channel);
   } else if (settling_[channel]) {
-    rule("level too short for the input filter");
     settling_[channel].reset();
   } else {
     const Time settled = now + std::chrono::milliseconds(stored_.filters[channel]);
@@ -35,11 +34,8 @@ void Module::pulse_input(unsigned channel, std::uint32_t count, Time now) {
     edge(channel, true, count);
     edge(channel, false, count);
   } else if (settling_[channel]) {
-    rule("pulse restarts the time of the input filter");
     const Time settled = now + std::chrono::milliseconds(stored_.filters[channel]);
     settling_[channel] = Moment{settled, settled};
-  } else {
-    rule("pulse too short for the input filter");
   }
 }
 
@@ -54,8 +50,6 @@ void Module::take_level(unsigned channel) {
 void Module::set_filter(unsigned channel, unsigned milliseconds) {
   if (settling_[channel] && milliseconds != stored_.filters[channel]) {
     const Time settled = last_edges_[channel] + std::chrono::milliseconds(milliseconds);
-    rule(settled <= now_.earliest ? "new time of the input filter is over"
-                                  : "new time of the input filter runs");
     settling_[channel] = Moment{std::max(now_.earliest, settled), std::max(now_.latest, settled)};
   }
   set().filters[channel] = milliseconds;
@@ -63,7 +57,6 @@ void Module::set_filter(unsigned channel, unsigned milliseconds) {
 
 /// Sets the inversion. The levels before and after the filter change together, so there is no edge.
 void Module::set_inversion(unsigned inversion) {
-  rule(inversion == stored_.inversion ? "inversion stays" : "inversion changes");
   levels_ ^= inversion ^ stored_.inversion;
   set().inversion = inversion;
 }
@@ -72,9 +65,6 @@ void Module::edge(unsigned channel, bool rising, std::uint32_t count) {
   (rising ? latch_high_ : latch_low_) |= 1U << channel;
   if (rising == counts_rising_) {
     const std::uint64_t edges = std::uint64_t{counters_[channel]} + count;
-    if (edges >= counter_modulus()) {
-      rule(runs_modbus_ ? "counter wraps after 65535" : "counter wraps after 99999");
-    }
     counters_[channel] = static_cast<std::uint32_t>(edges % counter_modulus());
     wide_counters_[channel] += count;
   }

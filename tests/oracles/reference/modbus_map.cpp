@@ -92,7 +92,6 @@ bool register_listed(const ModelRow& model, unsigned address, unsigned function)
   }
 }
 
-/// Returns the name of a listed register as the rules in rules.cpp use it.
 std::string register_name(const ModelRow& model, unsigned address) {
   const ExtensionRow extension = extension_row(model, address);
   return address < 16                       ? "counter"
@@ -148,11 +147,9 @@ Bytes Module::read_bits(const Bytes& frame) {
   const unsigned quantity = word(frame, 4);
   quantity_must_be(quantity, 2000, function);
   if (function == 0x01) {
-    rule(std::string("FC01 ") + listed_coils(*row_, first, quantity, function).name);
+    listed_coils(*row_, first, quantity, function);
   } else if (first + quantity > row_->inputs) {
     throw Exception{0x02, "FC02 02"};
-  } else {
-    rule("FC02");
   }
   Bytes reply = {frame[0], frame[1], static_cast<std::uint8_t>((quantity + 7) / 8)};
   reply.resize(3 + (quantity + 7) / 8);
@@ -192,7 +189,6 @@ Bytes Module::read_registers(const Bytes& frame) {
   all_registers_listed(*row_, first, quantity, function);
   Bytes reply = {frame[0], frame[1], static_cast<std::uint8_t>(2 * quantity)};
   for (unsigned i = 0; i < quantity; ++i) {
-    rule(function_name(function) + " " + register_name(*row_, first + i));
     append_word(reply, register_value(first + i));
   }
   return reply;
@@ -294,10 +290,8 @@ Bytes Module::write_coil(const Bytes& frame) {
   judge_coils(address, values, 0x05);
   // A broadcast never changes the protocol or the counting edge.
   if (frame[0] == 0 && (row.row == Row::Protocol || row.row == Row::CountingEdge)) {
-    rule("broadcast ignored: configuration");
     return {};
   }
-  rule(std::string("FC05 ") + row.name);
   set_coils(address, values);
   return frame;
 }
@@ -314,13 +308,12 @@ Bytes Module::write_coils(const Bytes& frame) {
     throw Exception{0x03, "FC0F 03 byte count"};
   }
   length_must_be(frame, 7 + bytes);
-  const CoilRow row = listed_coils(*row_, first, quantity, 0x0F);
+  listed_coils(*row_, first, quantity, 0x0F);
   std::vector<bool> values;
   for (unsigned i = 0; i < quantity; ++i) {
     values.push_back((frame[7 + i / 8] >> i % 8 & 1U) != 0);
   }
   judge_coils(first, values, 0x0F);
-  rule(std::string("FC0F ") + row.name);
   set_coils(first, values);
   return Bytes(frame.begin(), frame.begin() + 6);
 }
@@ -367,7 +360,6 @@ void Module::set_registers(unsigned first, const std::vector<unsigned>& values) 
         set().address = values[i];  // takes effect at the next reset
         break;
       case 0x01E5:
-        rule(std::string("register 0x01E5 ") + name_of(format_of(values[i])));
         set().baud_code = values[i];  // takes effect at the next reset
         break;
       case 0x01E8:
@@ -385,15 +377,12 @@ void Module::set_registers(unsigned first, const std::vector<unsigned>& values) 
 /// same for all registers that one request can write.
 bool Module::broadcast_ignored(unsigned first) {
   if (first == 0x01E4 || first == 0x01E5) {
-    rule("broadcast ignored: configuration");
     return true;
   }
   if (extension_row(*row_, first).row == Extension::TimedOutputs) {
-    rule("broadcast to timed outputs");
     return false;
   }
   if (extension_row(*row_, first).row != Extension::None) {
-    rule("broadcast ignored: extension register");
     return true;
   }
   return false;
@@ -407,7 +396,6 @@ Bytes Module::write_register(const Bytes& frame) {
   if (frame[0] == 0 && broadcast_ignored(address)) {
     return {};
   }
-  rule("FC06 " + register_name(*row_, address) + (address == 0x01E8 && stored_.enabled ? " restarts" : ""));
   set_registers(address, {word(frame, 4)});
   return frame;
 }
@@ -431,17 +419,6 @@ Bytes Module::write_registers(const Bytes& frame) {
   judge_registers(first, values);
   if (frame[0] == 0 && broadcast_ignored(first)) {
     return {};
-  }
-  if (first == 0x01E4 && quantity == 2) {
-    rule("FC10 0x01E4 and 0x01E5");
-  } else {
-    for (unsigned i = 0; i < quantity; ++i) {
-      rule("FC10 " + register_name(*row_, first + i) +
-           (first == 0x01E8 && stored_.enabled ? " restarts" : ""));
-    }
-    if (register_name(*row_, first) != register_name(*row_, first + quantity - 1)) {
-      rule("FC10 several rows of extension registers");
-    }
   }
   set_registers(first, values);
   return Bytes(frame.begin(), frame.begin() + 6);

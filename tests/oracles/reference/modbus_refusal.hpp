@@ -13,7 +13,7 @@ namespace ex9000::reference {
 /// code with bit 7 set, and the exception code. A broadcast gets no reply.
 struct Exception {
   std::uint8_t code;
-  std::string rule;
+  std::string reason;
 };
 
 inline unsigned word(const Bytes& frame, std::size_t at) { return frame[at] * 256U + frame[at + 1]; }
@@ -27,7 +27,6 @@ inline void append_text(Bytes& frame, const std::string& text) {
   frame.insert(frame.end(), text.begin(), text.end());
 }
 
-/// Returns the function's name as the rules in rules.cpp use it.
 inline std::string function_name(unsigned function) { return "FC" + hex(function, 2); }
 
 /// Throws Exception 03 unless the frame, without its CRC, has this length.

@@ -17,7 +17,6 @@ Bytes Module::diagnostics(const Bytes& frame) {
     if (frame.size() < 6 || frame.size() % 2 != 0) {
       throw Exception{0x03, "FC08 03 length"};
     }
-    rule(name);
     return frame;
   }
   unsigned count = 0;
@@ -49,7 +48,6 @@ Bytes Module::diagnostics(const Bytes& frame) {
   if (word(frame, 4) != 0x0000) {
     throw Exception{0x03, "FC08 03 data"};
   }
-  rule(name);
   if (sub_function == 0x0A) {
     counts_ = {};
     return frame;
@@ -61,7 +59,6 @@ Bytes Module::diagnostics(const Bytes& frame) {
 
 Bytes Module::server_id(const Bytes& frame) {
   length_must_be(frame, 2);
-  rule("FC11");
   Bytes reply = {frame[0], 0x11, static_cast<std::uint8_t>(3 + stored_.name.size())};
   append_word(reply, row_->code);
   reply.push_back(0xFF);
@@ -97,7 +94,6 @@ Bytes Module::device_identification(const Bytes& frame) {
     // pointed out".
     object = 0x00;
   }
-  rule("FC2B code " + hex(asked, 2));
   Bytes reply = {frame[0], 0x2B, 0x0E, static_cast<std::uint8_t>(asked), 0x82, 0x00, 0x00, 0x00};
   for (; object <= last; ++object) {
     if (present(object)) {
@@ -116,7 +112,6 @@ Bytes Module::function_46(const Bytes& frame) {
   }
   if (frame[2] == 0x00) {
     length_must_be(frame, 3);
-    rule("FC46 00");
     Bytes reply = {frame[0], 0x46, 0x00, 0x00};
     append_word(reply, row_->code);
     reply.push_back(0x00);
@@ -132,7 +127,6 @@ Bytes Module::function_46(const Bytes& frame) {
   if (frame[4] != 0 || frame[5] != 0 || frame[6] != 0) {
     throw Exception{0x03, "FC46 03 reserved"};
   }
-  rule("FC46 04");
   set().address = frame[3];
   return {frame[0], 0x46, 0x04, 0x00, 0x00, 0x00, 0x00};
 }

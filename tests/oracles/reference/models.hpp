@@ -6,14 +6,6 @@
 
 namespace ex9000::reference {
 
-/// Whether a module has the extensions of wire.md 12.
-enum class Extensions {
-  Present,
-  /// The module has none of these extensions. The reply to a request that requires an extension is left open,
-  /// because the firmware always has the extensions.
-  Absent,
-};
-
 /// One row of the table of models.
 struct ModelRow {
   const char* designation;

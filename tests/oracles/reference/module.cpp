@@ -45,9 +45,7 @@ const char* name_of(LineFormat format) {
   }
 }
 
-Module::Module(const ModelRow& row, Extensions extensions) : row_(&row), extensions_(extensions) {
-  use_factory_settings();
-}
+Module::Module(const ModelRow& row) : row_(&row) { use_factory_settings(); }
 
 unsigned Module::rate() const {
   // wire.md 4: the baud rates of CC.
@@ -66,7 +64,7 @@ void Module::power(bool on, Moment when) {
   outputs_ = 0;
   expiry_.reset();
   settling_ = {};
-  end_timed_outputs("reset");
+  timers_ = {};
   if (on) {
     reset_reason_ = 1;  // power-on
     come_up(when);
@@ -83,7 +81,6 @@ void Module::reset(Moment when, unsigned reason) {
 void Module::come_up(Moment when) {
   counts_rising_ = (stored_.format & 0x80) != 0;
   outputs_ = stored_.timed_out ? stored_.safe : stored_.power_on;
-  rule(stored_.timed_out ? "reset to the safe value" : "reset to the power-on value");
   reset_status_ = true;
   counters_ = {};
   wide_counters_ = {};
@@ -100,7 +97,6 @@ void Module::come_up(Moment when) {
   // wire.md 6: if the host watchdog is enabled, every reset starts it with its full timeout, in every mode.
   expiry_.reset();
   if (stored_.enabled) {
-    rule("reset starts the host watchdog");
     expiry_ = when + stored_.timeout * kTimeoutUnit;
   }
 }
@@ -112,8 +108,6 @@ void Module::select_mode(bool init) {
   address_ = init_mode_ ? 0x00 : stored_.address;
   baud_code_ = init_mode_ ? 0x06 : stored_.baud_code;
   checksum_ = !init_mode_ && (stored_.format & 0x40) != 0;
-  rule(init_mode_ ? "reset into INIT mode" : runs_modbus_ ? "reset into Modbus" : "reset into ASCII");
-  rule(std::string("reset into ") + name_of(format()));
 }
 
 void Module::started(Time by) {
@@ -148,9 +142,6 @@ void Module::drive(unsigned channels, unsigned values) {
     return;  // overtaken by a timeout: wire.md D6
   }
   outputs_ = (outputs_ & ~channels) | (values & channels);
-  if ((timed_outputs() & channels) != 0) {
-    rule("command ends a timed output");
-  }
   for (unsigned channel = 0; channel < row_->outputs; ++channel) {
     if ((channels >> channel & 1U) != 0) {
       timers_[channel].reset();
@@ -160,7 +151,6 @@ void Module::drive(unsigned channels, unsigned values) {
 
 /// Switches an output on for `time` x 0.1 s. If `time` is 0, switches the output off.
 void Module::set_timed_output(unsigned channel, unsigned time) {
-  rule(time == 0 ? "timed output of 0" : "timed output starts");
   const unsigned bit = 1U << channel;
   drive(bit, time != 0 ? bit : 0);
   if (time != 0 && !stored_.timed_out) {
@@ -171,7 +161,6 @@ void Module::set_timed_output(unsigned channel, unsigned time) {
 /// Returns the remaining time of a timed output in units of 0.1 s, rounded up; 0 if no time is running.
 unsigned Module::time_left(unsigned channel) {
   const std::optional<Moment>& timer = timers_[channel];
-  rule(timer ? "0x0280 reads the remaining time" : "0x0280 reads 0");
   if (!timer) {
     return 0;
   }
@@ -180,13 +169,6 @@ unsigned Module::time_left(unsigned channel) {
   };
   const unsigned least = rounded_up(timer->earliest - now_.latest);
   return least + choice(rounded_up(timer->latest - now_.earliest) - least + 1);
-}
-
-void Module::end_timed_outputs(const std::string& by) {
-  if (timed_outputs() != 0) {
-    rule(by + " ends a timed output");
-  }
-  timers_ = {};
 }
 
 /// Returns the channels with a running timer.
@@ -205,13 +187,12 @@ void Module::use_factory_settings() {
 }
 
 void Module::expire() {
-  rule(stored_.timed_out ? "host watchdog expires again" : "host watchdog expires");
   outputs_ = stored_.safe;
   stored_.timed_out = true;
   stored_.enabled = false;
   timeouts_ += 1;
   expiry_.reset();
-  end_timed_outputs("host watchdog");
+  timers_ = {};
 }
 
 void Module::timeout_stored() {
@@ -220,13 +201,11 @@ void Module::timeout_stored() {
 }
 
 void Module::end_timed_output(unsigned channel) {
-  rule("timed output ends");
   timers_[channel].reset();
   outputs_ &= ~(1U << channel);
 }
 
 void Module::settle_input(unsigned channel) {
-  rule("the input filter accepts the level");
   settling_[channel].reset();
   take_level(channel);
 }
@@ -253,21 +232,13 @@ Answer Module::on_frame_without_store(const Bytes& bytes, const std::vector<bool
 
 bool Module::on_receipt(const Bytes& bytes, const std::vector<bool>& bad, Moment when) {
   Module trial = *this;
-  std::vector<std::string> rules;
-  trial.tell_rules(&rules);
   trial.received_ = Counts();
   trial.on_frame(bytes, bad, when);
   const Counts& seen = trial.received_;
-  if (seen.server_messages == 0) {  // it is not executed later
-    std::for_each(rules.begin(), rules.end(), [this](const std::string& each) { rule(each); });
-  }
   counts_.bus_messages += seen.bus_messages;
   counts_.server_messages += seen.server_messages;
   counts_.crc_errors += seen.crc_errors;
   if (trial.own_ && stored_.restarted_by_requests == 1) {
-    rule(!expiry_       ? "request does not start a host watchdog that does not run"
-         : runs_modbus_ ? "Modbus request restarts the host watchdog"
-                        : "ASCII request restarts the host watchdog");
     now_ = when;
     restart_host_watchdog();
   }
@@ -285,8 +256,8 @@ Answer Module::on_frame(const Bytes& bytes, const std::vector<bool>& bad, Moment
   now_ = when;
   overtaken_ = overtaken;
   own_ = sets_ = false;
+  refusal_.clear();
   const Stored before = stored_;
-  const bool delayed = reply_delay() != Time(0);
   if (runs_modbus_) {
     answer.reply = modbus_frame(bytes, bad);
   } else {
@@ -296,9 +267,6 @@ Answer Module::on_frame(const Bytes& bytes, const std::vector<bool>& bad, Moment
       answer.reply.assign(reply->begin(), reply->end());
     }
   }
-  if (!answer.reply.empty() && before.delay != 0) {
-    rule(delayed ? "response delay" : "no response delay in INIT mode");
-  }
   if (!stored_.enabled) {
     expiry_.reset();
   }
@@ -306,6 +274,7 @@ Answer Module::on_frame(const Bytes& bytes, const std::vector<bool>& bad, Moment
     outputs_ = stored_.safe;
   }
   answer.sets = sets_;
+  answer.refusal = refusal_;
   answer.stores = !(stored_ == before);
   if (answer.stores) {
     stores_ += 1;

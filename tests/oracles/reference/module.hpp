@@ -82,6 +82,7 @@ inline bool operator==(const Stored& a, const Stored& b) {
 /// The module's reaction to a request.
 struct Answer {
   Bytes reply;          ///< empty: no reply
+  std::string refusal;  ///< why the request is refused, for people
   bool sets = false;    ///< gives settings values, which they may already have
   bool stores = false;  ///< settings change; storing takes up to 200 ms
 };
@@ -89,7 +90,7 @@ struct Answer {
 /// A module. Its supply is off at first.
 class Module {
  public:
-  explicit Module(const ModelRow& row, Extensions extensions = Extensions::Present);
+  explicit Module(const ModelRow& row);
 
   // --- events ---
 
@@ -144,6 +145,8 @@ class Module {
   [[nodiscard]] const std::vector<unsigned>& alternatives() const { return alternatives_; }
   /// The host watchdog expires; the timeout is stored later.
   void expire();
+  /// A frame does not restart the host watchdog after all.
+  void keep_expiry(Moment expiry) { expiry_ = expiry; }
   void timeout_stored();
   void end_timed_output(unsigned channel);
   void settle_input(unsigned channel);
@@ -154,9 +157,6 @@ class Module {
   void widen(const Module& other);
 
   // --- visible state ---
-
-  /// The rules that are applied from now on, as rules.cpp names them, are added to `rules`.
-  void tell_rules(std::vector<std::string>* rules) { rules_ = rules; }
 
   [[nodiscard]] bool powered() const { return powered_; }
   [[nodiscard]] unsigned outputs() const { return outputs_; }
@@ -180,9 +180,6 @@ class Module {
   [[nodiscard]] const Stored& stored() const { return stored_; }
   [[nodiscard]] unsigned reset_reason() const { return reset_reason_; }
   [[nodiscard]] const ModelRow& row() const { return *row_; }
-  [[nodiscard]] bool has_extensions() const { return extensions_ == Extensions::Present; }
-  /// The module without extensions has executed a frame that requires one.
-  [[nodiscard]] bool needed_extension() const { return needed_extension_; }
 
   /// When the module changes by itself. A moment is longer than an instant if its cause, for example a
   /// command or a reset, is not visible from outside.
@@ -215,11 +212,6 @@ class Module {
     }
   };
 
-  void rule(const std::string& rule) {
-    if (rules_ != nullptr && !rule.empty()) {
-      rules_->push_back(rule);
-    }
-  }
   /// A command gives settings values.
   Stored& set() {
     sets_ = true;
@@ -252,7 +244,6 @@ class Module {
   void drive(unsigned channels, unsigned values);
   void set_timed_output(unsigned channel, unsigned time);
   unsigned time_left(unsigned channel);
-  void end_timed_outputs(const std::string& by);
   [[nodiscard]] unsigned timed_outputs() const;
 
   // wire.md 3 and 4, dcon.cpp
@@ -302,8 +293,6 @@ class Module {
   std::string extension_command(const std::string& body);
 
   const ModelRow* row_;
-  Extensions extensions_;
-  std::vector<std::string>* rules_ = nullptr;
   Stored stored_;
   bool blank_memory_ = true;  ///< nothing has been stored yet
 
@@ -351,8 +340,8 @@ class Module {
   Moment now_{};
   Counts received_;  ///< what its receipt counts
   bool sets_ = false;
-  bool needed_extension_ = false;
   bool own_ = false;  ///< it is for this module alone
+  std::string refusal_;
   std::optional<unsigned> overtaken_;
   std::vector<unsigned> choices_;
   std::vector<unsigned> alternatives_;

@@ -1,0 +1,112 @@
+#include "tests/world/requests.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <set>
+
+#include "sim/app/play/modbus_frame.hpp"
+#include "sim/app/play/transcript.hpp"
+#include "sim/text/values.hpp"
+#include "tests/oracles/reference/dcon_check.hpp"
+#include "tests/oracles/reference/hexadecimal.hpp"
+
+namespace ex9000::world {
+
+namespace {
+
+using reference::Module;
+using reference::Random;
+
+std::uint8_t any_byte(Random& random) { return static_cast<std::uint8_t>(random.below(256)); }
+
+/// Changes one value.
+void vary(Bytes& frame, bool modbus, const Module& module, Random& random) {
+  const std::size_t first = modbus ? 1 : 3;
+  if (frame.size() <= first) {
+    return;
+  }
+  std::uint8_t& byte = frame[first + random.below(static_cast<unsigned>(frame.size() - first))];
+  if (modbus) {
+    const auto channels = static_cast<std::uint8_t>(module.row().inputs + module.row().outputs);
+    byte = random.one_of<std::uint8_t>(
+        {0, 1, 2, channels, static_cast<std::uint8_t>(byte + 1), static_cast<std::uint8_t>(byte - 1), 0xFF,
+         static_cast<std::uint8_t>(byte ^ 1U << random.below(8)), any_byte(random)});
+  } else if (random.once_in(8)) {
+    byte = static_cast<std::uint8_t>(random.between(0x20, 0x7E));
+  } else {
+    byte = static_cast<std::uint8_t>(reference::hex(random.below(16), 1)[0]);
+  }
+}
+
+}  // namespace
+
+Requests::Requests() {
+  struct Collected {
+    std::set<Bytes> ascii;
+    std::set<Bytes> modbus;
+  };
+  std::map<std::string, Collected> collected;
+  for (const std::string& path : play::transcript_files(EX9000_CONFORMANCE_DIR)) {
+    for (const play::Transcript& run : play::load(path)) {
+      if (run.model == nullptr) {
+        continue;  // a scenario
+      }
+      Collected& pool = collected[std::string(run.model->designation)];
+      for (const play::Step& step : run.steps) {
+        const std::string& text = step.text;
+        if (text.substr(0, 3) == "=> ") {
+          pool.modbus.insert(sim::parse_hex_bytes(text.substr(3)));
+        } else if (text.substr(0, 2) == "> ") {
+          pool.ascii.insert(Bytes(text.begin() + 2, text.end()));
+        }
+      }
+    }
+  }
+  for (const auto& [model, pool] : collected) {
+    pools_[model] = {{pool.ascii.begin(), pool.ascii.end()}, {pool.modbus.begin(), pool.modbus.end()}};
+  }
+}
+
+Bytes Requests::set_filter(const Module& module, unsigned channel, Random& random) const {
+  const unsigned time = random.one_of({0U, 1U, 20U, 100U, 500U, 2000U, 2001U});
+  if (module.runs_modbus()) {
+    return with_crc({static_cast<std::uint8_t>(module.address()), 0x06, 0x02,
+                     static_cast<std::uint8_t>(0x40 + channel), static_cast<std::uint8_t>(time / 256),
+                     static_cast<std::uint8_t>(time % 256)});
+  }
+  const std::string command = "~" + reference::hex(module.address(), 2) + "X" +
+                              reference::hex(0x0240 + channel, 4) + reference::hex(time, 4);
+  const std::string line = command + (module.checksum() ? reference::check_of(command) : "") + "\r";
+  return Bytes(line.begin(), line.end());
+}
+
+Bytes Requests::next(const Module& module, Random& random) const {
+  const bool modbus = module.runs_modbus() != (module.row().both_protocols && random.once_in(50));
+  const Pool& pool = pools_.at(module.row().designation);
+  const std::vector<Bytes>& frames = modbus ? pool.modbus : pool.ascii;
+  Bytes frame = frames[random.below(static_cast<unsigned>(frames.size()))];
+  while (random.once_in(2)) {
+    vary(frame, modbus, module, random);
+  }
+  if (modbus) {
+    if (!frame.empty() && frame[0] != 0) {
+      frame[0] = random.once_in(20)   ? any_byte(random)
+                 : random.once_in(12) ? std::uint8_t{0}
+                                      : static_cast<std::uint8_t>(module.address());
+    }
+    return with_crc(frame);
+  }
+  const bool addressed = frame.size() >= 3 && std::isxdigit(frame[1]) != 0 && std::isxdigit(frame[2]) != 0;
+  if (addressed) {
+    const std::string address = reference::hex(random.once_in(20) ? any_byte(random) : module.address(), 2);
+    std::copy(address.begin(), address.end(), frame.begin() + 1);
+  }
+  if (module.checksum() != random.once_in(20)) {
+    const std::string check = reference::check_of(std::string(frame.begin(), frame.end()));
+    frame.insert(frame.end(), check.begin(), check.end());
+  }
+  frame.push_back('\r');
+  return frame;
+}
+
+}  // namespace ex9000::world
