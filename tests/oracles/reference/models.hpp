@@ -17,9 +17,6 @@ struct ModelRow {
   unsigned longest_name;  ///< greatest length of a name that `~AAO(Data)` stores
   std::uint16_t code;     ///< Modbus module code; 0 without Modbus
   const char* in_words;   ///< object 04 of function 2B
-  /// An additional model: the four manuals of wire.md neither describe it nor name it in their parameter
-  /// tables.
-  bool extension = false;
 };
 
 constexpr ModelRow kModelRows[] = {
@@ -32,13 +29,13 @@ constexpr ModelRow kModelRows[] = {
     {"EX9068D-M", 0, 8, true, false, "9068D-M", 7, 0x9068, "8 relay outputs"},
     {"EX9068AD-M", 0, 8, true, false, "9068D-M", 7, 0x9068, "8 PhotoMOS outputs"},
     {"EX9044D", 4, 8, false, false, "9044", 6, 0, ""},
-    {"EX9044D-M", 4, 8, true, false, "9044M", 6, 0x9044, "4 inputs, 8 open-collector outputs", true},
+    {"EX9044D-M", 4, 8, true, false, "9044M", 6, 0x9044, "4 inputs, 8 open-collector outputs"},
     {"EX9050D", 7, 8, false, false, "9050", 6, 0, ""},
-    {"EX9053D", 16, 0, false, true, "9053", 6, 0, "", true},
-    {"EX9053D-M", 16, 0, true, true, "9053M", 6, 0x9053, "16 inputs with latches and counters", true},
+    {"EX9053D", 16, 0, false, true, "9053", 6, 0, ""},
+    {"EX9053D-M", 16, 0, true, true, "9053M", 6, 0x9053, "16 inputs with latches and counters"},
     {"EX9055D", 8, 8, false, false, "9055", 6, 0, ""},
     {"EX9060D", 4, 4, false, false, "9060", 6, 0, ""},
-    {"EX9060D-M", 4, 4, true, false, "9060M", 6, 0x9060, "4 inputs, 4 relay outputs", true},
+    {"EX9060D-M", 4, 4, true, false, "9060M", 6, 0x9060, "4 inputs, 4 relay outputs"},
     {"EX9063D", 8, 3, false, false, "9063", 6, 0, ""},
     {"EX9065D", 4, 5, false, false, "9065", 6, 0, ""},
     {"EX9066D", 0, 7, false, false, "9066", 6, 0, ""},
