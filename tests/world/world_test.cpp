@@ -57,10 +57,10 @@ std::vector<Step> shrunk(const Setup& setup, std::vector<Step> steps) {
 }
 
 struct Figures {
-  std::uint64_t worlds = 0;
-  std::uint64_t given_up = 0;
-  std::uint64_t requests = 0;
-  std::uint64_t replies = 0;
+  unsigned long long worlds = 0;
+  unsigned long long given_up = 0;
+  unsigned long long requests = 0;
+  unsigned long long replies = 0;
   std::size_t widest = 0;
   Time line_time{0};
 };
@@ -99,7 +99,7 @@ std::string play(std::uint64_t seed, const Requests& requests, Figures& figures)
 }
 
 TEST(World, DoesNothingThatTheSpecificationForbids) {
-  const std::uint64_t first = number_in_environment("EX9000_SEED", 1);
+  const unsigned long long first = number_in_environment("EX9000_SEED", 1);
   const std::uint64_t worlds = number_in_environment("EX9000_WORLDS", 3);
   const std::uint64_t seconds = number_in_environment("EX9000_WORLD_SECONDS", 0);
   const Requests requests;
@@ -112,13 +112,10 @@ TEST(World, DoesNothingThatTheSpecificationForbids) {
     ASSERT_EQ(play(first + figures.worlds, requests, figures), "");
   }
   std::printf(
-      "%llu worlds from seed %llu on, %.1f hours of the line, %llu requests, %llu replies, at most %zu "
-      "states "
-      "of a module; %llu worlds given up\n",
-      static_cast<unsigned long long>(figures.worlds), static_cast<unsigned long long>(first),
-      std::chrono::duration<double, std::ratio<3600>>(figures.line_time).count(),
-      static_cast<unsigned long long>(figures.requests), static_cast<unsigned long long>(figures.replies),
-      figures.widest, static_cast<unsigned long long>(figures.given_up));
+      "%llu worlds from seed %llu on, %.1f hours of lines, %llu requests, %llu replies; "
+      "at most %zu states of a module; %llu worlds given up\n",
+      figures.worlds, first, std::chrono::duration<double, std::ratio<3600>>(figures.line_time).count(),
+      figures.requests, figures.replies, figures.widest, figures.given_up);
   EXPECT_LE(figures.given_up, 1 + figures.worlds / 10);
 }
 
