@@ -36,6 +36,7 @@ Generator::Generator(std::uint64_t seed, const Requests& requests)
   for (unsigned i = 0; i < count; ++i) {
     setup_.members.push_back(member());
   }
+  places_.resize(count);
   setup_.masters = 1 + random_.below(3);
   // The clock of the firmware wraps after 2^32 us.
   constexpr microseconds kWrap{4'294'967'296};
@@ -86,12 +87,12 @@ Member Generator::member() {
   return member;
 }
 
-Bytes Generator::request(const Possible& target) {
+Bytes Generator::request(std::size_t index, const Possible& target) {
   const reference::Module& module = target.module();
   if (module.settling_input() && random_.once_in(4)) {
     return requests_.set_filter(module, *module.settling_input(), random_);
   }
-  Bytes bytes = requests_.next(module, random_);
+  Bytes bytes = requests_.next(module, random_, places_[index]);
   if (often(kDamaged, 12) && !bytes.empty()) {
     switch (random_.below(4)) {
       case 0:
@@ -199,7 +200,7 @@ Step Generator::next(const Plant& plant) {
   waits_ = 1 + random_.below(2);
   const std::size_t master =
       often(kOthers, 3) ? random_.below(static_cast<unsigned>(setup_.masters)) : std::size_t{0};
-  return Send{master, mode, request(target)};
+  return Send{master, mode, request(index, target)};
 }
 
 }  // namespace ex9000::world

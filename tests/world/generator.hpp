@@ -21,12 +21,13 @@ class Generator {
  private:
   Member member();
   [[nodiscard]] bool often(unsigned what, unsigned times);
-  Bytes request(const Possible& target);
+  Bytes request(std::size_t index, const Possible& target);
 
   const Requests& requests_;
   reference::Random random_;
   unsigned left_out_;  ///< a mask: each run leaves out a random part
   Setup setup_;
+  std::vector<Requests::Place> places_;  ///< for each module
   unsigned waits_ = 0;
   unsigned pulses_ = 0;
   Pulse pulsing_{};

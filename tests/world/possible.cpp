@@ -30,6 +30,8 @@ constexpr milliseconds kInitSettled{10};
 constexpr milliseconds kInitTaken{20};
 constexpr std::size_t kLongestFrame = 256;
 constexpr unsigned kChannels = 16;
+/// No module has room for so many frames.
+constexpr std::size_t kMostWaiting = 4;
 
 /// Calls `run` for each combination of choices that `module` has in it.
 template <class Run>
@@ -200,7 +202,8 @@ std::vector<Possible> Possible::frame_ends(Moment judged) const {
     next.module_.on_frame(frame.bytes, frame.bad, judged);
   }
   const bool executed = concerns && !host_ok && !hung_;
-  // wire.md 8: while a command is executed, at least one more frame is kept; no module has room for three.
+  // wire.md 8: while a command is executed, at least one more frame is kept. Broadcasts that change
+  // nothing need no room.
   const std::size_t others = waiting_.size() + (due_ || sending_ || hangs(judged.earliest) ? 1 : 0);
   const bool may_be_lost = executed && others >= 2;
   std::vector<Possible> received{next};
@@ -217,10 +220,10 @@ std::vector<Possible> Possible::frame_ends(Moment judged) const {
       after.push_back(each);
       after.back().module_.lose_frame();
     }
-    if (executed && others < 3) {
+    if (executed && others < kMostWaiting) {
       each.waiting_.push_back(frame);
     }
-    if (!executed || others < 3) {
+    if (!executed || others < kMostWaiting) {
       after.push_back(each);
     }
   }

@@ -17,6 +17,21 @@ namespace {
 using reference::Module;
 using reference::Random;
 
+/// Requests with the same form have the same length, and the same bytes that select a command or a register.
+std::string form_of(const Bytes& frame, bool modbus) {
+  const std::size_t first = std::min<std::size_t>(modbus ? 1 : 3, frame.size());
+  const std::size_t end = std::min<std::size_t>(first + (modbus ? 3 : 5), frame.size());
+  const auto at = [&frame](std::size_t index) { return frame.begin() + static_cast<std::ptrdiff_t>(index); };
+  return std::to_string(frame.size()) +
+         (modbus ? "" : std::string(at(0), at(std::min<std::size_t>(1, end)))) +
+         std::string(at(first), at(end));
+}
+
+template <class Set>
+const auto& any_of(const Set& set, Random& random) {
+  return *std::next(set.begin(), random.below(static_cast<unsigned>(set.size())));
+}
+
 std::uint8_t any_byte(Random& random) { return static_cast<std::uint8_t>(random.below(256)); }
 
 /// Changes one value.
@@ -41,29 +56,34 @@ void vary(Bytes& frame, bool modbus, const Module& module, Random& random) {
 }  // namespace
 
 Requests::Requests() {
-  struct Collected {
-    std::set<Bytes> ascii;
-    std::set<Bytes> modbus;
-  };
-  std::map<std::string, Collected> collected;
   for (const std::string& path : play::transcript_files(EX9000_CONFORMANCE_DIR)) {
     for (const play::Transcript& run : play::load(path)) {
       if (run.model == nullptr) {
         continue;  // a scenario
       }
-      Collected& pool = collected[std::string(run.model->designation)];
+      Sequence ascii;
+      Sequence modbus;
       for (const play::Step& step : run.steps) {
         const std::string& text = step.text;
         if (text.substr(0, 3) == "=> ") {
-          pool.modbus.insert(sim::parse_hex_bytes(text.substr(3)));
+          modbus.push_back(sim::parse_hex_bytes(text.substr(3)));
         } else if (text.substr(0, 2) == "> ") {
-          pool.ascii.insert(Bytes(text.begin() + 2, text.end()));
+          ascii.emplace_back(text.begin() + 2, text.end());
         }
+      }
+      for (Pool* const pool : {&pools_[std::string(run.model->designation)], &all_}) {
+        add(pool->ascii, ascii, false);
+        add(pool->modbus, modbus, true);
       }
     }
   }
-  for (const auto& [model, pool] : collected) {
-    pools_[model] = {{pool.ascii.begin(), pool.ascii.end()}, {pool.modbus.begin(), pool.modbus.end()}};
+}
+
+void Requests::add(Forms& forms, const Sequence& requests, bool modbus) {
+  sequences_.push_back(requests);
+  const Sequence& kept = sequences_.back();
+  for (std::size_t i = 0; i < kept.size(); ++i) {
+    forms[form_of(kept[i], modbus)].push_back({&kept, i, modbus});
   }
 }
 
@@ -80,11 +100,14 @@ Bytes Requests::set_filter(const Module& module, unsigned channel, Random& rando
   return Bytes(line.begin(), line.end());
 }
 
-Bytes Requests::next(const Module& module, Random& random) const {
+Bytes Requests::next(const Module& module, Random& random, Place& place) const {
   const bool modbus = module.runs_modbus() != (module.row().both_protocols && random.once_in(50));
-  const Pool& pool = pools_.at(module.row().designation);
-  const std::vector<Bytes>& frames = modbus ? pool.modbus : pool.ascii;
-  Bytes frame = frames[random.below(static_cast<unsigned>(frames.size()))];
+  const Pool& pool = random.once_in(4) ? all_ : pools_.at(module.row().designation);
+  if (place.requests == nullptr || place.modbus != modbus || ++place.next == place.requests->size() ||
+      random.once_in(3)) {
+    place = any_of(any_of(modbus ? pool.modbus : pool.ascii, random).second, random);
+  }
+  Bytes frame = (*place.requests)[place.next];
   while (random.once_in(2)) {
     vary(frame, modbus, module, random);
   }

@@ -1,6 +1,7 @@
 // Random requests, made from those of the transcripts.
 #pragma once
 
+#include <list>
 #include <map>
 #include <string>
 #include <vector>
@@ -17,20 +18,33 @@ class Requests {
   /// Loads all transcripts.
   Requests();
 
+  using Sequence = std::vector<Bytes>;
+  /// A request of a transcript.
+  struct Place {
+    const Sequence* requests = nullptr;
+    std::size_t next = 0;
+    bool modbus = false;
+  };
+
   /// A request for the module, or a similar one, with its check. Some are for other modules, wrong or
-  /// damaged.
-  Bytes next(const reference::Module& module, reference::Random& random) const;
+  /// damaged. `place`: from the request before; the result is often the next one of its transcript.
+  Bytes next(const reference::Module& module, reference::Random& random, Place& place) const;
   /// A request that sets the filter time of an input.
   Bytes set_filter(const reference::Module& module, unsigned channel, reference::Random& random) const;
 
  private:
-  /// The requests that a transcript sends to a model, without their checks.
+  using Forms = std::map<std::string, std::vector<Place>>;
+  /// The requests that transcripts send to a model, without their checks.
   struct Pool {
-    std::vector<Bytes> ascii;
-    std::vector<Bytes> modbus;
+    Forms ascii;
+    Forms modbus;
   };
 
+  void add(Forms& forms, const Sequence& requests, bool modbus);
+
+  std::list<Sequence> sequences_;
   std::map<std::string, Pool> pools_;  ///< by designation
+  Pool all_;
 };
 
 }  // namespace ex9000::world
