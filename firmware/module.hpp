@@ -107,7 +107,7 @@ class Module {
 
   [[nodiscard]] const State& state() const { return state_; }
   /// For a simulator that has counted frames for others elsewhere.
-  LineTallies& tallies() { return receiver_.tallies(); }  // not covered: the simulator's tests call this
+  LineTallies& tallies() { return receiver_.tallies(); }
   [[nodiscard]] StatusLed::Pattern led_pattern() const { return led_.pattern(); }
   /// Returns when the host watchdog expires unless it is restarted; disarmed if it is not running.
   [[nodiscard]] Deadline host_watchdog_expiry() const { return host_watchdog_.expiry(state_.settings); }

@@ -65,6 +65,7 @@ class Receiver {
   [[nodiscard]] const HostOks& host_oks() const { return host_oks_; }
 
  private:
+  // not covered: kBuiltModbus is a constant
   [[nodiscard]] bool modbus() const { return kBuiltModbus && protocol_ == Protocol::ModbusRtu; }
   /// Counts `verdict`, unless it is Open. If the frame restarts the host watchdog, stores `over` as the time
   /// of the restart.

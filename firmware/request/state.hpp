@@ -53,6 +53,7 @@ struct State {
 
   [[nodiscard]] constexpr const Model& model() const { return chosen.get(); }
   [[nodiscard]] bool speaks_modbus() const {
+    // not covered: kBuiltModbus is a constant
     return kBuiltModbus && in_force.protocol == Protocol::ModbusRtu;
   }
   /// Returns whether the module has configuration permission (wire.md section 2).

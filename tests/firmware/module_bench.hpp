@@ -38,16 +38,6 @@ class ModuleBench {
   WiresRecorder& recorder() { return recorder_; }
   [[nodiscard]] VirtualTime now() { return line_.clock().virtual_now(); }
   void run(VirtualTime time) { line_.wires().run_for(time); }
-  /// Runs until `condition` is true, but for at most one second, and checks `condition` every millisecond.
-  /// Returns whether `condition` is true at the end.
-  template <class Condition>
-  bool runs_until(Condition condition) {
-    const VirtualTime gives_up = now() + std::chrono::seconds(1);
-    while (!condition() && now() < gives_up) {
-      run(std::chrono::milliseconds(1));
-    }
-    return condition();
-  }
 
   void send(const Bytes& bytes) {
     line_.master().send(bytes.data(), bytes.size());
@@ -83,10 +73,9 @@ class ModuleBench {
     return reply;
   }
 
-  /// Returns all characters that the master has received since the beginning of the last call of `ask` or
-  /// `forget_heard`. If there was no such call, returns all characters since construction.
+  /// Returns all characters that the master has received since the beginning of the last call of `ask`, or
+  /// since construction.
   [[nodiscard]] std::string heard_text() const { return {heard_.begin(), heard_.end()}; }
-  void forget_heard() { heard_.clear(); }
 
   /// Appends every change of the outputs to `changes` until the next call of `watch_outputs`. `changes` must
   /// exist until that call. If there is no such call, `changes` must exist as long as the outputs can change.

@@ -39,36 +39,6 @@ class InputsTest : public testing::Test {
   Inputs inputs_;
 };
 
-TEST_F(InputsTest, TheLevelAtResetIsNoEdge) {
-  begin(0x00A5);
-  collect();
-  EXPECT_EQ(inputs_.levels(), 0x00A5);
-  EXPECT_EQ(inputs_.latched_high(), 0);
-  EXPECT_EQ(inputs_.latched_low(), 0);
-  for (unsigned channel = 0; channel < kAll; ++channel) {
-    EXPECT_EQ(inputs_.counter(channel), 0U);
-  }
-}
-
-TEST_F(InputsTest, ARisingEdgeRaisesTheLevelAndSetsLatchHigh) {
-  for (unsigned channel = 0; channel < kAll; ++channel) {
-    rise(channel);
-    collect();
-    EXPECT_EQ(inputs_.levels(), (1U << (channel + 1)) - 1);
-    EXPECT_EQ(inputs_.latched_high(), (1U << (channel + 1)) - 1);
-    EXPECT_EQ(inputs_.latched_low(), 0);
-  }
-}
-
-TEST_F(InputsTest, AFallingEdgeLowersTheLevelAndSetsLatchLow) {
-  begin(0x00FF);
-  fall(3);
-  collect();
-  EXPECT_EQ(inputs_.levels(), 0x00F7);
-  EXPECT_EQ(inputs_.latched_high(), 0);
-  EXPECT_EQ(inputs_.latched_low(), 0x0008);
-}
-
 TEST_F(InputsTest, ARisingEdgeAtAHighLevelIsTreatedAsTwoEdges) {
   begin(0x0002);
   inputs_.use_range(Inputs::CounterRange::FiveDigits);
@@ -90,57 +60,6 @@ TEST_F(InputsTest, AFallingEdgeAtALowLevelIsTreatedAsTwoEdges) {
   EXPECT_EQ(inputs_.latched_high(), 0x0002);
   EXPECT_EQ(inputs_.latched_low(), 0x0002);
   EXPECT_EQ(inputs_.counter(1), 1U);
-}
-
-TEST_F(InputsTest, CountersCountRisingEdgesIfConfigured) {
-  inputs_.use_range(Inputs::CounterRange::FiveDigits);
-  inputs_.count_rising_edges(true);
-  rise(0);
-  collect();
-  EXPECT_EQ(inputs_.counter(0), 1U);
-  fall(0);
-  collect();
-  EXPECT_EQ(inputs_.counter(0), 1U);
-}
-
-TEST_F(InputsTest, CountersCountFallingEdgesIfConfigured) {
-  inputs_.use_range(Inputs::CounterRange::FiveDigits);
-  inputs_.count_rising_edges(false);
-  rise(0);
-  collect();
-  EXPECT_EQ(inputs_.counter(0), 0U);
-  fall(0);
-  collect();
-  EXPECT_EQ(inputs_.counter(0), 1U);
-}
-
-TEST_F(InputsTest, CountersCountFallingEdgesByDefault) {
-  rise(0);
-  collect();
-  EXPECT_EQ(inputs_.counter(0), 0U);
-  fall(0);
-  collect();
-  EXPECT_EQ(inputs_.counter(0), 1U);
-}
-
-TEST_F(InputsTest, EveryChannelHasItsOwnCounter) {
-  for (unsigned channel = 0; channel < kAll; ++channel) {
-    pulse(channel, channel + 1);
-  }
-  collect();
-  for (unsigned channel = 0; channel < kAll; ++channel) {
-    EXPECT_EQ(inputs_.counter(channel), channel + 1);
-  }
-}
-
-TEST_F(InputsTest, EveryEdgeBetweenTwoCollectionsIsCountedOnce) {
-  pulse(2, 1000);
-  collect();
-  collect();
-  EXPECT_EQ(inputs_.counter(2), 1000U);
-  pulse(2, 1);
-  collect();
-  EXPECT_EQ(inputs_.counter(2), 1001U);
 }
 
 TEST_F(InputsTest, UpTo65535EdgesBetweenTwoCollectionsAreCounted) {
@@ -190,39 +109,10 @@ TEST_F(InputsTest, RisingAndFallingEdgesAreDistinguishedAtEitherLevelForOneToNin
   }
 }
 
-TEST_F(InputsTest, TheLevelsAtResetAreKnownBeforeTheFirstCollection) {
-  begin(0x00A5);
-  EXPECT_EQ(inputs_.levels(), 0x00A5);
-}
-
-TEST_F(InputsTest, AnEdgeOnAnyChannelChangesTheTotalOfEdges) {
-  for (unsigned channel = 0; channel < kAll; ++channel) {
-    for (int i = 0; i < 2; ++i) {
-      const std::uint32_t before = edges_.edges();
-      edges_.on_edge(channel, i == 0, now_);
-      EXPECT_NE(edges_.edges(), before);
-    }
-  }
-  const std::uint32_t before = edges_.edges();
-  rise(kMaxInputs);
-  EXPECT_EQ(edges_.edges(), before);
-}
-
 TEST_F(InputsTest, TheTotalOfEdgesMayExceed65535) {
   pulse_and_collect(0, 65'530);
   pulse_and_collect(0, 20);
   EXPECT_EQ(inputs_.counter(0), 65'550U);
-}
-
-TEST_F(InputsTest, AnAsciiCounterWrapsFrom99999To0) {
-  inputs_.use_range(Inputs::CounterRange::FiveDigits);
-  inputs_.count_rising_edges(false);
-  pulse_and_collect(0, 99'999);
-  EXPECT_EQ(inputs_.counter(0), 99'999U);
-  pulse_and_collect(0, 1);
-  EXPECT_EQ(inputs_.counter(0), 0U);
-  pulse_and_collect(0, 5);
-  EXPECT_EQ(inputs_.counter(0), 5U);
 }
 
 TEST_F(InputsTest, AnAsciiCounterMayWrapWithinOneCollection) {
@@ -233,115 +123,6 @@ TEST_F(InputsTest, AnAsciiCounterMayWrapWithinOneCollection) {
   EXPECT_EQ(inputs_.counter(0), 15U);
 }
 
-TEST_F(InputsTest, AModbusCounterWrapsFrom65535To0) {
-  inputs_.use_range(Inputs::CounterRange::SixteenBits);
-  inputs_.count_rising_edges(false);
-  pulse_and_collect(0, 65'535);
-  EXPECT_EQ(inputs_.counter(0), 65'535U);
-  pulse_and_collect(0, 1);
-  EXPECT_EQ(inputs_.counter(0), 0U);
-  pulse_and_collect(0, 65'536 + 7);
-  EXPECT_EQ(inputs_.counter(0), 7U);
-}
-
-TEST_F(InputsTest, AWrapDoesNotChangeAnotherCounter) {
-  inputs_.use_range(Inputs::CounterRange::SixteenBits);
-  inputs_.count_rising_edges(false);
-  pulse_and_collect(1, 3);
-  pulse_and_collect(0, 65'536);
-  EXPECT_EQ(inputs_.counter(1), 3U);
-}
-
-TEST_F(InputsTest, LatchesStayUntilTheyAreCleared) {
-  pulse(5, 1);
-  collect();
-  collect();
-  EXPECT_EQ(inputs_.latched_high(), 0x0020);
-  EXPECT_EQ(inputs_.latched_low(), 0x0020);
-  inputs_.clear_latches();
-  EXPECT_EQ(inputs_.latched_high(), 0);
-  EXPECT_EQ(inputs_.latched_low(), 0);
-}
-
-TEST_F(InputsTest, ClearedLatchesStayClearWhileTheLevelDoesNotChange) {
-  rise(0);
-  collect();
-  inputs_.clear_latches();
-  collect();
-  EXPECT_EQ(inputs_.levels(), 0x0001);
-  EXPECT_EQ(inputs_.latched_high(), 0);
-  EXPECT_EQ(inputs_.latched_low(), 0);
-}
-
-TEST_F(InputsTest, AfterTheLatchesAreClearedTheNextEdgeSetsItsLatch) {
-  rise(0);
-  collect();
-  inputs_.clear_latches();
-  fall(0);
-  collect();
-  EXPECT_EQ(inputs_.latched_high(), 0);
-  EXPECT_EQ(inputs_.latched_low(), 0x0001);
-}
-
-TEST_F(InputsTest, ClearingLatchesDoesNotChangeCountersAndLevels) {
-  pulse(0, 3);
-  rise(1);
-  collect();
-  inputs_.clear_latches();
-  EXPECT_EQ(inputs_.counter(0), 3U);
-  EXPECT_EQ(inputs_.levels(), 0x0002);
-}
-
-TEST_F(InputsTest, ClearingTwoCountersDoesNotChangeTheOthers) {
-  for (unsigned channel = 0; channel < kAll; ++channel) {
-    pulse(channel, 9);
-  }
-  collect();
-  inputs_.clear_counters(0x0024);
-  for (unsigned channel = 0; channel < kAll; ++channel) {
-    EXPECT_EQ(inputs_.counter(channel), channel == 2 || channel == 5 ? 0U : 9U) << channel;
-  }
-}
-
-TEST_F(InputsTest, ClearingCountersDoesNotChangeTheLatches) {
-  pulse(0, 1);
-  collect();
-  inputs_.clear_counters(0x00FF);
-  EXPECT_EQ(inputs_.latched_high(), 0x0001);
-  EXPECT_EQ(inputs_.latched_low(), 0x0001);
-}
-
-TEST_F(InputsTest, AClearedCounterCountsFrom0) {
-  pulse(0, 100);
-  collect();
-  inputs_.clear_counters(0x0001);
-  collect();
-  EXPECT_EQ(inputs_.counter(0), 0U);
-  pulse(0, 2);
-  collect();
-  EXPECT_EQ(inputs_.counter(0), 2U);
-}
-
-TEST_F(InputsTest, OnlyTheCountersOfTheMaskAreCleared) {
-  pulse(0, 1);
-  pulse(8, 2);
-  pulse(15, 3);
-  inputs_.collect(edges_, kMaxInputs, now_);
-  inputs_.clear_counters(0x0100);
-  EXPECT_EQ(inputs_.counter(0), 1U);
-  EXPECT_EQ(inputs_.counter(8), 0U);
-  EXPECT_EQ(inputs_.counter(15), 3U);
-}
-
-TEST_F(InputsTest, SixteenChannelsHaveALevelAndALatchHigh) {
-  for (unsigned channel = 0; channel < 16; ++channel) {
-    edges_.on_edge(channel, true, now_);
-    inputs_.collect(edges_, 16, now_);
-    EXPECT_EQ(inputs_.levels(), (2U << channel) - 1U);
-    EXPECT_EQ(inputs_.latched_high(), (2U << channel) - 1U);
-  }
-}
-
 TEST_F(InputsTest, EdgesOfChannelsThatNoModelHasAreIgnored) {
   edges_.on_edge(16, true, now_);
   edges_.on_edge(31, true, now_);
@@ -349,28 +130,6 @@ TEST_F(InputsTest, EdgesOfChannelsThatNoModelHasAreIgnored) {
   collect();
   EXPECT_EQ(inputs_.levels(), 0);
   EXPECT_EQ(inputs_.latched_high(), 0);
-}
-
-TEST_F(InputsTest, EdgesOfChannelsThatThisModelDoesNotHaveAreNotLatchedAndNotCounted) {
-  constexpr unsigned kFourInputs = 4;
-  pulse(4, 3);
-  pulse(7, 3);
-  pulse(3, 3);
-  collect(kFourInputs);
-  EXPECT_EQ(inputs_.latched_high(), 0x0008);
-  EXPECT_EQ(inputs_.latched_low(), 0x0008);
-  EXPECT_EQ(inputs_.counter(3), 3U);
-  EXPECT_EQ(inputs_.counter(4), 0U);
-  EXPECT_EQ(inputs_.counter(7), 0U);
-}
-
-// An edge interrupt may occur on a pin that the board has and the model does not use.
-TEST_F(InputsTest, TheLevelOfAChannelThatThisModelDoesNotHaveIs0) {
-  constexpr unsigned kFourInputs = 4;
-  rise(7);
-  rise(0);
-  collect(kFourInputs);
-  EXPECT_EQ(inputs_.levels(), 0x0001);
 }
 
 }  // namespace

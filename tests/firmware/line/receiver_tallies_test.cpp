@@ -1,52 +1,86 @@
 // Tests what the receiver counts for Modbus function 08 (wire.md D1) and for the line tallies
 // (firmware/extensions.md).
-#include "tests/firmware/line/receiver_bench.hpp"
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <ostream>
+#include <string_view>
+#include <vector>
+
+#include "firmware/line/receiver.hpp"
+#include "tests/support/clock_at.hpp"
 
 namespace ex9000 {
 namespace {
 
-TEST_F(ReceiverTest, CountsNothingBeforeAnythingIsReceived) {
-  listen(Protocol::ModbusRtu);
-  EXPECT_EQ(counts(), (Counts{0, 0, 0, 0, 0}));
-}
+using FrameBytes = std::vector<std::uint8_t>;
 
-TEST_F(ReceiverTest, AFrameForThisModuleIsABusMessageAndAServerMessage) {
-  listen(Protocol::ModbusRtu);
-  frame(kChannel0On);
-  EXPECT_EQ(counts(), (Counts{1, 0, 1, 0, 0}));
-}
+constexpr std::uint8_t kOwn = 0x01;
+constexpr std::uint32_t kBaud = 9600;
+constexpr Duration kCharacter = Duration(1042);
 
-TEST_F(ReceiverTest, AFrameForAnotherModuleIsOnlyABusMessage) {
-  listen(Protocol::ModbusRtu);
-  frame(kGuideExample);
-  EXPECT_EQ(counts(), (Counts{1, 0, 0, 0, 0}));
-}
+/// The receiver's counters for function 08 (wire.md D1), in the order of the sub-functions 0B, 0C, 0E, 0F and
+/// 12.
+struct Counts {
+  unsigned bus_messages;
+  unsigned bus_errors;
+  unsigned server_messages;
+  unsigned no_responses;
+  unsigned overruns;
 
-TEST_F(ReceiverTest, AHostOkIsAServerMessageWithoutAReply) {
-  listen(Protocol::ModbusRtu);
-  frame(kHostOk);
-  EXPECT_EQ(counts(), (Counts{1, 0, 1, 1, 0}));
-}
+  friend bool operator==(const Counts& a, const Counts& b) {
+    return a.bus_messages == b.bus_messages && a.bus_errors == b.bus_errors &&
+           a.server_messages == b.server_messages && a.no_responses == b.no_responses &&
+           a.overruns == b.overruns;
+  }
+  friend std::ostream& operator<<(std::ostream& out, const Counts& c) {
+    return out << "0B " << c.bus_messages << ", 0C " << c.bus_errors << ", 0E " << c.server_messages
+               << ", 0F " << c.no_responses << ", 12 " << c.overruns;
+  }
+};
 
-TEST_F(ReceiverTest, AWrongCrcIsABusError) {
-  listen(Protocol::ModbusRtu);
-  frame({0x01, 0x05, 0x00, 0x00, 0xFF, 0x00, 0x8C, 0x3B});
-  EXPECT_EQ(counts(), (Counts{0, 1, 0, 0, 0}));
-}
+class ReceiverTest : public testing::Test {
+ protected:
+  void listen(Protocol protocol, bool checksum = false) {
+    receiver_.listen({protocol, checksum, LineTiming::at(kBaud, LineFormat::k8N1)});
+    receiver_.answer_to(kOwn);
+  }
 
-TEST_F(ReceiverTest, AFrameOfLessThan4BytesIsABusError) {
-  listen(Protocol::ModbusRtu);
-  frame({0x01});
-  frame({0x01, 0x05, 0x00});
-  EXPECT_EQ(counts(), (Counts{0, 2, 0, 0, 0}));
-}
+  Duration byte(std::uint8_t value, ByteStatus status = ByteStatus::Good) {
+    now_ = now_ + kCharacter;
+    return receiver_.on_byte(value, status, ClockAt{now_});
+  }
+  void bytes(const FrameBytes& values) {
+    for (const std::uint8_t value : values) {
+      byte(value);
+    }
+  }
+  void text(std::string_view characters) {
+    for (const char character : characters) {
+      byte(static_cast<std::uint8_t>(character));
+    }
+  }
+  /// Lets a silence of 50 ms pass, which ends a Modbus frame. A silence does not end an ASCII frame.
+  void silence() {
+    now_ = now_ + milliseconds(50);
+    while (!(receiver_.on_silence(now_) == Duration())) {
+    }
+  }
+  void frame(const FrameBytes& values) {
+    bytes(values);
+    silence();
+  }
 
-TEST_F(ReceiverTest, AFrameOfMoreThan256BytesIsOneBusError) {
-  listen(Protocol::ModbusRtu);
-  frame(FrameBytes(257, 0x55));
-  frame(FrameBytes(600, 0x55));
-  EXPECT_EQ(counts(), (Counts{0, 2, 0, 0, 0}));
-}
+  Counts counts() {
+    LineTallies& tallies = receiver_.tallies();
+    const Counts since_last{tallies.bus_messages(), tallies.bus_errors(), tallies.server_messages(),
+                            tallies.no_responses(), tallies.overruns()};
+    tallies.clear();
+    return since_last;
+  }
+  Receiver receiver_;
+  Time now_{1000};
+};
 
 TEST_F(ReceiverTest, AFrameWithFramingErrorsOrBreaksIsOneBusError) {
   listen(Protocol::ModbusRtu);
@@ -66,34 +100,11 @@ TEST_F(ReceiverTest, AFrameThatIsLostBecauseOfAnOverrunIsABusErrorAndAnOverrun) 
   byte(0x00, ByteStatus::Overrun);
   frame({0x00, 0xFF, 0x00, 0x8C, 0x3A});
   EXPECT_EQ(counts(), (Counts{0, 1, 0, 0, 1}));
-}
-
-TEST_F(ReceiverTest, AFrameThatArrivesWhileTheQueueIsFullIsCountedAsAnOverrun) {
-  listen(Protocol::ModbusRtu);
-  frame(kChannel0On);
-  counts();
-  frame(kChannel0On);
-  const Counts counted = counts();
-  EXPECT_EQ(counted.bus_messages, 1U);
-  EXPECT_EQ(counted.bus_errors, 0U);
-  EXPECT_EQ(counted.overruns, 1U);
-}
-
-TEST_F(ReceiverTest, CountsEveryFrameOnce) {
-  listen(Protocol::ModbusRtu);
-  for (int i = 0; i < 300; ++i) {
-    frame(kChannel0On);
-    EXPECT_TRUE(took_frame());
-    frame(kGuideExample);
-    frame({0xFF});
-  }
-  EXPECT_EQ(counts(), (Counts{600, 300, 300, 0, 0}));
-}
-
-TEST_F(ReceiverTest, AnOpenFrameIsNotCounted) {
-  listen(Protocol::ModbusRtu);
-  bytes(kChannel0On);
-  EXPECT_EQ(counts(), (Counts{0, 0, 0, 0, 0}));
+  listen(Protocol::Ascii);
+  text("$0");
+  byte('1', ByteStatus::Overrun);
+  text("M\r");
+  EXPECT_EQ(counts(), (Counts{0, 1, 0, 0, 1}));
 }
 
 TEST_F(ReceiverTest, InBothProtocolsAFramingErrorOrABreakDamagesAByteButAnOverrunDoesNot) {
@@ -115,24 +126,6 @@ TEST_F(ReceiverTest, AFrameThatIsLostBecauseTheQueueIsFullIsCountedOnce) {
   listen(Protocol::Ascii);
   text("$01M\r$01F\r");
   EXPECT_EQ(receiver_.tallies().lost_frames(), 1U);
-}
-
-TEST_F(ReceiverTest, InAsciiEachCompleteFrameIsABusMessageOrABusError) {
-  listen(Protocol::Ascii, true);
-  text("$01MD2\r");  // correct checksum
-  EXPECT_EQ(counts(), (Counts{1, 0, 1, 0, 0}));
-  text("$02MD3\r");  // for another module
-  EXPECT_EQ(counts(), (Counts{1, 0, 0, 0, 0}));
-  // A host OK, a broadcast `#**` that is lost because the queue is full, and a broadcast that is not a
-  // command.
-  text("~**D2\r#**77\r$**78\r");
-  EXPECT_EQ(counts(), (Counts{3, 0, 2, 2, 1}));
-  text("$01MD3\r$0\r$01M78901234567890123456789012345\r");  // wrong checksum; no checksum; too long
-  EXPECT_EQ(counts(), (Counts{0, 3, 0, 0, 0}));
-  byte('$');
-  byte('0', ByteStatus::Overrun);
-  text("1M\r");
-  EXPECT_EQ(counts(), (Counts{0, 1, 0, 0, 1}));
 }
 
 }  // namespace

@@ -70,48 +70,6 @@ class Diagnosed : public testing::Test, protected CoreBench {
   }
 };
 
-TEST_F(Diagnosed, EachEventIncreasesItsCountersAndClearingSetsThemToZero) {
-  struct Cause {
-    const char* what;
-    std::function<void()> happens;
-    Counts counts;
-  };
-  const std::vector<Cause> causes{
-      {"a frame for another module", [this] { hear(with_crc(kForeign)); }, {1, 0, 0, 0, 0, 0}},
-      {"a wrong CRC",
-       [this] {
-         hear({0x01, 0x05, 0x00, 0x00, 0x00});
-       },
-       {0, 1, 0, 0, 0, 0}},
-      {"too short",
-       [this] {
-         hear({0x01, 0x05});
-       },
-       {0, 1, 0, 0, 0, 0}},
-      {"too long", [this] { hear(FrameBytes(257, 0x55)); }, {0, 1, 0, 0, 0, 0}},
-      {"a framing error", [this] { spoil(ByteStatus::FramingError); }, {0, 1, 0, 0, 0, 0}},
-      {"a break", [this] { spoil(ByteStatus::Break); }, {0, 1, 0, 0, 0, 0}},
-      {"an overrun", [this] { spoil(ByteStatus::Overrun); }, {0, 1, 0, 0, 0, 1}},
-      {"no room",
-       [this] {
-         hear(with_crc(kOutput0On));
-         hear(with_crc(kOutput0On));
-         answer();
-       },
-       {2, 0, 0, 1, 0, 1}},
-      {"an exception", [this] { ask(kUnknownFunction); }, {1, 0, 1, 1, 0, 0}},
-      {"a broadcast", [this] { ask(kAllOutput0On); }, {1, 0, 0, 1, 1, 0}},
-      {"a host OK", [this] { ask(kHostOk); }, {1, 0, 0, 1, 1, 0}},
-  };
-  for (const Cause& cause : causes) {
-    clear();
-    cause.happens();
-    EXPECT_EQ(counts(), cause.counts) << cause.what;
-    clear();
-    EXPECT_EQ(counts(), Counts()) << cause.what;
-  }
-}
-
 TEST_F(Diagnosed, EveryCounterHas16BitsAndWraps) {
   constexpr unsigned kAskedAtOnce = 6;
   clear();

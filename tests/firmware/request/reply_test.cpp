@@ -11,25 +11,6 @@ namespace {
 
 std::string text_of(const Reply& reply) { return {reply.bytes().begin(), reply.bytes().end()}; }
 
-TEST(Reply, IsEmptyAtFirstAndAfterItIsCleared) {
-  Reply reply;
-  EXPECT_TRUE(reply.empty());
-  reply.put('!');
-  EXPECT_FALSE(reply.empty());
-  reply.clear();
-  EXPECT_TRUE(reply.empty());
-  EXPECT_EQ(reply.bytes().size, 0U);
-}
-
-TEST(Reply, HasItsContentInTheOrderOfThePuts) {
-  Reply reply;
-  reply.put('!');
-  reply.put_hex(0x1A5);  // only the low byte
-  reply.put_word(0x4243);
-  reply.put(std::string_view("D01"));
-  EXPECT_EQ(text_of(reply), "!A5BCD01");
-}
-
 TEST(Reply, PatchOverwritesAByteAndNeverAddsOne) {
   Reply reply;
   reply.put(std::string_view("0123"));
