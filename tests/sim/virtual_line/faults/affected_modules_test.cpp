@@ -43,14 +43,6 @@ TEST(FaultsOfAllModules, AffectOnlyTheSenderOfTheReplyThatTriggersThem) {
   EXPECT_TRUE(bench.at(2).powered());
 }
 
-TEST(FaultsOfAllModules, AffectEveryModuleAtAGivenTime) {
-  FaultBench bench(two());
-  bench.add("gone at 1s");
-  bench.run_until(1s);
-  EXPECT_FALSE(bench.at(1).powered());
-  EXPECT_FALSE(bench.at(2).powered());
-}
-
 TEST(FaultsOfAModule, AreRefusedIfTheLineHasNoSuchModule) {
   FaultBench bench(two());
   EXPECT_EQ(refusal([&] { bench.add("gone", 3); }), "gone: no module 3; expected a position from 1 to 2");

@@ -13,8 +13,8 @@ using namespace std::chrono_literals;
 
 TEST(FaultsList, ARemovedFaultHasNoFurtherEffect) {
   for (const char* trouble :
-       {"bit-errors 1", "lost-bytes 1", "inserted-bytes 1", "lost-reply", "late-reply 1s", "wrong-rate 1200",
-        "gone", "power-cut for 1h", "lost-reply every reply", "gone every 10ms for 5ms"}) {
+       {"bit-errors 1", "lost-bytes 1", "inserted-bytes 1", "echo 5ms", "lost-reply", "late-reply 1s",
+        "wrong-rate 1200", "gone", "power-cut for 1h", "lost-reply every reply", "gone every 10ms for 5ms"}) {
     for (const bool all : {false, true}) {
       FaultBench bench;
       const std::size_t fault = bench.add(trouble);

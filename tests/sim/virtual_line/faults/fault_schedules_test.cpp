@@ -13,19 +13,6 @@ namespace {
 
 using namespace std::chrono_literals;
 
-TEST(FaultsSchedule, AFaultWithoutATimeBeginsImmediatelyAndLastsItsDuration) {
-  FaultBench bench;
-  bench.run_until(1s);
-  bench.add("gone for 250ms");
-  EXPECT_FALSE(bench.at(1).powered());
-  bench.run_until(1250ms - 1ns);
-  EXPECT_FALSE(bench.at(1).powered());
-  bench.run_until(1250ms);
-  EXPECT_TRUE(bench.at(1).powered());
-  bench.run(10s);
-  EXPECT_TRUE(bench.at(1).powered());
-}
-
 TEST(FaultsSchedule, ATimeIsExactAndCountsFromTheStartOfTheLine) {
   FaultBench bench;
   bench.add("gone at 12.5s for 2s");

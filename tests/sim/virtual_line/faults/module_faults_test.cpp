@@ -24,6 +24,18 @@ TEST(WrongRate, IsUsedForReceivingAndSending) {
   EXPECT_EQ(bench.ask("$01M"), kName);
 }
 
+TEST(WrongRate, AReplyKeepsItsRateIfTheFaultIsRemovedDuringTheReply) {
+  FaultBench bench;
+  const std::size_t fault = bench.add("wrong-rate 1200");
+  bench.line().master().set_baud(1200);
+  bench.send("$01M\r");
+  bench.run(30ms);  // a character takes 8.3 ms
+  EXPECT_TRUE(bench.faults().remove(fault));
+  bench.run(100ms);
+  EXPECT_EQ(bench.heard(), kName + "\r");
+  EXPECT_FALSE(bench.garbled());
+}
+
 TEST(Gone, SwitchesTheSupplyOffUntilTheFaultIsRemoved) {
   FaultBench bench;
   bench.ask("@010A05");
@@ -31,9 +43,10 @@ TEST(Gone, SwitchesTheSupplyOffUntilTheFaultIsRemoved) {
   const std::size_t fault = bench.add("gone");
   EXPECT_FALSE(bench.at(1).powered());
   EXPECT_EQ(bench.at(1).outputs(), 0);
-  EXPECT_EQ(bench.ask("$01M"), "");
+  EXPECT_EQ(bench.ask("@010001"), "");
   EXPECT_TRUE(bench.faults().remove(fault));
   bench.run(100ms);
+  EXPECT_EQ(bench.at(1).outputs(), 0);  // the command is not executed later
   EXPECT_EQ(bench.ask("$015"), "!011");
 }
 

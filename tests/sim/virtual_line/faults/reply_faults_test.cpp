@@ -60,6 +60,23 @@ TEST(LateReply, KeepsTheOrderOfTheReplies) {
   EXPECT_EQ(bench.heard(), kName + "\r!01400600\r>0000\r!01D01.00\r");
 }
 
+TEST(LateReply, IfTheFaultIsRemovedTheRepliesKeepTheTimeBetweenThem) {
+  FaultBench punctual;
+  FaultBench bench;
+  const std::size_t fault = bench.add("late-reply 1h");
+  for (FaultBench* each : {&punctual, &bench}) {
+    each->ask("$01M", 40ms);
+    each->ask("$012", 20ms);
+  }
+  EXPECT_TRUE(bench.faults().remove(fault));
+  const VirtualTime removed = bench.now();
+  bench.run(200ms);
+  const std::vector<VirtualTime> late = answers_of(bench, 1);
+  ASSERT_EQ(late.size(), 2U);
+  EXPECT_EQ(late[0], removed);
+  EXPECT_EQ(late[1] - late[0], answers_of(punctual, 1)[1] - answers_of(punctual, 1)[0]);
+}
+
 TEST(LateReply, IfItsFaultIsRemovedItIsSentImmediatelyAndTheNextReplyIsNotLate) {
   for (const bool all : {false, true}) {
     FaultBench bench;
@@ -74,6 +91,19 @@ TEST(LateReply, IfItsFaultIsRemovedItIsSentImmediatelyAndTheNextReplyIsNotLate) 
     EXPECT_EQ(bench.heard(), kName + "\r");
     EXPECT_EQ(bench.ask("$01M"), kName);
   }
+}
+
+TEST(LateReply, TheNumberOfWaitingRepliesIsLimited) {
+  FaultBench bench;
+  bench.add("late-reply 1h");
+  for (int i = 0; i < 30'000; ++i) {
+    bench.send("$01M\r");
+    bench.run(20ms);
+  }
+  bench.run(1h);
+  const std::size_t replies = bench.heard().size() / (kName.size() + 1);
+  EXPECT_GT(replies, 20'000U);
+  EXPECT_LT(replies, 25'000U);
 }
 
 TEST(LateReply, IsCompleteIfItsFaultIsRemovedWhileTheModuleReplies) {
@@ -126,11 +156,14 @@ TEST(LateReply, IsNotSentIfTheFaultOfAnotherModuleIsRemoved) {
   EXPECT_EQ(bench.heard(), "!02400600\r");
 }
 
-TEST(LateReply, IsNotSentAfterTheSupplyHasFailed) {
+TEST(LateReply, IsNotSentAfterTheSupplyHasFailedAndStopsIfItFails) {
   FaultBench bench;
   bench.add("late-reply 200ms");
   EXPECT_EQ(bench.ask("$01M"), "");
+  EXPECT_EQ(bench.ask("$01M", 150ms).substr(0, 2), "!0");  // the first reply has begun
+  EXPECT_LT(bench.heard().size(), kName.size());
   bench.at(1).power(false);
+  bench.run(10ms);  // receives the byte that is cut off
   bench.at(1).power(true);
   bench.forget();
   bench.run(1s);

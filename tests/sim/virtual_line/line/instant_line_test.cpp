@@ -51,12 +51,6 @@ TEST_P(InstantLine, AModbusRequestGetsItsReplyImmediately) {
   EXPECT_EQ(heard_within(kAtOnce), kOutputsOff);
 }
 
-TEST_P(InstantLine, ADconCommandGetsItsReplyImmediately) {
-  send("$03M\r");
-  const std::string reply = "!039042D\r";
-  EXPECT_EQ(heard_within(kAtOnce), Frame(reply.begin(), reply.end()));
-}
-
 TEST_P(InstantLine, TwoPiecesLessThanTwoMillisecondsApartAreOneFrame) {
   for (std::size_t split = 1; split < kReadOutputs.size(); ++split) {
     const auto at = kReadOutputs.begin() + static_cast<std::ptrdiff_t>(split);
@@ -88,16 +82,6 @@ TEST_P(InstantLine, ARequestAtAnotherBaudRateGetsNoReply) {
   line_.master().set_baud(GetParam() == 9600 ? 19200 : 9600);
   send(kReadOutputs);
   EXPECT_EQ(heard_within(milliseconds(10)), Frame());
-}
-
-TEST_P(InstantLine, TheHostWatchdogExpiresAfterItsTimeout) {
-  send(with_crc({0x01, 0x06, 0x01, 0xE8, 0x00, 0x05}));  // 0.5 s
-  line_.wires().run_for(milliseconds(50));
-  send(with_crc({0x01, 0x05, 0x01, 0x04, 0xFF, 0x00}));  // enabled
-  line_.wires().run_for(milliseconds(450));
-  EXPECT_FALSE(line_.module(0).module().state().settings.timeout_status);
-  line_.wires().run_for(milliseconds(100));
-  EXPECT_TRUE(line_.module(0).module().state().settings.timeout_status);
 }
 
 INSTANTIATE_TEST_SUITE_P(Rates, InstantLine, testing::ValuesIn(kBaudRates.begin(), kBaudRates.end()));

@@ -23,7 +23,6 @@ using std::chrono::milliseconds;
 const Frame kRead1 = with_crc({0x01, 0x01, 0x00, 0x00, 0x00, 0x0D});
 const Frame kOff1 = with_crc({0x01, 0x01, 0x02, 0x00, 0x00});
 const Frame kRead2 = with_crc({0x02, 0x02, 0x00, 0x00, 0x00, 0x08});
-const Frame kOff2 = with_crc({0x02, 0x02, 0x01, 0x00});
 const Frame kToNobody = with_crc({0x09, 0x01, 0x00, 0x00, 0x00, 0x0D});
 
 /// Records the start of each frame of the master, and the end of the last byte from other stations.
@@ -85,17 +84,6 @@ class Queue : public testing::TestWithParam<bool> {
       [](std::uint8_t /*byte*/, ByteStatus /*status*/) {}};
 };
 
-TEST_P(Queue, RequestsAreAnsweredInOrder) {
-  ask(kRead1, "a");
-  ask(kRead2, "b");
-  ask(kRead1, "c");
-  EXPECT_TRUE(line_.pending());
-  run(milliseconds(500));
-  EXPECT_EQ(results_, (Results{{"a", kOff1}, {"b", kOff2}, {"c", kOff1}}));
-  EXPECT_FALSE(line_.requests().busy());
-  EXPECT_FALSE(line_.pending());
-}
-
 TEST_P(Queue, ARequestBeginsOnlyAfterTheSilenceThatEndsThePreviousReply) {
   ask(kRead1, "a");
   ask(kRead2, "b");
@@ -129,24 +117,6 @@ TEST_P(Queue, ABroadcastDelaysTheNextRequestByTheTurnaroundTime) {
   EXPECT_GE(watch_.began[1] - watch_.began[0], RequestQueue::kTurnaround);
 }
 
-TEST_P(Queue, AFrameThatIsNotTheReplyIsIgnored) {
-  RequestQueue::Request asked = request(kRead1, "a");
-  asked.is_reply = [](Bytes /*frame*/) { return false; };
-  line_.requests().ask(std::move(asked));
-  run(milliseconds(450));
-  EXPECT_TRUE(results_.empty());
-  run(milliseconds(150));
-  EXPECT_EQ(results_, (Results{{"a", {}}}));
-}
-
-TEST_P(Queue, ADconCommandGetsItsReply) {
-  const std::string command = "$03M\r";
-  const std::string reply = "!039042D\r";
-  ask(Frame(command.begin(), command.end()), "name");
-  run(milliseconds(200));
-  EXPECT_EQ(results_, (Results{{"name", Frame(reply.begin(), reply.end())}}));
-}
-
 TEST_P(Queue, IfARequestChecksItsReplyADamagedReplyIsIgnoredOtherwiseItIsMarkedAsDamaged) {
   const auto with_reply_in_another_format = [this](RequestQueue::Request asked) {
     line_.requests().ask(std::move(asked));
@@ -164,19 +134,6 @@ TEST_P(Queue, IfARequestChecksItsReplyADamagedReplyIsIgnoredOtherwiseItIsMarkedA
   checks.is_reply = [](Bytes /*frame*/) { return true; };
   with_reply_in_another_format(std::move(checks));
   EXPECT_EQ(results_.back(), (Results::value_type{"checks", {}}));
-}
-
-TEST_P(Queue, ARequestWhoseOwnerIsGoneIsNotSent) {
-  ask(kRead1, "a");
-  auto other = std::make_shared<int>();
-  RequestQueue::Request asked = request(kRead2, "gone");
-  asked.owner = other;
-  line_.requests().ask(std::move(asked));
-  ask(kRead1, "b");
-  other.reset();
-  run(milliseconds(500));
-  EXPECT_EQ(results_, (Results{{"a", kOff1}, {"b", kOff1}}));
-  EXPECT_EQ(watch_.began.size(), 2U);
 }
 
 TEST_P(Queue, ANewRequestRemovesRequestsWhoseOwnersAreGone) {
@@ -210,18 +167,6 @@ TEST_P(Queue, ARequestThatCannotBeSentInTimeIsNotSentLater) {
   }
 }
 
-TEST_P(Queue, IfTheFunctionDoneAddsARequestTheWaitingRequestsAreSentFirst) {
-  RequestQueue::Request first = request(kRead1, "a");
-  first.done = [this](const RequestQueue::Reply& /*reply*/) {
-    results_.emplace_back("a", Frame());
-    ask(kRead1, "c");
-  };
-  line_.requests().ask(std::move(first));
-  ask(kRead2, "b");
-  run(milliseconds(500));
-  EXPECT_EQ(results_, (Results{{"a", {}}, {"b", kOff2}, {"c", kOff1}}));
-}
-
 TEST_P(Queue, ARequestWaitsForARequestOfAnotherProgramAndItsReply) {
   for (int i = 0; i < 3; ++i) {
     line_.master().send(kRead2.data(), kRead2.size());
@@ -241,14 +186,6 @@ TEST_P(Queue, IfAModuleLosesPowerDuringItsReplyTheNextFrameOfTheMasterIsASeparat
   line_.master().send(kRead1.data(), kRead1.size(), line_.spacing().after_others(kRead1[0]));
   run(milliseconds(200));
   EXPECT_GT(watch_.last_byte_of_others, off);  // the reply of the module at address 01
-}
-
-TEST_P(Queue, ALongTransmissionDoesNotBlockARequestForEver) {
-  const Frame endless(60000, 0x55);
-  line_.master().send(endless.data(), endless.size());
-  ask(kRead1, "a");
-  run(2 * RequestQueue::kReplyTimeout + milliseconds(100));
-  EXPECT_EQ(results_.size(), 1U);
 }
 
 /// A station that sends one byte in each `period`. Its constructor sends the first byte.

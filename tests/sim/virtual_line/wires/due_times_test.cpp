@@ -1,4 +1,4 @@
-// Tests DueTimes. One test compares the results of DueTimes with those of a search through all stations.
+// Compares the results of DueTimes with those of a search through all stations.
 #include "sim/virtual_line/wires/due_times.hpp"
 
 #include <gtest/gtest.h>
@@ -9,33 +9,6 @@
 
 namespace ex9000::sim {
 namespace {
-
-/// Runs the stations that are due. Returns them in the order in which they ran.
-std::vector<std::size_t> due(DueTimes& times, VirtualTime now) {
-  std::vector<std::size_t> ran;
-  times.run_due(now, [&](std::size_t station) { ran.push_back(station); });
-  return ran;
-}
-
-using Stations = std::vector<std::size_t>;
-
-TEST(DueTimes, WithoutStationsNothingIsDue) {
-  DueTimes times;
-  EXPECT_EQ(times.next(), kNever);
-  EXPECT_EQ(due(times, VirtualTime(1)), Stations());
-}
-
-TEST(DueTimes, DueStationsRunInTheOrderOfTheirNumbers) {
-  DueTimes times;
-  for (const int when : {30, 10, 20, 10, 40}) {
-    times.set(times.add(), VirtualTime(when));
-  }
-  EXPECT_EQ(due(times, VirtualTime(10)), (Stations{1, 3}));
-  EXPECT_EQ(times.next(), VirtualTime(20));
-  EXPECT_EQ(due(times, VirtualTime(30)), (Stations{0, 2}));
-  EXPECT_EQ(times.next(), VirtualTime(40));
-  EXPECT_EQ(due(times, VirtualTime(30)), Stations());
-}
 
 TEST(DueTimes, ResultsEqualThoseOfASearchThroughAllStations) {
   std::mt19937_64 random(1);
