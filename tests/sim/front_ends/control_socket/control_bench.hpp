@@ -1,4 +1,4 @@
-// Benches with modules, a master, and the commands of the control socket.
+// A module, a master, and the commands of the control socket.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -6,7 +6,7 @@
 #include <string>
 
 #include "sim/front_ends/control_socket/control.hpp"
-#include "sim/notation/module_notation.hpp"
+#include "sim/text/values.hpp"
 #include "tests/firmware/module_bench.hpp"
 
 namespace ex9000::sim {
@@ -45,18 +45,13 @@ class ControlBench : public ModuleBench {
 
   bool status_has(const std::string& part) { return has(tell("1 status"), part); }
 
-  /// Runs the line until the module restarts. Gives up after 2 s.
-  void run_to_reset() {
-    const VirtualTime gives_up = now() + std::chrono::milliseconds(2000);
-    while (!status_has("mode=starting") && now() < gives_up) {
-      line().wires().run_until(line().wires().next());
-    }
-  }
-
-  /// Returns a text with the status, the inputs, the outputs and the LED of the module. If the module has
-  /// power, the text also contains the reset status, the state of INIT* and the counters.
+  /// Returns a text with the status, the inputs, the outputs and the LED of the module, and with the faults
+  /// and the mode of the line. If the module has power, the text also contains the reset status, the state of
+  /// INIT* and the counters.
   std::string snapshot() {
-    std::string text = tell("1 status") + tell("1 inputs") + tell("1 outputs") + tell("1 led");
+    const hal::SerialMode mode = line().master().mode();
+    std::string text = tell("1 status") + tell("1 inputs") + tell("1 outputs") + tell("1 led") +
+                       tell("faults") + std::to_string(mode.baud) + line_format_text(mode.format);
     if (module().powered()) {
       const State& state = module().module().state();
       text += " reset status " + std::to_string(static_cast<int>(state.reset_status)) + " init " +
@@ -68,8 +63,8 @@ class ControlBench : public ModuleBench {
     return text;
   }
 
-  /// Expects that the command is rejected, and that `snapshot` returns the same text before the command and
-  /// 20 ms after it.
+  /// Expects that the command does not end the program and is rejected, and that `snapshot` returns the same
+  /// text before the command and 20 ms after it.
   void expect_refused(const std::string& command) {
     run(std::chrono::milliseconds(20));
     const std::string before = snapshot();
@@ -80,22 +75,6 @@ class ControlBench : public ModuleBench {
 
  private:
   Control control_;
-};
-
-/// Three modules on one line, with the commands of the control socket.
-class ThreeModules {
- public:
-  ThreeModules() { line_.come_up(); }
-
-  std::string tell(const std::string& command) { return checked(control_.carry_out(command)); }
-  SimulatedModule& at(std::size_t position) { return line_.module(position - 1); }
-
- private:
-  Line line_{
-      {parse_module_spec("EX9042D-M@01"), parse_module_spec("EX9052D@02"), parse_module_spec("EX9055D@0A")},
-      kPaced,
-      [](std::uint8_t, ByteStatus) {}};
-  Control control_{{{"", line_}}};
 };
 
 }  // namespace ex9000::sim

@@ -2,45 +2,14 @@
 #include <gtest/gtest.h>
 
 #include <string>
-#include <vector>
+#include <utility>
 
 #include "tests/sim/front_ends/control_socket/control_bench.hpp"
 
 namespace ex9000::sim {
 namespace {
 
-using Bytes = ModuleBench::Bytes;
 using std::chrono::milliseconds;
-
-TEST(ControlInputs, EveryInputOfEveryModelHasItsOwnLevel) {
-  for (const Model& model : kModels) {
-    ControlBench bench(std::string(model.designation));
-    unsigned levels = 0;
-    for (unsigned channel = 0; channel < model.inputs; ++channel) {
-      EXPECT_EQ(bench.tell("1 input " + std::to_string(channel) + " on"), "ok");
-      levels |= 1U << channel;
-      EXPECT_EQ(bench.number("1 inputs"), levels);
-    }
-    for (unsigned channel = 0; channel < model.inputs; ++channel) {
-      EXPECT_EQ(bench.tell("1 input " + std::to_string(channel) + " off"), "ok");
-      levels &= ~(1U << channel);
-      EXPECT_EQ(bench.number("1 inputs"), levels);
-    }
-  }
-}
-
-TEST(ControlInputs, AModuleReadsTheLevelsAndItCountsAndLatchesTheEdges) {
-  ControlBench bench("EX9052D");
-  bench.tell("1 input 6 on");
-  EXPECT_EQ(bench.ask("@01"), ">4000");
-  EXPECT_EQ(bench.ask("$01L1"), "!400000");
-  EXPECT_EQ(bench.ask("$01L0"), "!000000");
-  bench.tell("1 input 6 on");
-  bench.tell("1 input 6 off");
-  EXPECT_EQ(bench.ask("@01"), ">0000");
-  EXPECT_EQ(bench.ask("$01L0"), "!400000");
-  EXPECT_EQ(bench.ask("#016"), "!0100001");
-}
 
 TEST(ControlInputs, LevelsSurviveAResetAndAPowerCycle) {
   ControlBench bench("EX9052D");
@@ -85,37 +54,15 @@ TEST(ControlPulse, APulseMakesBothEdgesAndKeepsTheLevel) {
 }
 
 TEST(ControlPulse, UpToAMillionPulsesOfOneCommandAreCounted) {
-  struct Case {
-    const char* count;
-    const char* ascii;  ///< modulo 100000
-    unsigned modbus;    ///< modulo 65536
-  };
-  const std::vector<Case> cases{
-      {"1", "00001", 1},          {"1023", "01023", 1023},    {"1024", "01024", 1024},
-      {"65535", "65535", 65535},  {"65536", "65536", 0},      {"99999", "99999", 34463},
-      {"100000", "00000", 34464}, {"999999", "99999", 16959}, {"1000000", "00000", 16960}};
-  for (const Case& pulses : cases) {
-    ControlBench ascii("EX9052D");
-    const VirtualTime before = ascii.now();
-    EXPECT_EQ(ascii.tell(std::string("1 pulse 7 x") + pulses.count), "ok");
-    EXPECT_EQ(ascii.now(), before);
-    EXPECT_EQ(ascii.ask("#017"), std::string("!01") + pulses.ascii) << pulses.count;
-    EXPECT_EQ(ascii.ask("#016"), "!0100000");
-    ControlBench modbus("EX9052D-M");
-    EXPECT_EQ(modbus.tell(std::string("1 pulse 0 x") + pulses.count), "ok");
-    EXPECT_EQ(modbus.ask(Bytes{1, 0x04, 0, 0, 0, 1}),
-              (Bytes{1, 0x04, 2, static_cast<std::uint8_t>(pulses.modbus >> 8U),
-                     static_cast<std::uint8_t>(pulses.modbus & 0xFFU)}))
-        << pulses.count;
-  }
-}
-
-TEST(ControlPulse, AnInvalidCountIsRefused) {
-  ControlBench bench("EX9052D");
-  for (const char* count :
-       {"0", "00", "1000001", "10000000", "999999999", "4294967296", "4294967297", "18446744073709551617",
-        "99999999999999999999999999", "-1", "+1", "0x10", "1e3", "1.0", "1,000", "ten", "1 2", "1;"}) {
-    bench.expect_refused(std::string("1 pulse 0 x") + count);
+  for (const auto& [count, counted] :  // modulo 100000
+       {std::pair("1023", "01023"), std::pair("1024", "01024"), std::pair("65536", "65536"),
+        std::pair("100000", "00000"), std::pair("999999", "99999"), std::pair("1000000", "00000")}) {
+    ControlBench bench("EX9052D");
+    const VirtualTime before = bench.now();
+    EXPECT_EQ(bench.tell(std::string("1 pulse 7 x") + count), "ok");
+    EXPECT_EQ(bench.now(), before);
+    EXPECT_EQ(bench.ask("#017"), std::string("!01") + counted) << count;
+    EXPECT_EQ(bench.ask("#016"), "!0100000");
   }
 }
 

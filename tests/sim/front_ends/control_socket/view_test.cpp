@@ -1,4 +1,4 @@
-// Tests the replies of the control socket about outputs, LED, status, timers and filters.
+// Tests the replies of the control socket about LED, status, timers, filters and faults.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -9,36 +9,6 @@ namespace ex9000::sim {
 namespace {
 
 using std::chrono::milliseconds;
-
-TEST(ControlOutputs, EveryOutputOfEveryModelHasItsOwnBit) {
-  for (const Model& model : kModels) {
-    if (model.outputs == 0) {
-      continue;
-    }
-    const std::string spec(model.designation);
-    ControlBench bench(spec + (model.speaks_modbus() ? ",protocol=ascii" : ""));
-    for (unsigned channel = 0; channel < model.outputs; ++channel) {
-      const std::string group = channel < 8 ? "1" : "B";
-      ASSERT_EQ(bench.ask("#01" + group + std::to_string(channel % 8) + "01"), ">") << spec << channel;
-      EXPECT_EQ(bench.number("1 outputs"), (2U << channel) - 1) << spec << channel;
-    }
-  }
-}
-
-TEST(ControlLed, FlashesAfterATimeoutAndIsOffWithoutPower) {
-  ControlBench bench("EX9042D");
-  EXPECT_EQ(bench.tell("1 led"), "ok on");
-  ASSERT_EQ(bench.ask("~013101"), "!01");
-  bench.run(milliseconds(200));
-  EXPECT_EQ(bench.tell("1 led"), "ok flashing");
-  bench.tell("1 power off");
-  EXPECT_EQ(bench.tell("1 led"), "ok off");
-  bench.tell("1 power on");
-  bench.run(milliseconds(100));
-  EXPECT_EQ(bench.tell("1 led"), "ok flashing");
-  ASSERT_EQ(bench.ask("~011"), "!01");
-  EXPECT_EQ(bench.tell("1 led"), "ok on");
-}
 
 TEST(ControlLed, FlashesWhileTheSettingsCannotBeRead) {
   ControlBench bench("EX9042D");
@@ -120,6 +90,19 @@ TEST(ControlStatus, IsReportedDuringStartAndWithoutPower) {
   EXPECT_TRUE(bench.status_has("EX9042D"));
   EXPECT_TRUE(bench.status_has("power=off"));
   EXPECT_TRUE(has(bench.tell("list"), "EX9042D"));
+}
+
+TEST(ControlFault, BeginsImmediatelyAndFaultOffRemovesOneFaultOrAllFaults) {
+  ControlBench bench("EX9042D");
+  EXPECT_EQ(bench.tell("1 fault lost-reply"), "ok 1");
+  EXPECT_EQ(bench.ask("$01M"), "");
+  EXPECT_EQ(bench.tell("fault bit-errors 1e-9"), "ok 2");
+  EXPECT_EQ(bench.tell("fault off 1"), "ok");
+  EXPECT_EQ(bench.ask("$01M"), "!019042D");
+  EXPECT_EQ(bench.tell("faults"), "ok 1 fault: 2* x1 bit-errors 1e-9");
+  EXPECT_EQ(bench.tell("fault off all"), "ok");
+  EXPECT_EQ(bench.tell("faults"), "ok 0 faults:");
+  EXPECT_EQ(bench.tell("fault off all"), "ok");
 }
 
 }  // namespace

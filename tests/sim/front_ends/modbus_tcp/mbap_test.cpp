@@ -26,22 +26,6 @@ Buffer header(unsigned protocol, unsigned length) {
           0x01};
 }
 
-TEST(MbapReader, AFrameIsCompleteWithItsLastByte) {
-  MbapReader reader;
-  for (std::size_t i = 0; i < kRequest.size(); ++i) {
-    EXPECT_FALSE(reader.next()) << i;
-    add(reader, {kRequest[i]});
-  }
-  const auto frame = reader.next();
-  ASSERT_TRUE(frame);
-  EXPECT_EQ(frame->transaction, 0x1234);
-  EXPECT_EQ(frame->unit, 0x11);
-  EXPECT_EQ(frame->pdu, (Buffer{0x03, 0x01, 0xE8, 0x00, 0x01}));
-  EXPECT_FALSE(reader.next());
-  EXPECT_EQ(reader.size(), 0U);
-  EXPECT_FALSE(reader.broken());
-}
-
 TEST(MbapReader, TheReaderFindsBothFramesForEachSplitOfTheirBytesByTcp) {
   Buffer second = kRequest;
   second[1] = 0x35;
@@ -88,18 +72,6 @@ TEST(MbapReader, OnlyProtocol0IsModbus) {
     EXPECT_EQ(reader.next().has_value(), protocol == 0) << protocol;
     ASSERT_EQ(reader.broken(), protocol != 0) << protocol;
   }
-}
-
-TEST(MbapReader, OnlyFramesBeforeAWrongHeaderAreValid) {
-  MbapReader reader;
-  add(reader, kRequest);
-  add(reader, header(1, 2));
-  add(reader, kRequest);
-  EXPECT_TRUE(reader.next());
-  EXPECT_FALSE(reader.next());
-  EXPECT_TRUE(reader.broken());
-  add(reader, kRequest);
-  EXPECT_FALSE(reader.next());
 }
 
 TEST(MbapBytes, AFrameIsWrittenWithItsHeader) {

@@ -29,20 +29,6 @@ Buffer operator+(Buffer first, const Buffer& second) {
   return first;
 }
 
-TEST(ModbusTcpProgram, AMasterReadsAModuleInRealTime) {
-  for (const char* kind : {"paced", "instant"}) {
-    SimulatorProcess simulator({"EX9042D-M@01", "--port", "modbus-tcp:0", "--timing", kind});
-    SocketClient master(simulator.tcp_port());
-    for (int i = 0; i < 20; ++i) {
-      master.send(kFirst);
-      master.send(kSecond);
-      EXPECT_EQ(master.receive(22), kFirstReply + kSecondReply);
-    }
-    master.send(kToNobody);
-    EXPECT_EQ(master.receive(9), kNoReply);
-  }
-}
-
 TEST(ModbusTcpProgram, TheGreetingNamesThePortAndACommandThatReadsAModule) {
   SimulatorProcess simulator({"EX9042D-M@01", "--port", "modbus-tcp:0"});
   const std::string port = std::to_string(simulator.tcp_port());
