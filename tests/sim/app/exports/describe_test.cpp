@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <sstream>
 #include <stdexcept>
 
@@ -44,6 +45,14 @@ TEST(Describe, FormatsForAnyModelDescribeOneModelOrAll) {
     }
     EXPECT_EQ(described("EX9042D", format).find("EX9055D"), std::string::npos);
   }
+}
+
+TEST(Describe, RegistersMdHasTheDescriptionOfAllModels) {
+  std::ifstream file(EX9000_REGISTERS);
+  std::ostringstream text;
+  text << file.rdbuf();
+  const std::string generated = " describe -->\n" + described("", "markdown") + "<!-- end of ";
+  EXPECT_NE(text.str().find(generated), std::string::npos) << "run toolchain/update-documents";
 }
 
 TEST(Describe, TheTemplateOfEachFormatCanBeFilledInForEachModelWithModbus) {

@@ -38,12 +38,6 @@ Json in_table(const Json& registers, const char* id, const char* table) {
   return {};
 }
 
-TEST(Description, HasEveryModelAndTheFirmwaresVersion) {
-  EXPECT_EQ(description(all_models()).at("firmware"), "D01.00");
-  EXPECT_EQ(description(all_models()).at("models").size(), std::size(reference::kModelRows));
-  EXPECT_EQ(described("EX9060D").at("model"), "EX9060D");
-}
-
 TEST(Description, HasThePropertiesOfAModel) {
   const Json relays = described("EX9068D-M");
   EXPECT_EQ(relays.at("inputs"), 0);
@@ -87,36 +81,6 @@ TEST(Description, HasAModelsFunctions) {
   EXPECT_EQ(with(described("EX9052D-M").at("modbus_functions"), "code", 2).at("name"),
             "Read Discrete Inputs");
   EXPECT_EQ(described("EX9043D").at("modbus_functions"), Json::array());
-}
-
-TEST(Description, HasAModelsRegisters) {
-  const Json registers = described("EX9043D-M").at("modbus_registers");
-  const Json outputs = in_table(registers, "outputs", "coil");
-  EXPECT_EQ(outputs.at("first"), 0);
-  EXPECT_EQ(outputs.at("last"), 0x0F);
-  EXPECT_EQ(outputs.at("plc_first"), "00001");
-  EXPECT_EQ(outputs.at("plc_last"), "00016");
-  EXPECT_EQ(outputs.at("functions"), Json::array({1, 5, 15}));
-  EXPECT_EQ(outputs.at("access"), "read, write");
-  EXPECT_EQ(in_table(registers, "power-on-value", "coil").at("last"), 0xAF);
-  const Json timeout = in_table(registers, "watchdog-timeout", "holding register");
-  EXPECT_EQ(timeout.at("first"), 0x01E8);
-  EXPECT_EQ(timeout.at("functions"), Json::array({3, 6, 16}));
-  EXPECT_EQ(described("EX9043D").at("modbus_registers"), Json::array());
-}
-
-TEST(Description, MarksReadOnlyAndWriteOnlyRegisters) {
-  const Json registers = described("EX9052D-M").at("modbus_registers");
-  const Json counters = in_table(registers, "counters", "input register");
-  EXPECT_EQ(counters.at("last"), 7);
-  EXPECT_EQ(counters.at("functions"), Json::array({4}));
-  EXPECT_EQ(counters.at("access"), "read");
-  EXPECT_TRUE(counters.at("range").is_null());
-  const Json clear = in_table(registers, "clear-latches", "coil");
-  EXPECT_EQ(clear.at("first"), 0x0107);
-  EXPECT_EQ(clear.at("functions"), Json::array({5}));
-  EXPECT_EQ(clear.at("access"), "write");
-  EXPECT_EQ(clear.at("range"), "1 only");
 }
 
 // wire.md section 1: if a model has more than eight outputs, its data byte First contains DO8 and the higher

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Checks the form of the exports for ESPHome, Home Assistant and wb-mqtt-serial, and of the tables in CSV.
+"""Checks the form of the exports for ESPHome, Home Assistant and wb-mqtt-serial, and of the tables in Markdown and CSV.
 
 answers_test.py checks the addresses in them, and node_red_test.js checks the flows for Node-RED.
 """
@@ -7,11 +7,12 @@ answers_test.py checks the addresses in them, and node_red_test.js checks the fl
 import csv
 import io
 import json
+import re
 import unittest
 
 import yaml
 
-from program import describe, models_with_modbus
+from program import describe, models_with_modbus, run
 
 
 def hub_of(model, *options):
@@ -129,6 +130,19 @@ class WbMqttSerial(unittest.TestCase):
             "name": "Host watchdog timeout", "id": "host_watchdog_timeout", "reg_type": "holding", "address": 0x01E8,
             "type": "value", "format": "u16", "scale": 0.1, "round_to": 0.1, "units": "s", "readonly": True})
         self.assertEqual(of["Host watchdog timeout status"]["type"], "alarm")
+
+
+class Markdown(unittest.TestCase):
+    def test_a_description_of_one_model_has_only_this_model_and_tables_with_rows_of_equal_length(self):
+        for model in [line.split()[0] for line in run("--models").splitlines()]:
+            text = describe(model)
+            self.assertTrue(text.startswith(f"## {model}: "), model)
+            self.assertEqual(len(re.findall("^[|] EX", text, re.MULTILINE)), 1)
+            self.assertEqual("### Modbus" in text, model in models_with_modbus())
+            self.assertNotRegex(text, r" \n|\n\n\n|\|  \||\n\n\Z")
+            for table in re.findall(r"(?:^\|.*\|\n)+", text, re.MULTILINE):
+                cells = {len(re.findall(r"(?<!\\)\|", row)) for row in table.splitlines()}
+                self.assertEqual(len(cells), 1, table)
 
 
 class Csv(unittest.TestCase):

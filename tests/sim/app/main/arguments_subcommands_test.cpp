@@ -92,16 +92,6 @@ TEST(Arguments, HelpFitsOnAScreenAndHasTopics) {
   expect_error({"help"}, "help: '' is not a topic", "expected one of modules|ports");
 }
 
-TEST(Arguments, TheListOfModelsHasOneLineForEachModelAndMentionsModbusRtu) {
-  const std::string text = printed({"--models"});
-  for (const Model& model : kModels) {
-    EXPECT_NE(("\n" + text).find("\n" + std::string(model.designation) + " "), std::string::npos)
-        << model.designation;
-  }
-  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), static_cast<std::ptrdiff_t>(std::size(kModels)));
-  EXPECT_NE(text.find("Modbus RTU"), std::string::npos);
-}
-
 TEST(Arguments, DescribePrintsAllModelsInMarkdownByDefault) {
   EXPECT_EQ(printed({"describe"}), describe({}));
   EXPECT_EQ(printed({"describe", "--format", "markdown"}), describe({}));
@@ -114,15 +104,6 @@ TEST(Arguments, DescribeAcceptsAModelNameInAnyCaseWithOrWithoutEx) {
   }
 }
 
-TEST(Arguments, DescribeOptionsMayComeBeforeOrAfterTheModel) {
-  EXPECT_EQ(printed({"describe", "--format=json", "EX9042D"}),
-            printed({"describe", "EX9042D", "--format", "json"}));
-  EXPECT_EQ(
-      printed({"describe", "EX9042D-M", "--port", "tcp:4001", "--address=2", "--format", "home-assistant"}),
-      printed({"describe", "--format", "home-assistant", "--address", "02", "--port", "tcp:127.0.0.1:4001",
-               "EX9042D-M"}));
-}
-
 TEST(Arguments, WrongDescribeArgumentsAreRefused) {
   expect_error({"describe", "EX9999"}, "describe: 'EX9999'", "--models");
   expect_error({"describe", "EX9042D@01"}, "EX9042D@01", "--models");
@@ -130,17 +111,6 @@ TEST(Arguments, WrongDescribeArgumentsAreRefused) {
   expect_error({"describe", "EX9042D", "--pty", "x"}, "--pty", "--help");
   expect_error({"describe", "EX9042D", "--format"}, "--format", "--help");
   EXPECT_EQ(parse({"describe", "EX9999"}).exit_status, kWrongArguments);
-}
-
-TEST(Arguments, HelpListsEachOptionWithItsValue) {
-  const std::string text = printed({"--help"});
-  for (const char* word :
-       {"MODULE ", "--log [text|json|off] ", "--capture FILE ", "--port PORT ", "--baud 1200|",
-        "--strict-gaps ", "--fault FAULT ", "--seed NUMBER ", "--timing paced|instant ",
-        "--panel [PORT|off] ", "--control PATH ", "--for TIME ", "--example ", "--models ", "--schema ",
-        "--version ", "  describe ", "  play ", "  help "}) {
-    EXPECT_NE(text.find(word), std::string::npos) << word;
-  }
 }
 
 TEST(Arguments, DescribeHasItsOwnHelp) {

@@ -63,18 +63,6 @@ TEST(Persistence, AModuleUsesTheSettingsInAFileOfThisOrEarlierFirmwareAndDoesNot
   }
 }
 
-TEST(Persistence, ANewFileWithoutPresetsHasFactorySettings) {
-  const Directory directory;
-  const std::string module = "EX9042D" + image_in(directory);
-  for (int start = 0; start < 2; ++start) {
-    Simulator simulator({module});
-    EXPECT_EQ(simulator.ask("$01M"), "!019042D");
-    EXPECT_EQ(simulator.ask("$012"), "!01400600");
-    EXPECT_EQ(simulator.tell("1 led"), "on");
-    EXPECT_EQ(bytes_of_file(directory / "image").size(), kImageSize);
-  }
-}
-
 TEST(Persistence, TheFileOverridesThePresetsAndTheGreetingReportsIt) {
   const Directory directory;
   Simulator({"EX9042D@0A,name=FILED" + image_in(directory)});
@@ -143,38 +131,6 @@ TEST(Persistence, AFileMayBeReachedThroughASymbolicLink) {
   }
   EXPECT_TRUE(fs::is_symlink(directory / "link"));
   EXPECT_EQ(Simulator({"EX9042D" + image_in(directory)}).ask("$01M"), "!01NEW");
-}
-
-TEST(Persistence, OutputsStartWithTheStoredPowerOnValue) {
-  const Directory directory;
-  {
-    Simulator simulator({"EX9042D" + image_in(directory)});
-    EXPECT_EQ(simulator.ask("@011A05"), ">");
-    EXPECT_EQ(simulator.ask("~015P"), "!01");
-    EXPECT_EQ(simulator.ask("@010000"), ">");
-    simulator.process().end(SIGKILL);
-  }
-  EXPECT_EQ(Simulator({"EX9042D" + image_in(directory)}).tell("1 outputs"), "1A05");
-}
-
-TEST(Persistence, AHostWatchdogTimeoutSurvivesARestart) {
-  const Directory directory;
-  {
-    Simulator simulator({"EX9042D" + image_in(directory)});
-    EXPECT_EQ(simulator.ask("@011001"), ">");
-    EXPECT_EQ(simulator.ask("~015S"), "!01");
-    EXPECT_EQ(simulator.ask("~013101"), "!01");
-    // Polls through the control socket, because commands on the line would be logged. This loop does not read
-    // the log, and a full pipe would block the program.
-    EXPECT_TRUE(becomes_true([&] { return simulator.tell("1 led") == "flashing"; }));
-    EXPECT_EQ(simulator.ask("~010"), "!0184");
-    EXPECT_EQ(simulator.ask("~01ONEW"), "!01");  // the module has stored the timeout before it replies
-    simulator.process().end(SIGKILL);
-  }
-  Simulator simulator({"EX9042D" + image_in(directory)});
-  EXPECT_EQ(simulator.ask("~010"), "!0184");
-  EXPECT_EQ(simulator.tell("1 led"), "flashing");
-  EXPECT_EQ(simulator.tell("1 outputs"), "1001");
 }
 
 // --- images without valid settings (wire.md D8) ---

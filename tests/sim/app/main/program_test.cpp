@@ -33,15 +33,6 @@ Finished simulator(std::vector<std::string> arguments, const std::string& direct
   return run(arguments, directory);
 }
 
-TEST(Program, EndsCleanlyAndRemovesItsLink) {
-  for (const int signal : {SIGINT, SIGTERM}) {
-    SimulatorProcess process({"EX9042D-M"});
-    ASSERT_TRUE(fs::is_symlink(process.tty()));
-    EXPECT_EQ(process.end(signal), 0);
-    EXPECT_FALSE(fs::is_symlink(process.tty()));
-  }
-}
-
 TEST(Program, EndsCleanlyAfterTheReaderOfItsLogClosesThePipe) {
   Directory directory;
   // A master that continues to send makes the log grow after `head` has ended.
@@ -221,54 +212,18 @@ TEST(Program, WrongArgumentsGiveAOneLineErrorAndCreateNoFiles) {
   const std::vector<Case> cases{
       {{}, "no module", "EX9042D-M"},
       {{"EX1234"}, "EX1234", "--models"},
-      {{"EX9042D-M@"}, "EX9042D-M@", "hex"},
-      {{"EX9042D-M@123"}, "123", "hex"},
-      {{"EX9042D-M@00"}, "00", "01 to F7"},
-      {{"EX9042D-M@F8"}, "F8", "01 to F7"},
-      {{"EX9042D,protocol=modbus"}, "protocol=modbus", "ASCII only"},
-      {{"EX9042D-M,protocol=rtu"}, "protocol=rtu", "modbus or ascii"},
-      {{"EX9042D,baud=9601"}, "baud=9601", "9600"},
-      {{"EX9042D,checksum=yes"}, "checksum=yes", "on or off"},
-      {{"EX9052D,edge=up"}, "edge=up", "rising or falling"},
-      {{"EX9042D,name="}, "name=", "1 to 6"},
-      {{"EX9042D,name=SEVENTY"}, "name=SEVENTY", "1 to 6"},
-      {{"EX9042D,colour=red"},
-       "colour=red: colour=: unknown key",
-       "expected one of address, protocol, baud, format"},
-      {{"EX9042D,init"}, "init", "on or off"},
-      {{"EX9042D", "--baud", "12"}, "--baud: '12'", "1200"},
+      {{"EX9042D,colour=red"}, "colour=: unknown key", "expected one of address, protocol"},
       {{"EX9042D", "--bogus"}, "--bogus", "--help"},
+      {{"describe", "EX1"}, "'EX1'", "--models"},
       {{"EX9042D", "--port", "pty:/no/such/place/tty"}, "--port: /no/such/place/tty", "path"},
-      {{"EX9042D", "--port", "pty:"}, "--port: pty:", "path"},
-      {{"EX9042D", "--port", "tcp:here"}, "--port: tcp:here: 'here'", "HOST:PORT"},
       {{"EX9042D", "--port", "tcp:192.0.2.1:5020"}, "--port: 192.0.2.1:5020", "name", 1},
+      {{"EX9042D-M", "--port", "modbus-tcp:192.0.2.1:502"}, "--port: 192.0.2.1:502", "name", 1},
       {{"EX9042D", "--port", "serial:/no/such/port"}, "--port: /no/such/port", "name", 1},
-      {{"EX9042D", "--timing", "fast"}, "--timing: 'fast'", "instant or paced"},
       {{"EX9042D", "--control", "/no/such/place/ctl"}, "--control: /no/such/place/ctl", "path"},
       {{"EX9042D", "--capture", "/no/such/place/pcapng"}, "--capture: /no/such/place/pcapng", "path"},
       {{"EX9042D", "--capture", "."}, "--capture: .", "path"},
       {{"EX9042D", "--capture", "a", "--control", "/no/such/place/ctl"}, "--control", "path"},
       {{"EX9042D,eeprom=/no/such/place/bin", "--capture", "a"}, "eeprom=: /no/such/place/bin", "path"},
-      {{"EX9042D", "--log=xml"}, "--log: 'xml'", "expected text, json, on or off"},
-      {{"EX9042D,eeprom=/no/such/place/bin"}, "eeprom=: /no/such/place/bin", "path"},
-      {{"describe", "EX1"}, "'EX1'", "--models"},
-      {{"describe", "--format", "yaml"}, "--format yaml", "home-assistant"},
-      {{"describe", "--format", "home-assistant"}, "--format home-assistant", "MODEL"},
-      {{"describe", "--format", "node-red"}, "--format node-red", "MODEL"},
-      {{"describe", "--format", "wb-mqtt-serial"}, "--format wb-mqtt-serial", "MODEL"},
-      {{"describe", "EX9042D", "--format", "home-assistant"},
-       "EX9042D --format home-assistant",
-       "Modbus RTU"},
-      {{"describe", "EX9055D", "--format", "node-red"}, "does not support Modbus", "--models"},
-      {{"describe", "EX9042D-M", "--format", "node-red", "--address", "00"}, "--address: '00'", "01 to F7"},
-      {{"describe", "EX9042D-M", "--format", "node-red", "--port", "tcp:host"},
-       "--port: 'host'",
-       "HOST:PORT"},
-      {{"describe", "EX9042D-M", "--address", "02"}, "--address", "leave it out"},
-      {{"EX9042D", "describe"}, "describe", "leave it out"},
-      {{"--capture", "a", "play", "b"}, "--capture comes before the subcommand", "move it after 'play'"},
-      {{"--example", "EX9042D"}, "--example", "leave out EX9042D"},
-      {{"EX9042D", "--speed", "1e-12"}, "--speed: '1e-12'", "from 0.001 to 1000"},
       {{"play", "none.txt", "EX9042D", "--capture", "a"}, "none.txt: cannot be read", "name a transcript"},
       {{"EX9042D", "--port", "pty:a", "--capture", "a"}, "--capture: a: is the port a", "another path"},
       {{"EX9042D", "--control", "a", "--capture", "./a"},
@@ -334,17 +289,6 @@ TEST(Program, RunDurationIsMeasuredInLineTime) {
   EXPECT_GE(seconds_of_a_run("1000", "30min"), 1.8);
 }
 
-TEST(Program, DescribesAModelInEveryFormat) {
-  const Directory directory;
-  for (const char* format : {"markdown", "json", "csv", "home-assistant", "node-red", "wb-mqtt-serial"}) {
-    const Finished finished = simulator({"describe", "9052d-m", "--format", format}, directory.path());
-    EXPECT_EQ(finished.status, 0) << format;
-    EXPECT_EQ(finished.error, "");
-    EXPECT_NE(finished.output.find("EX9052D-M"), std::string::npos) << format;
-    EXPECT_TRUE(fs::is_empty(directory.path()));
-  }
-}
-
 TEST(Program, AFileAtThePathOfTheLinkIsNotReplaced) {
   Directory directory;
   std::ofstream(directory.path() + "/ex9000.tty") << "precious";
@@ -384,20 +328,6 @@ TEST(Program, RunsFromItsInstallPrefix) {
   const Finished installed = run({"cmake", "--install", EX9000_BUILD, "--prefix", directory.path()});
   EXPECT_EQ(installed.status, 0) << installed.error;
   EXPECT_EQ(run({directory.path() + "/bin/ex9000-sim", "--version"}, "/").output, "ex9000-sim D01.00\n");
-}
-
-TEST(Program, PrintsItsVersionModelsAndHelp) {
-  Directory directory;
-  EXPECT_EQ(simulator({"--version"}, directory.path()).output, "ex9000-sim D01.00\n");
-  const Finished models = simulator({"--models"}, directory.path());
-  EXPECT_EQ(models.status, 0);
-  EXPECT_EQ(std::count(models.output.begin(), models.output.end(), '\n'),
-            static_cast<std::ptrdiff_t>(std::size(kModels)));
-  EXPECT_NE(models.output.find("EX9068AD-M"), std::string::npos);
-  const Finished help = simulator({"--help"}, directory.path());
-  EXPECT_EQ(help.status, 0);
-  EXPECT_NE(help.output.find("--port"), std::string::npos);
-  EXPECT_TRUE(fs::is_empty(directory.path()));
 }
 
 TEST(Program, PrintsMbpollLinesThatWorkWhenPasted) {

@@ -149,46 +149,6 @@ TEST(Lines, EachLineHasItsOwnBaudRateAndItsNameInTheLog) {
   EXPECT_EQ(halls, "x");
 }
 
-TEST(Lines, ModuleNumbersContinueFromLineToLine) {
-  Lines lines(kHallAndYard);
-  EXPECT_EQ(lines.control().ask("list"),
-            "ok 3 modules: 1 EX9042D at 01 on hall, 2 EX9055D at 02 on hall, 3 EX9052D at 01 on yard");
-  EXPECT_EQ(lines.control().ask("3 input 7 on"), "ok");
-  EXPECT_EQ(lines.control().ask("2 inputs"), "ok 0000");
-  Terminal yard(lines / "yard.tty", 9600);
-  EXPECT_EQ(ask(yard, "@01"), ">8000");
-}
-
-TEST(Lines, FaultsAffectOnlyTheirOwnLine) {
-  Lines lines(kHallAndYard, {"--log"});
-  Terminal hall(lines / "hall.tty", 9600);
-  Terminal yard(lines / "yard.tty", 9600);
-  EXPECT_EQ(lines.control().ask("line yard fault late-reply 30ms every 2nd reply"), "ok 1");
-  EXPECT_EQ(lines.control().ask("3 fault power-cut for 1h"), "ok 2");
-  EXPECT_EQ(lines.control().ask("2 fault gone"), "ok 1");
-  EXPECT_EQ(lines.control().ask("line yard faults"),
-            "ok 2 faults: 1 x0 late-reply 30ms every 2nd reply; 2* x1 3 power-cut for 1h");
-  EXPECT_EQ(lines.control().ask("line hall faults"), "ok 1 fault: 1* x1 2 gone");
-  EXPECT_TRUE(has(lines.control().ask("faults"), "put 'line NAME' before the command"));
-  EXPECT_EQ(ask(hall, "$01M"), "!019042D");
-  yard.type("$01M\r");
-  hall.type("$02M\r");
-  // The requests are on the lines before the faults end.
-  EXPECT_TRUE(lines.process().wait_for("  > master  $02M"));
-  EXPECT_TRUE(lines.process().wait_for("  > master  $01M", 2));
-  EXPECT_TRUE(
-      yard.read(milliseconds(100))
-          .empty());  // on a busy machine this check can miss an error; it fails only if there is an error
-  EXPECT_TRUE(hall.read(milliseconds(100)).empty());
-  EXPECT_EQ(lines.control().ask("line yard fault off 2"), "ok");
-  EXPECT_EQ(lines.control().ask("line hall fault off all"), "ok");
-  while (has(lines.control().ask("3 status"), "starting") ||
-         has(lines.control().ask("2 status"), "starting")) {
-  }
-  EXPECT_EQ(ask(yard, "$01M"), "!019052");
-  EXPECT_EQ(ask(hall, "$02M"), "!029055");
-}
-
 TEST(Lines, TheRepliesAndTheLogAreCorrectIfAllLinesAreBusy) {
   constexpr int kRequests = 50;
   {
@@ -324,20 +284,6 @@ TEST(Lines, ErrorsInSettingsForAllLinesNameTheBusFileOrTheOption) {
   }
 }
 
-TEST(Lines, AnErrorInABusFileNamesTheFileTheLineNumberAndTheKey) {
-  const Directory directory;
-  const BusFile file("{\"lines\": [{\"modules\": [{\"model\": \"EX9042D\",\n\"colour\": 1}]}]}");
-  const Finished finished = run({simulator_path(), file.path()}, directory.path());
-  EXPECT_EQ(finished.status, 2);
-  EXPECT_EQ(finished.output, "");
-  EXPECT_EQ(finished.error.rfind(
-                "ex9000-sim: " + file.path() + ":2: colour: unknown key; expected one of model, address", 0),
-            0U)
-      << finished.error;
-  EXPECT_EQ(std::count(finished.error.begin(), finished.error.end(), '\n'), 1);
-  EXPECT_TRUE(fs::is_empty(directory.path()));
-}
-
 // --- one line on the command line ---
 
 TEST(LineOfTheCommandLine, RunsTheFaultsAndInputProgramsOfItsOptions) {
@@ -352,33 +298,6 @@ TEST(LineOfTheCommandLine, RunsTheFaultsAndInputProgramsOfItsOptions) {
   const std::string some = ask(terminal, "#025");
   EXPECT_EQ(some.rfind("!02", 0), 0U);
   EXPECT_GT(std::stoul(some.substr(3)), 5U);
-}
-
-/// Sends 30 commands. After each command, asks how many times the fault has occurred so far. Returns these
-/// numbers as text.
-std::string occurrences(const std::string& seed) {
-  SimulatorProcess simulator({"EX9042D@01", "--timing", "instant", "--control", "control", "--fault",
-                              "lost-reply with probability 0.5", "--seed", seed});
-  ControlClient control(simulator.directory() + "/control");
-  Terminal terminal(simulator.tty(), 9600);
-  std::string counts;
-  for (const char digit : std::string("123456789ABCDEF123456789ABCDEF")) {
-    terminal.type("@01000" + std::string(1, digit) + "\r");
-    EXPECT_TRUE(becomes_true([&] { return control.ok("1 outputs") == "000" + std::string(1, digit); }));
-    std::string faults;
-    EXPECT_TRUE(becomes_true([&] {
-      faults = control.ok("faults");
-      return !has(faults, "*");  // the fault is in progress until the reply ends
-    }));
-    counts += faults.substr(faults.find(" x"), 4) + ",";
-  }
-  return counts;
-}
-
-TEST(LineOfTheCommandLine, TheSeedDeterminesWhichRepliesAFaultAffects) {
-  const std::string of_seed = occurrences("7");
-  EXPECT_EQ(occurrences("7"), of_seed);
-  EXPECT_NE(occurrences("8"), of_seed);
 }
 
 // Some faults attach their own stations to the bus. The log has no names for these stations.

@@ -150,16 +150,6 @@ TEST_F(StepperTest, WithoutAnAdvanceNoTimePassesAndNoReplyArrives) {
   EXPECT_EQ(line_.port->take_read(), "");
 }
 
-TEST_F(StepperTest, ARequestAndItsReplyTakeTimeOnTheLine) {
-  line_.port->write("$01M\r");
-  // The request of five characters at 9600 baud ends after 5.208 ms. The reply begins one character time
-  // later.
-  advance("6ms");
-  EXPECT_EQ(line_.port->take_read(), "");
-  advance("20ms");
-  EXPECT_EQ(line_.port->take_read(), "!019042D\r");
-}
-
 TEST_F(StepperTest, AnAdvanceThatEndsDuringAReplyDeliversTheBytesSoFar) {
   line_.port->write("$01M\r");
   advance("11ms");
@@ -192,14 +182,6 @@ TEST_F(StepperTest, CountsTheNewBytesOfAllLines) {
   other_.port->write("$01M\r");
   other_.port->tell();
   ASSERT_EQ(answers_.size(), 1U);
-  EXPECT_EQ(other_.port->take_read(), "!019052\r");
-}
-
-TEST_F(StepperTest, SendsAllAvailableBytesAndNotOnlyTheGivenNumber) {
-  line_.port->write("$01M\r");
-  other_.port->write("$01M\r");
-  EXPECT_EQ(advance("50ms after 5"), "ok 0.15");
-  EXPECT_EQ(line_.port->take_read(), "!019042D\r");
   EXPECT_EQ(other_.port->take_read(), "!019052\r");
 }
 
@@ -250,26 +232,12 @@ TEST_F(StepperTest, QuietWaitsForTheSilenceThatEndsAModbusFrame) {
   EXPECT_EQ(line_.port->take_read(), "");
 }
 
-TEST_F(StepperTest, QuietWaitsUntilASettingIsStored) {
-  line_.port->write("~01OPUMP\r");
-  advance("10s after 9 quiet");
-  EXPECT_EQ(line_.port->take_read(), "!01\r");
-  EXPECT_FALSE(line_.stepped->pending());
-}
-
 TEST_F(StepperTest, QuietWaitsForAModuleThatIsStarting) {
   line_.line->module(0).power(false);
   line_.line->module(0).power(true);
   EXPECT_TRUE(line_.stepped->pending());
   advance("10s quiet");
   EXPECT_TRUE(line_.line->module(0).module().listening());
-}
-
-TEST_F(StepperTest, QuietWaitsForAReplyThatAFaultDelays) {
-  line_.line->faults().add(parse_fault("late-reply 500ms"));
-  line_.port->write("$01M\r");
-  EXPECT_GT(std::stod(advance("10s after 5 quiet").substr(3)), 0.6);
-  EXPECT_EQ(line_.port->take_read(), "!019042D\r");
 }
 
 TEST_F(StepperTest, QuietDoesNotAdvanceIfNothingIsPending) {
@@ -288,25 +256,6 @@ TEST_F(StepperTest, QuietDoesNotWaitForAHostWatchdog) {
   line_.port->write("~010\r");
   advance("10s quiet");
   EXPECT_EQ(line_.port->take_read(), "!0184\r");
-}
-
-TEST_F(StepperTest, TheSameCommandsHaveTheSameEffectsAtTheSameTimes) {
-  const auto play = [] {
-    StillLine line({"EX9042D@01"});
-    std::string text;
-    Stepper stepper({line.stepped.get()}, kNever, [] { return false; });
-    line.stepped->start([] {});
-    line.line->faults().add(parse_fault("bit-errors 1e-3"));
-    for (int i = 0; i < 50; ++i) {
-      line.port->write("@01\r");
-      stepper.advance("advance 1s after 4 quiet", [&](const Control::Reply& reply) { text += reply.text; });
-      text += line.port->take_read();
-    }
-    return text;
-  };
-  const std::string first = play();
-  EXPECT_EQ(first, play());
-  EXPECT_NE(first.find(">0000"), std::string::npos);
 }
 
 TEST_F(StepperTest, TheLineTakesTheBaudRateOfAPortBeforeItSendsTheBytesOfThePort) {
@@ -392,14 +341,6 @@ TEST_F(StepperTest, WaitsForUpTo65536Bytes) {
   line_.port->write(std::vector<std::uint8_t>(65536, 0));
   line_.port->tell();
   EXPECT_EQ(answers_, std::vector<std::string>{"ok 1.1"});
-}
-
-TEST_F(StepperTest, AModuleAtAnotherRateIsReportedAtTheStart) {
-  StillLine mixed({"EX9042D@01", "EX9052D@02,baud=1200"});
-  EXPECT_TRUE(mixed.notices.empty());
-  start_stepped(mixed);
-  ASSERT_EQ(mixed.notices.size(), 1U);
-  EXPECT_NE(mixed.notices[0].find("1200"), std::string::npos) << mixed.notices[0];
 }
 
 TEST(Stepper, RecognizesTheAdvanceCommand) {

@@ -273,6 +273,16 @@ TEST(ControlSocket, QuitWorksWhileAnotherClientDoesNotRead) {
   EXPECT_TRUE(fs::is_empty(simulator.directory()));
 }
 
+TEST(ControlSocket, SigintSigtermAndSighupEndTheProgramAndRemoveLinkAndSocket) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    Simulator simulator({"EX9055D"});
+    ControlClient client(simulator.socket());
+    EXPECT_EQ(simulator.end(signal), 0);
+    EXPECT_TRUE(client.at_end());
+    EXPECT_TRUE(fs::is_empty(simulator.directory()));
+  }
+}
+
 TEST(ControlSocket, AFileThatReplacedTheSocketIsNotRemoved) {
   Simulator simulator({"EX9055D"});
   fs::remove(simulator.socket());
