@@ -54,16 +54,6 @@ std::string unavailability(const std::string& path) {
   return "";
 }
 
-TEST(CaptureFile, EachBlockIsInTheFileWhenAppendReturns) {
-  const Directory directory;
-  CaptureFile file(directory / "a", kPlace);
-  file.begin();
-  file.append(block("one"));
-  EXPECT_EQ(bytes_of_file(directory / "a"), "one");
-  file.append(block("two"));
-  EXPECT_EQ(bytes_of_file(directory / "a"), "onetwo");
-}
-
 TEST(CaptureFile, AnExistingFileIsNotOverwrittenBeforeTheCaptureBegins) {
   const Directory directory;
   write_file(directory / "a", "precious");
@@ -83,27 +73,6 @@ TEST(CaptureFile, IsUsedByOneSimulatorAtATime) {
   first->begin();
   first.reset();
   EXPECT_EQ(refusal(directory / "a"), "");
-}
-
-TEST(CaptureFile, APathThatCannotBeWrittenIsRefusedWithPlaceAndPath) {
-  const Directory directory;
-  for (const std::string& path : {directory / "none/a", directory.path()}) {
-    const std::string why = refusal(path);
-    EXPECT_EQ(why.find(kPlace + path + ": "), 0U) << why;
-    EXPECT_NE(why.find("name a path that can be written"), std::string::npos) << why;
-  }
-  EXPECT_TRUE(fs::is_empty(directory.path()));
-}
-
-TEST(CaptureFile, AFullDiskIsReported) {
-  CaptureFile file("/dev/full", kPlace);
-  file.begin();
-  try {
-    file.append(block("one"));
-    FAIL() << "the write to a full device succeeded";
-  } catch (const std::runtime_error& error) {
-    EXPECT_EQ(std::string(error.what()), kPlace + "/dev/full: cannot be written: No space left on device");
-  }
 }
 
 TEST(CaptureFile, RemovesABlockThatCouldNotBeWrittenCompletely) {

@@ -6,6 +6,8 @@
 
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "sim/app/play/modbus_frame.hpp"
 
@@ -27,7 +29,7 @@ bool has(const std::string& text, std::string_view part) { return text.find(part
 
 TEST(LooksLikeDcon, IsTrueForADelimiterOrReplyCharacterBeforePrintableText) {
   for (const char* text :
-       {"#**\r", "$01M\r", "%0102400640\r", "@01\r", "~**\r", "!01400640\r", ">\r", "?01\r"}) {
+       {"#**\r", "$01M\r", "%0102400640\r", "@01\r", "~**\r", "!01400640\r", ">\r", "?01\r", "$", "$01"}) {
     EXPECT_TRUE(looks_like_dcon(dcon(text))) << text;
   }
 }
@@ -45,11 +47,6 @@ TEST(LooksLikeDcon, IgnoresZeroBytesAndALineFeedBeforeADelimiter) {
   EXPECT_FALSE(looks_like_dcon(dcon("\n")));
   EXPECT_FALSE(looks_like_dcon(dcon("\n!01\r")));
   EXPECT_FALSE(looks_like_dcon(rtu({0x0A, 0x24, 0x00, 0x00})));
-}
-
-TEST(LooksLikeDcon, IsTrueForAnIncompleteFrame) {
-  EXPECT_TRUE(looks_like_dcon(dcon("$")));
-  EXPECT_TRUE(looks_like_dcon(dcon("$01")));
 }
 
 TEST(WasDcon, IsTrueForADconFrameEvenIfItIsIncompleteOrDamagedInTheMiddle) {
@@ -81,11 +78,9 @@ TEST(LooksLikeDcon, IsFalseForOtherFrames) {
 
 // --- text for people ---
 
-TEST(Shown, DconFramesAreShownAsText) { EXPECT_EQ(shown(dcon("$01M\r")), "$01M\\r"); }
-
-TEST(Shown, DconFramesWithoutACarriageReturnAreShownAsText) { EXPECT_EQ(shown(dcon("$01M")), "$01M"); }
-
-TEST(Shown, OtherFramesAreShownInHex) {
+TEST(Shown, DconFramesAreShownAsTextAndOtherFramesInHex) {
+  EXPECT_EQ(shown(dcon("$01M\r")), "$01M\\r");
+  EXPECT_EQ(shown(dcon("$01M")), "$01M");
   EXPECT_EQ(shown({0x01, 0x05, 0x00, 0x00, 0xFF, 0x00, 0x8C, 0x3A}), "01 05 00 00 FF 00 8C 3A");
   EXPECT_EQ(shown({0x00}), "00");
   EXPECT_EQ(shown({}), "");
@@ -94,141 +89,99 @@ TEST(Shown, OtherFramesAreShownInHex) {
 // --- DCON ---
 
 TEST(DconMeaning, ACommandIsNamedAsTheManualsWriteIt) {
-  EXPECT_EQ(of_request("$012\r").find("$AA2: "), 0U);
-  EXPECT_EQ(of_request("$01M\r").find("$AAM: "), 0U);
-  EXPECT_EQ(of_request("#010B1F\r").find("#AABBDD: "), 0U);
-  EXPECT_EQ(of_request("#013\r").find("#AAN: "), 0U);
-  EXPECT_EQ(of_request("@01\r").find("@AA: "), 0U);
-  EXPECT_EQ(of_request("@01FF\r").find("@AA(Data): "), 0U);
-  EXPECT_EQ(of_request("$01C\r").find("$AAC: "), 0U);
-  EXPECT_EQ(of_request("$01C3\r").find("$AACN: "), 0U);
-  EXPECT_EQ(of_request("~013164\r").find("~AA3EVV: "), 0U);
-  EXPECT_EQ(of_request("%0102400600\r").find("%AANNTTCCFF: "), 0U);
-}
-
-TEST(DconMeaning, ABroadcastIsNamed) {
-  EXPECT_EQ(of_request("#**\r").find("#**: "), 0U);
-  EXPECT_EQ(of_request("~**\r").find("~**: "), 0U);
-  EXPECT_TRUE(has(of_request("~**\r"), "host"));
-}
-
-TEST(DconMeaning, ACommandWithAChecksumIsNamed) {
-  EXPECT_EQ(of_request("$012B7\r").find("$AA2: "), 0U);
-  EXPECT_EQ(of_request("~**D2\r").find("~**: "), 0U);
-  EXPECT_EQ(of_request("#**77\r").find("#**: "), 0U);
-}
-
-TEST(DconMeaning, AWrongChecksumIsReported) {
-  EXPECT_TRUE(has(of_request("$012B8\r"), ", wrong checksum"));
-  EXPECT_EQ(check_error(dcon("$012B8\r"), Speaker::Master), "wrong checksum");
-  EXPECT_EQ(check_error(dcon("$012B7\r"), Speaker::Master), "");
-  EXPECT_EQ(check_error(dcon("~**D3\r"), Speaker::Master), "wrong checksum");
-}
-
-TEST(DconMeaning, NoWrongChecksumIsReportedIfTheFrameMayHaveNoChecksum) {
-  EXPECT_EQ(check_error(dcon("@01FF\r"), Speaker::Master), "");
-  EXPECT_EQ(check_error(dcon("$01Z\r"), Speaker::Master), "");
-  EXPECT_EQ(check_error(dcon("$\r"), Speaker::Master), "");
-  EXPECT_EQ(check_error(dcon("!01400600\r"), Speaker::Module), "");
-}
-
-TEST(DconMeaning, AnUnknownCommandIsReported) {
-  EXPECT_EQ(of_request("$01Z\r"), "unknown command");
-  EXPECT_EQ(of_request("$**\r"), "unknown command");
-  EXPECT_EQ(of_request("%01\r"), "unknown command");
-}
-
-TEST(DconMeaning, AFrameTooShortForAnAddressHasNoMeaning) {
-  EXPECT_EQ(of_request("$\r"), "");
+  for (const auto& [command, named] : std::vector<std::pair<const char*, const char*>>{
+           {"$012\r", "$AA2: "},
+           {"$01M\r", "$AAM: "},
+           {"#010B1F\r", "#AABBDD: "},
+           {"#013\r", "#AAN: "},
+           {"@01\r", "@AA: "},
+           {"@01FF\r", "@AA(Data): "},
+           {"$01C\r", "$AAC: "},
+           {"$01C3\r", "$AACN: "},
+           {"~013164\r", "~AA3EVV: "},
+           {"%0102400600\r", "%AANNTTCCFF: "},
+           {"#**\r", "#**: "},
+           {"~**\r", "~**: "},
+           {"$012B7\r", "$AA2: "},  // with a checksum
+           {"~**D2\r", "~**: "},
+           {"#**77\r", "#**: "},
+           {"$01Z\r", "unknown command"},
+           {"$**\r", "unknown command"},
+           {"%01\r", "unknown command"},
+       }) {
+    EXPECT_EQ(of_request(command).find(named), 0U) << command << of_request(command);
+  }
+  EXPECT_EQ(of_request("$\r"), "");  // too short for an address
   EXPECT_EQ(of_request("$0\r"), "");
 }
 
+TEST(DconMeaning, AWrongChecksumIsReportedUnlessTheFrameMayHaveNone) {
+  EXPECT_TRUE(has(of_request("$012B8\r"), ", wrong checksum"));
+  EXPECT_EQ(check_error(dcon("$012B8\r"), Speaker::Master), "wrong checksum");
+  EXPECT_EQ(check_error(dcon("~**D3\r"), Speaker::Master), "wrong checksum");
+  for (const char* command : {"$012B7\r", "@01FF\r", "$01Z\r", "$\r"}) {
+    EXPECT_EQ(check_error(dcon(command), Speaker::Master), "") << command;
+  }
+  EXPECT_EQ(check_error(dcon("!01400600\r"), Speaker::Module), "");
+}
+
 TEST(DconMeaning, ARejectionTheReplyToAnIgnoredCommandAndOtherRepliesAreDistinguished) {
-  EXPECT_EQ(of_reply("?01\r"), "rejected");
-  EXPECT_EQ(of_reply("?\r"), "rejected");
-  EXPECT_TRUE(has(of_reply("!\r"), "ignored"));
-  EXPECT_EQ(of_reply("!0"), "reply");
-  EXPECT_EQ(of_reply("!01400640\r"), "reply");
-  EXPECT_EQ(of_reply(">\r"), "reply");
-  EXPECT_EQ(of_reply(">0F00\r"), "reply");
+  for (const auto& [reply, means] : std::vector<std::pair<const char*, const char*>>{
+           {"?01\r", "rejected"},
+           {"?\r", "rejected"},
+           {"!\r", "ignored"},
+           {"!0", "reply"},
+           {"!01400640\r", "reply"},
+           {">\r", "reply"},
+           {">0F00\r", "reply"},
+       }) {
+    EXPECT_TRUE(has(of_reply(reply), means)) << reply << of_reply(reply);
+  }
 }
 
 // --- Modbus RTU ---
 
-TEST(ModbusMeaning, ARequestIsShownWithItsFunctionAddressValueAndMeaning) {
-  const std::string text = of_request(FrameBytes{0x01, 0x05, 0x00, 0x00, 0xFF, 0x00});
-  EXPECT_EQ(text.find("01: Write Single Coil"), 0U) << text;
-  EXPECT_TRUE(has(text, "0000 = FF00")) << text;
-  EXPECT_TRUE(has(text, "outputs")) << text;
-}
-
-TEST(ModbusMeaning, ARangeIsShownWithItsQuantity) {
-  const std::string text = of_request(FrameBytes{0x0A, 0x01, 0x00, 0x80, 0x00, 0x0D});
-  EXPECT_EQ(text.find("0A: Read Coils"), 0U) << text;
-  EXPECT_TRUE(has(text, "0080 x 13")) << text;
-  EXPECT_TRUE(has(text, "safe value")) << text;
-}
-
-TEST(ModbusMeaning, TheMeaningNamesTheDataAtTheAddress) {
-  EXPECT_TRUE(has(of_request(FrameBytes{1, 0x02, 0, 0, 0, 8}), "inputs"));
-  EXPECT_TRUE(has(of_request(FrameBytes{1, 0x01, 0, 0x40, 0, 8}), "latch high"));
-  EXPECT_TRUE(has(of_request(FrameBytes{1, 0x01, 0, 0x60, 0, 8}), "latch low"));
-  EXPECT_TRUE(has(of_request(FrameBytes{1, 0x05, 0, 0xA0, 0, 0}), "power-on value"));
-  EXPECT_TRUE(has(of_request(FrameBytes{1, 0x05, 1, 0x00, 0, 0}), "protocol"));
-  EXPECT_TRUE(has(of_request(FrameBytes{1, 0x05, 1, 0x0D, 0xFF, 0}), "timeout status"));
-  EXPECT_TRUE(has(of_request(FrameBytes{1, 0x04, 0, 7, 0, 1}), "counter"));
-  EXPECT_TRUE(has(of_request(FrameBytes{1, 0x06, 1, 0xE4, 0, 5}), "address"));
-  EXPECT_TRUE(has(of_request(FrameBytes{1, 0x10, 1, 0xE5, 0, 1, 2, 0, 6}), "baud"));
-}
-
-TEST(ModbusMeaning, ABroadcastIsShownAsARequestToAllModules) {
-  EXPECT_EQ(of_request(FrameBytes{0x00, 0x05, 0x00, 0x00, 0xFF, 0x00}).find("all modules: "), 0U);
-}
-
-TEST(ModbusMeaning, AHostOkIsNamed) {
-  EXPECT_TRUE(has(of_request(FrameBytes{0x01, 0x03, 0x30, 0x38, 0x00, 0x00}), "host OK"));
-  EXPECT_TRUE(has(of_request(FrameBytes{0x01, 0x04, 0x30, 0x38, 0x00, 0x01}), "host OK"));
-}
-
-TEST(ModbusMeaning, ReadingRegister3038WithAnotherQuantityOrLengthIsNotAHostOk) {
+TEST(ModbusMeaning, ARequestIsShownWithItsFunctionItsAddressesItsValueAndItsMeaning) {
+  for (const auto& [request, means] : std::vector<std::pair<FrameBytes, std::vector<const char*>>>{
+           {{0x01, 0x05, 0, 0, 0xFF, 0}, {"01: Write Single Coil", "0000 = FF00", "outputs"}},
+           {{0x0A, 0x01, 0, 0x80, 0, 0x0D}, {"0A: Read Coils", "0080 x 13", "safe value"}},
+           {{0x00, 0x05, 0, 0, 0xFF, 0}, {"all modules: "}},
+           {{1, 0x02, 0, 0, 0, 8}, {"inputs"}},
+           {{1, 0x01, 0, 0x40, 0, 8}, {"latch high"}},
+           {{1, 0x01, 0, 0x60, 0, 8}, {"latch low"}},
+           {{1, 0x05, 0, 0xA0, 0, 0}, {"power-on value"}},
+           {{1, 0x05, 1, 0x00, 0, 0}, {"protocol"}},
+           {{1, 0x05, 1, 0x0D, 0xFF, 0}, {"timeout status"}},
+           {{1, 0x04, 0, 7, 0, 1}, {"counter"}},
+           {{1, 0x06, 1, 0xE4, 0, 5}, {"address"}},
+           {{1, 0x10, 1, 0xE5, 0, 1, 2, 0, 6}, {"baud"}},
+           {{1, 0x03, 0x30, 0x38, 0, 0}, {"host OK"}},
+           {{1, 0x04, 0x30, 0x38, 0, 1}, {"host OK"}},
+           {{1, 0x01, 4, 0, 0, 1}, {"unknown address"}},
+           {{1, 0x06, 1, 0xE2, 0, 1}, {"unknown address"}},  // can only be read
+           {{1, 0x03, 0, 0x10, 0, 1}, {"unknown address"}},
+           {{1, 0x01, 0, 0x30, 0, 1}, {"unknown address"}},  // a 17th input
+           {{1, 0x05, 2, 0x10, 0xFF, 0}, {"unknown address"}},
+           {{1, 0x46, 0}, {"01: Module code and address"}},
+           {{1, 0x11}, {"01: Report Server ID"}},
+           {{1, 0x08, 0, 0x0B, 0, 0}, {"01: Diagnostics"}},
+           {{1, 0x41, 0, 0, 0, 0}, {"function 41"}},
+           {{1, 0x81, 0, 0, 0, 1}, {"function 81"}},  // an exception only in a reply of five bytes
+       }) {
+    for (const char* part : means) {
+      EXPECT_TRUE(has(of_request(request), part)) << part << " in " << of_request(request);
+    }
+  }
   EXPECT_FALSE(has(of_request(FrameBytes{0x01, 0x03, 0x30, 0x38, 0x00, 0x02}), "host OK"));
   EXPECT_FALSE(has(of_request(FrameBytes{0x01, 0x03, 0x30, 0x38, 0x00, 0x01, 0x00}), "host OK"));
 }
 
-TEST(ModbusMeaning, AnAddressThatTheMapDoesNotListForTheFunctionIsReportedAsUnknown) {
-  EXPECT_TRUE(has(of_request(FrameBytes{0x01, 0x01, 0x04, 0x00, 0x00, 0x01}), "unknown address"));
-  EXPECT_TRUE(has(of_request(FrameBytes{0x01, 0x06, 0x01, 0xE2, 0x00, 0x01}), "unknown address"));
-  EXPECT_TRUE(has(of_request(FrameBytes{0x01, 0x03, 0x00, 0x10, 0x00, 0x01}), "unknown address"));
-}
-
-TEST(ModbusMeaning, CoilsOfA17thInputAreUnknown) {
-  EXPECT_TRUE(has(of_request(FrameBytes{0x01, 0x01, 0x00, 0x30, 0x00, 0x01}), "unknown address"));
-  EXPECT_TRUE(has(of_request(FrameBytes{0x01, 0x05, 0x02, 0x10, 0xFF, 0x00}), "unknown address"));
-}
-
-TEST(ModbusMeaning, Functions08And11And46AreNamed) {
-  EXPECT_EQ(of_request(FrameBytes{0x01, 0x46, 0x00}), "01: Module code and address");
-  EXPECT_EQ(of_request(FrameBytes{0x01, 0x11}), "01: Report Server ID");
-  EXPECT_EQ(of_request(FrameBytes{0x01, 0x08, 0x00, 0x0B, 0x00, 0x00}), "01: Diagnostics");
-}
-
-TEST(ModbusMeaning, AnUnknownFunctionIsShownInHex) {
-  EXPECT_TRUE(has(of_request(FrameBytes{0x01, 0x41, 0x00, 0x00, 0x00, 0x00}), "function 41"));
-}
-
-TEST(ModbusMeaning, AnExceptionReplyIsShownWithItsCode) {
-  const std::string text = of_reply(FrameBytes{0x01, 0x85, 0x04});
-  EXPECT_TRUE(has(text, "Write Single Coil")) << text;
-  EXPECT_TRUE(has(text, "exception 04")) << text;
-}
-
-TEST(ModbusMeaning, AFunctionWithTheExceptionBitIsAnExceptionOnlyInAReplyOfFiveBytes) {
-  EXPECT_TRUE(has(of_request(FrameBytes{0x01, 0x81, 0x00, 0x00, 0x00, 0x01}), "function 81"));
-  EXPECT_FALSE(has(of_reply(FrameBytes{0x01, 0x81}), "exception"));
-}
-
-TEST(ModbusMeaning, ANormalReplyIsNamedAsAReply) {
+TEST(ModbusMeaning, AReplyAndAnExceptionAreShownWithTheirFunction) {
   EXPECT_EQ(of_reply(FrameBytes{0x01, 0x01, 0x02, 0x07, 0x00}), "01: Read Coils, reply");
+  const std::string exception = of_reply(FrameBytes{0x01, 0x85, 0x04});
+  EXPECT_TRUE(has(exception, "Write Single Coil")) << exception;
+  EXPECT_TRUE(has(exception, "exception 04")) << exception;
+  EXPECT_FALSE(has(of_reply(FrameBytes{0x01, 0x81}), "exception"));
 }
 
 TEST(ModbusMeaning, AShortFrameAndAWrongCrcAreReported) {

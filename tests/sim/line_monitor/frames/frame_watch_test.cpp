@@ -51,16 +51,6 @@ class FrameWatchTest : public testing::Test {
   VirtualTime now{0};
 };
 
-TEST_F(FrameWatchTest, AFrameHasTheModesOfItsSenderAndOfTheLine) {
-  line_mode = {1200, LineFormat::k8E1};
-  watch.driver(kModule, true, now);
-  send(kModule, {1});
-  watch.driver(kModule, false, now);
-  ASSERT_EQ(frames.size(), 1U);
-  EXPECT_EQ(frames[0].sent_in, SerialMode{kBaud});
-  EXPECT_EQ(frames[0].line_in, (SerialMode{1200, LineFormat::k8E1}));
-}
-
 TEST_F(FrameWatchTest, AModulesFrameEndsWhenItsDriverIsDisabled) {
   watch.driver(kModule, true, now);
   send(kModule, {1, 2, 3});
@@ -157,32 +147,6 @@ TEST_F(FrameWatchTest, AFrameOfMoreThan300BytesIsReportedInPieces) {
   EXPECT_EQ(frames[0].bytes.size(), 300U);
 }
 
-TEST_F(FrameWatchTest, ACollisionMarksTheWholeFrame) {
-  send(kModule, {1, 2});
-  send(kModule, {3}, true);
-  send(kModule, {4});
-  watch.driver(kModule, false, now);
-  send(kModule, {5});
-  watch.finish();
-  ASSERT_EQ(frames.size(), 2U);
-  EXPECT_TRUE(frames[0].collided);
-  EXPECT_FALSE(frames[1].collided);
-}
-
-TEST_F(FrameWatchTest, AFrameContainsAChangedByteAsReceived) {
-  send(kModule, {0x10});
-  send_changed(kModule, 0xFF, levels_of(0xFB));
-  send(kModule, {0x12});
-  watch.driver(kModule, false, now);
-  ASSERT_EQ(frames.size(), 1U);
-  EXPECT_EQ(frames[0].bytes, (FrameBytes{0x10, 0xFB, 0x12}));
-  ASSERT_EQ(frames[0].changes.size(), 1U);
-  EXPECT_EQ(frames[0].changes[0].position, 1U);
-  EXPECT_EQ(frames[0].changes[0].sent, 0xFF);
-  EXPECT_EQ(frames[0].changes[0].byte(), 0xFB);
-  EXPECT_EQ(frames[0].changes[0].status(), ByteStatus::Good);
-}
-
 TEST_F(FrameWatchTest, AByteWithoutItsStartBitDoesNotArrive) {
   send(kModule, {0x10});
   send_changed(kModule, 0x41, levels_of(0x41) | 1U);
@@ -203,15 +167,6 @@ TEST_F(FrameWatchTest, AFrameIsReportedEvenIfAllItsBytesAreLost) {
   ASSERT_EQ(frames.size(), 1U);
   EXPECT_TRUE(frames[0].bytes.empty());
   EXPECT_EQ(frames[0].changes.size(), 1U);
-}
-
-TEST_F(FrameWatchTest, AByteWithoutItsStopBitIsAFramingErrorOrABreak) {
-  const Frame::Change framing{0, 0x41, levels_of(0x41) & 0x1FFU};
-  EXPECT_EQ(framing.byte(), 0x41);
-  EXPECT_EQ(framing.status(), ByteStatus::FramingError);
-  const Frame::Change brk{0, 0x41, 0};
-  EXPECT_EQ(brk.byte(), 0x00);
-  EXPECT_EQ(brk.status(), ByteStatus::Break);
 }
 
 TEST_F(FrameWatchTest, AChangeOfTheLineFormatDuringAFrameIsNotReportedAsNoise) {
@@ -249,31 +204,6 @@ TEST_F(FrameWatchTest, AChangeOfAnAbortedByteDoesNotAffectALaterByte) {
   watch.finish();
   ASSERT_EQ(frames.size(), 1U);
   EXPECT_EQ(frames[0].bytes, (FrameBytes{0x41}));
-}
-
-TEST_F(FrameWatchTest, AStationAddedLaterIsWatched) {
-  constexpr std::size_t kNoise = 7;
-  send(kNoise, {0x55});
-  EXPECT_NE(watch.next(), hal::doubles::kNever);
-  pass(milliseconds(6));
-  ASSERT_EQ(frames.size(), 1U);
-  EXPECT_EQ(frames[0].station, kNoise);
-}
-
-TEST_F(FrameWatchTest, BothReceiversGetTheFrame) {
-  int others = 0;
-  watch.add_receiver([&others](const Frame& /*frame*/) { ++others; });
-  send(kMaster, dcon("$01M\r"));
-  EXPECT_EQ(frames.size(), 1U);
-  EXPECT_EQ(others, 1);
-}
-
-TEST_F(FrameWatchTest, FinishReportsAnIncompleteFrameOnce) {
-  send(kMaster, {1});
-  watch.finish();
-  watch.finish();
-  EXPECT_EQ(frames.size(), 1U);
-  EXPECT_EQ(watch.next(), hal::doubles::kNever);
 }
 
 }  // namespace

@@ -64,11 +64,6 @@ TEST(TextLog, AFrameIsPrintedOnOneLine) {
   EXPECT_EQ(text_of(dcon(1, ">0004\r")), "   12.345679  < 01 EX9042D-M  >0004\\r  ; reply|");
 }
 
-TEST(LineLog, AStationWithoutANameIsAnUnknownSender) {
-  EXPECT_NE(text_of(frame_of(2, {1, 2, 3})).find("unknown sender"), std::string::npos);
-  EXPECT_EQ(names().of(1), "01 EX9042D-M");
-}
-
 TEST(TextLog, ACollidedFrameHasNoMeaning) {
   Frame frame = frame_of(1, {1, 2, 3});
   frame.collided = true;
@@ -153,11 +148,6 @@ TEST(LineError, ValidFramesAndASingleLineFeedHaveNoError) {
   EXPECT_EQ(errors(frame_of(0, with_crc({1, 5, 0, 2, 0xFF, 0}))), "");
   EXPECT_EQ(errors(dcon(0, "$012B7\r")), "");
   EXPECT_EQ(errors(frame_of(0, {0x0A})), "");
-}
-
-TEST(LineError, ReportsAWrongCrcOrChecksum) {
-  EXPECT_EQ(errors(frame_of(1, {1, 5, 0, 2, 0xFF, 0, 0x2D, 0xFB})), "wrong CRC");
-  EXPECT_EQ(errors(dcon(0, "$012B8\r")), "wrong checksum");
 }
 
 }  // namespace
