@@ -45,13 +45,6 @@ TEST(Fault, EveryKindAffectsEitherTheLineOrAModule) {
   }
 }
 
-TEST(Fault, LostReplyAffectsAllModulesPermanentlyByDefault) {
-  const Fault fault = parse_fault("lost-reply");
-  EXPECT_FALSE(fault.module);
-  EXPECT_EQ(fault.schedule.when, When::Always);
-  EXPECT_FALSE(fault.schedule.lasts);
-}
-
 TEST(Fault, HelpAndUsualFaultsHaveEachKindWithItsValue) {
   const std::string help = "\n" + fault_help();
   for (const char* shape : {"bit-errors P ", "echo TIME ", "foreign-traffic HEX ", "lost-reply  ",
@@ -70,20 +63,6 @@ TEST(Fault, HelpAndUsualFaultsHaveEachKindWithItsValue) {
 
 // --- schedules ---
 
-TEST(FaultSchedule, AScheduleWithAtHasATimeAndAnOptionalDuration) {
-  const Schedule schedule = parse_fault("gone at 12.5s").schedule;
-  EXPECT_EQ(schedule.when, When::At);
-  EXPECT_EQ(schedule.time, 12'500ms);
-  EXPECT_FALSE(schedule.lasts);
-}
-
-TEST(FaultSchedule, AScheduleWithEveryHasAPeriodAndAnOptionalDuration) {
-  const Schedule schedule = parse_fault("foreign-traffic 00 every 5s").schedule;
-  EXPECT_EQ(schedule.when, When::EveryTime);
-  EXPECT_EQ(schedule.time, 5s);
-  EXPECT_EQ(parse_fault("gone every 5s for 4s").schedule.lasts, 4s);
-}
-
 TEST(FaultSchedule, EveryNthReplyAndAProbabilityAreReadAsSchedulesOfReplies) {
   EXPECT_EQ(parse_fault("lost-reply every reply").schedule.when, When::EveryReply);
   EXPECT_EQ(parse_fault("lost-reply every reply").schedule.count, 1U);
@@ -98,12 +77,6 @@ TEST(FaultSchedule, EveryNthReplyAndAProbabilityAreReadAsSchedulesOfReplies) {
   EXPECT_EQ(probable.when, When::Probably);
   EXPECT_EQ(probable.probability, 0.01);
   EXPECT_TRUE(probable.of_replies());
-}
-
-TEST(FaultSchedule, AScheduleWithAfterWritesHasACount) {
-  EXPECT_EQ(parse_fault("power-cut after 3 writes").schedule.when, When::AfterWrites);
-  EXPECT_EQ(parse_fault("power-cut after 3 writes").schedule.count, 3U);
-  EXPECT_EQ(parse_fault("power-cut after 1 write").schedule.count, 1U);
 }
 
 TEST(FaultSchedule, TheDurationMayComeBeforeOrAfterTheRestOfTheSchedule) {
@@ -126,95 +99,71 @@ TEST(Fault, TextAndErrorsAreReducedToOneLine) {
 
 // --- wrong faults ---
 
-struct Wrong {
-  const char* text;
-  const char* names;
-  const char* mend;
-};
-
-class WrongFault : public testing::TestWithParam<Wrong> {};
-
-TEST_P(WrongFault, IsRefusedWithAOneLineMessageThatNamesTheErrorAndTheRemedy) {
-  const std::string why = why_not(GetParam().text);
-  EXPECT_NE(why.find(GetParam().names), std::string::npos) << why;
-  EXPECT_NE(why.find(GetParam().mend), std::string::npos) << why;
-  EXPECT_EQ(why.find('\n'), std::string::npos) << why;
+// values_test.cpp and durations_test.cpp test which numbers, probabilities, bytes and times are refused.
+TEST(Fault, AWrongFaultIsRefusedWithTheErrorAndTheRemedy) {
+  struct Wrong {
+    const char* text;
+    const char* names;
+    const char* mend;
+  };
+  for (const Wrong& wrong : std::vector<Wrong>{
+           {"", "ends too early", "expected one of bit-errors"},
+           {"lost", "'lost' is not a fault", "expected one of bit-errors"},
+           {"bit-errors", "bit-errors: ends too early", "expected P after 'bit-errors'"},
+           {"late-reply", "late-reply: ends too early", "expected TIME after 'late-reply'"},
+           {"wrong-rate", "wrong-rate: ends too early", "expected RATE after 'wrong-rate'"},
+           {"foreign-traffic", "foreign-traffic: ends too early", "expected HEX after 'foreign-traffic'"},
+           {"bit-errors 0", "'0': expected a probability", "0.01"},
+           {"late-reply 50", "'50': expected a duration", "50ms"},
+           {"echo 1us", "'1us'", "a duration of at least 1ms"},
+           {"exception 123", "'123'", "one or two hex digits"},
+           {"wrong-unit G1", "'G1'", "one or two hex digits"},
+           {"wrong-rate 300", "'300'", "1200"},
+           {"foreign-traffic 5", "'5': expected", "pairs of hex digits"},
+           {"gone 2s", "'2s' is not a schedule", "'for 2s'"},
+           {"bit-errors 1e-4 1e-4", "'1e-4' is not a schedule", "at 12.5s"},
+           {"gone soon", "'soon' is not a schedule", "after 3 writes"},
+           {"gone at", "ends too early", "expected a time after 'at'"},
+           {"gone at noon", "'noon': expected a duration", "12.5s"},
+           {"gone for", "ends too early", "expected a duration after 'for'"},
+           {"gone every", "ends too early", "expected 'reply', '10th reply' or a duration"},
+           {"lost-reply every 0th reply", "'0th'", "12.5s"},
+           {"lost-reply every 10 reply", "'10': expected a duration", "12.5s"},
+           {"lost-reply every 10th", "ends too early", "expected 'reply'"},
+           {"lost-reply every 10th time", "'time'", "expected 'reply'"},
+           {"lost-reply with", "ends too early", "expected 'probability'"},
+           {"lost-reply with luck 1", "'luck'", "'probability'"},
+           {"lost-reply with probability", "ends too early", "expected a number after 'with probability'"},
+           {"lost-reply with probability 2", "'2': expected a probability", "0.01"},
+           {"power-cut after", "ends too early", "expected a count after 'after'"},
+           {"power-cut after 0 writes", "'0'", "a whole number from 1 to 999999999"},
+           {"power-cut after 3", "ends too early", "expected 'writes'"},
+           {"power-cut after 3 write", "'write'", "'writes'"},
+           {"power-cut after 1 writes", "'writes'", "'write'"},
+           {"power-cut after 3 reads", "'reads'", "'writes'"},
+           {"gone at 1s at 2s", "'at': the fault already has a schedule", "leave out one schedule"},
+           {"gone at 1s every reply", "'every': the fault already has a schedule", "leave out one schedule"},
+           {"gone for 1s for 2s", "'for' is given twice", "leave out one of them"},
+           {"gone every 5s", "has no end", "add 'for TIME'"},
+           {"bit-errors 0.1 every 5s", "has no end", "add 'for TIME'"},
+           {"gone every 5s for 5s", "lasts 5s, which is not shorter than the period", "a shorter time"},
+           {"power-cut every 1s", "lasts 1s, which is not shorter", "a shorter time after 'for'"},
+           {"gone every 10th reply", "has no end", "add 'for TIME'"},
+           {"wrong-rate 1200 with probability 0.5", "has no end", "add 'for TIME'"},
+           {"bit-errors 0.1 every 10th reply", "does not depend on replies", "'at 5s for 1s'"},
+           {"echo 5ms with probability 0.5 for 1s", "does not depend on replies", "'at 5s for 1s'"},
+           {"foreign-traffic 00 every reply", "does not depend on replies", "'at 5s for 1s'"},
+           {"hang for 1s", "'for': this fault has no duration", "leave out 'for'"},
+           {"foreign-traffic 00 for 1s", "'for': this fault has no duration", "leave out 'for'"},
+           {"hang every 0s", "'every 0s'", "a period of at least 1ms"},
+           {"hang every 999us", "'every 999us': expected", "a period of at least 1ms"},
+       }) {
+    const std::string why = why_not(wrong.text);
+    EXPECT_NE(why.find(wrong.names), std::string::npos) << why;
+    EXPECT_NE(why.find(wrong.mend), std::string::npos) << why;
+    EXPECT_EQ(why.find('\n'), std::string::npos) << why;
+  }
 }
-
-INSTANTIATE_TEST_SUITE_P(
-    Kinds, WrongFault,
-    testing::Values(Wrong{"", "ends too early", "expected one of bit-errors"},
-                    Wrong{"  ", "ends too early", "lost-reply"},
-                    Wrong{"lost", "'lost' is not a fault", "expected one of bit-errors"},
-                    Wrong{"Gone", "'Gone'", "gone"},
-                    Wrong{"bit-errors", "bit-errors: ends too early", "expected P after 'bit-errors'"},
-                    Wrong{"late-reply", "late-reply: ends too early", "expected TIME after 'late-reply'"},
-                    Wrong{"wrong-rate", "wrong-rate: ends too early", "expected RATE after 'wrong-rate'"},
-                    Wrong{"foreign-traffic", "foreign-traffic: ends too early",
-                          "expected HEX after 'foreign-traffic'"}));
-
-INSTANTIATE_TEST_SUITE_P(
-    Values, WrongFault,
-    testing::Values(Wrong{"bit-errors 0", "'0': expected a probability", "0.01"},
-                    Wrong{"bit-errors 1.1", "'1.1'", "1e-4"}, Wrong{"bit-errors -0.1", "'-0.1'", "0.01"},
-                    Wrong{"bit-errors 1%", "'1%'", "0.01"}, Wrong{"bit-errors nan", "'nan'", "0.01"},
-                    Wrong{"bit-errors 1e-400", "'1e-400'", "0.01"},
-                    Wrong{"late-reply 50", "'50': expected a duration", "50ms"},
-                    Wrong{"late-driver -1ms", "'-1ms'", "50ms"},
-                    Wrong{"echo 1us", "'1us'", "a duration of at least 1ms"}, Wrong{"echo 0s", "'0s'", "1ms"},
-                    Wrong{"exception 123", "'123'", "one or two hex digits"},
-                    Wrong{"wrong-unit G1", "'G1'", "one or two hex digits"},
-                    Wrong{"wrong-rate 300", "'300'", "1200"}, Wrong{"wrong-rate 9600x", "'9600x'", "9600"},
-                    Wrong{"foreign-traffic 5", "'5': expected", "pairs of hex digits"},
-                    Wrong{"foreign-traffic 05G1", "'05G1'", "pairs"},
-                    Wrong{"foreign-traffic 0x05", "'0x05'", "pairs"},
-                    Wrong{"gone 2s", "'2s' is not a schedule", "'for 2s'"},
-                    Wrong{"bit-errors 1e-4 1e-4", "'1e-4' is not a schedule", "at 12.5s"}));
-
-INSTANTIATE_TEST_SUITE_P(
-    Schedules, WrongFault,
-    testing::Values(Wrong{"gone soon", "'soon' is not a schedule", "after 3 writes"},
-                    Wrong{"gone at", "ends too early", "expected a time after 'at'"},
-                    Wrong{"gone at noon", "'noon': expected a duration", "12.5s"},
-                    Wrong{"gone for", "ends too early", "expected a duration after 'for'"},
-                    Wrong{"gone every", "ends too early", "expected 'reply', '10th reply' or a duration"},
-                    Wrong{"lost-reply every 0th reply", "'0th'", "12.5s"},
-                    Wrong{"lost-reply every 10 reply", "'10': expected a duration", "12.5s"},
-                    Wrong{"lost-reply every 10th", "ends too early", "expected 'reply'"},
-                    Wrong{"lost-reply every 10th time", "'time'", "expected 'reply'"},
-                    Wrong{"lost-reply with", "ends too early", "expected 'probability'"},
-                    Wrong{"lost-reply with luck 1", "'luck'", "'probability'"},
-                    Wrong{"lost-reply with probability", "ends too early",
-                          "expected a number after 'with probability'"},
-                    Wrong{"lost-reply with probability 2", "'2': expected a probability", "0.01"},
-                    Wrong{"power-cut after", "ends too early", "expected a count after 'after'"},
-                    Wrong{"power-cut after 0 writes", "'0'", "a whole number from 1 to 999999999"},
-                    Wrong{"power-cut after two writes", "'two'", "a whole number from 1 to 999999999"},
-                    Wrong{"power-cut after 3", "ends too early", "expected 'writes'"},
-                    Wrong{"power-cut after 3 write", "'write'", "'writes'"},
-                    Wrong{"power-cut after 1 writes", "'writes'", "'write'"},
-                    Wrong{"power-cut after 3 reads", "'reads'", "'writes'"}));
-
-INSTANTIATE_TEST_SUITE_P(
-    Meaningless, WrongFault,
-    testing::Values(
-        Wrong{"gone at 1s at 2s", "'at': the fault already has a schedule", "leave out one schedule"},
-        Wrong{"gone at 1s every reply", "'every': the fault already has a schedule",
-              "leave out one schedule"},
-        Wrong{"gone for 1s for 2s", "'for' is given twice", "leave out one of them"},
-        Wrong{"gone every 5s", "has no end", "add 'for TIME'"},
-        Wrong{"bit-errors 0.1 every 5s", "has no end", "add 'for TIME'"},
-        Wrong{"gone every 5s for 5s", "lasts 5s, which is not shorter than the period", "a shorter time"},
-        Wrong{"power-cut every 1s", "lasts 1s, which is not shorter", "a shorter time after 'for'"},
-        Wrong{"gone every 10th reply", "has no end", "add 'for TIME'"},
-        Wrong{"wrong-rate 1200 with probability 0.5", "has no end", "add 'for TIME'"},
-        Wrong{"bit-errors 0.1 every 10th reply", "does not depend on replies", "'at 5s for 1s'"},
-        Wrong{"echo 5ms with probability 0.5 for 1s", "does not depend on replies", "'at 5s for 1s'"},
-        Wrong{"foreign-traffic 00 every reply", "does not depend on replies", "'at 5s for 1s'"},
-        Wrong{"hang for 1s", "'for': this fault has no duration", "leave out 'for'"},
-        Wrong{"foreign-traffic 00 for 1s", "'for': this fault has no duration", "leave out 'for'"},
-        Wrong{"hang every 0s", "'every 0s'", "a period of at least 1ms"},
-        Wrong{"hang every 999us", "'every 999us': expected", "a period of at least 1ms"}));
 
 }  // namespace
 }  // namespace ex9000::sim

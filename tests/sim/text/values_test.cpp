@@ -99,14 +99,6 @@ TEST(BaudRate, AcceptsOnlyRatesThatModulesSupport) {
                  "a baud rate: 1200, 2400, 4800, 9600, 19200, 38400, 57600 or 115200");
 }
 
-TEST(BaudRate, TheMessageAboutAWrongRateListsAllRates) {
-  std::string rates;
-  for (const std::uint32_t rate : kBaudRates) {
-    rates += (rates.empty() ? "" : rate == kBaudRates.back() ? " or " : ", ") + std::to_string(rate);
-  }
-  EXPECT_EQ(refusal([] { parse_baud_rate("300"); }), "'300': expected a baud rate: " + rates);
-}
-
 // --- hex ---
 
 TEST(HexByte, HasOneOrTwoDigits) {
