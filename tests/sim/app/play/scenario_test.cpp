@@ -127,17 +127,6 @@ TEST(Play, ReportsEachRunAndTheTotal) {
   EXPECT_NE(text.find("3 runs, 6 steps, 1 failed\nfailed"), std::string::npos) << text;
 }
 
-TEST(Play, AFileMayBeginWithAByteOrderMarkButIsRefusedAsUtf16) {
-  using namespace std::string_literals;
-  EXPECT_EQ(failure_of("\xEF\xBB\xBF> $01M\n< !019042D\n"), "");
-  const Directory directory;
-  const std::string file = directory / "a.txt";
-  for (const std::string& text : {"\xFF\xFE>\0"s, "\xFE\xFF\0>"s, ">\0"s}) {
-    write_file(file, text);
-    EXPECT_EQ(played(file, true), file + ": is UTF-16; save it as UTF-8");
-  }
-}
-
 TEST(Play, PrintsTheBusLogIfRequested) {
   const Directory directory;
   write_file(directory / "a.txt", "source: manual\nmodel: EX9042D\n\n> $01M\n< !019042D\n");

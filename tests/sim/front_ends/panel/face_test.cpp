@@ -73,13 +73,6 @@ TEST(Face, WithoutPowerShowsSwitchesInputsAndStoredSettingsButNoFirmwareState) {
   EXPECT_EQ(face["stored"]["settings"]["address"], 0x07);
 }
 
-TEST(Face, AnInterruptedSupplyLeavesThePowerSwitchOn) {
-  ModuleBench bench("EX9055D");
-  bench.module().interrupt_supply(true);
-  EXPECT_EQ(face_of(bench)["plate"]["switch"], true);
-  EXPECT_EQ(face_of(bench)["plate"]["powered"], false);
-}
-
 TEST(Face, ShowsInitModeOnlyAfterAReset) {
   ModuleBench bench("EX9042D-M@2A");
   bench.module().set_init(true);
