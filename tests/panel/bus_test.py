@@ -74,12 +74,16 @@ class Bus(Panel):
         self.browser.click("#pause")
         self.type("#search", "coil 0002")
         self.browser.until(f"{ROWS} === 1 && {TALLY} === '1 of 4'")
+        row = self.browser.run("return document.querySelector('#filler .row:not([data-kind=note])').textContent")
+        self.assertIn("01 05 00 02 FF 00", row)
         master.coil(1, 2, False)
         self.browser.until(f"{TALLY} === '1 of 4, 2 more'")
         self.browser.click("#pause")
         self.browser.until(f"{ROWS} === 2 && {TALLY} === '2 of 6'")
         self.type("#search", "")
         self.browser.until(f"{ROWS} === 6")
+        self.browser.run("document.getElementById('bus').scrollIntoView()")
+        self.picture("bus")
 
     def test_after_a_pause_the_page_shows_for_each_line_the_number_of_omitted_rows(self):
         modules = [{"model": "EX9052D-M", "address": "02"}]

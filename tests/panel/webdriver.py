@@ -1,93 +1,56 @@
-"""Controls a browser over the WebDriver protocol."""
+"""Controls Chromium with Selenium."""
 
 import base64
 import contextlib
-import json
 import os
 import pathlib
-import re
-import subprocess
-import tempfile
-import urllib.error
-import urllib.request
+
+from selenium import webdriver
+from selenium.common.exceptions import WebDriverException
+from selenium.webdriver.chrome.service import Service
+from selenium.webdriver.common.action_chains import ActionChains
+from selenium.webdriver.common.by import By
+from selenium.webdriver.common.keys import Keys
 
 from simulator import HANG
 
 AXE = pathlib.Path(__file__).resolve().parents[2] / "build/axe/node_modules/axe-core/axe.min.js"
 SCRIPT = 10 * HANG  # seconds; axe-core takes more than a minute on a page of 64 modules if the machine is busy
-ELEMENT = "element-6066-11e4-a52e-4f735466cecf"
-KEYS = {"Tab": "\ue004", "Enter": "\ue007", "Space": " ", "Shift": "\ue008", "Alt": "\ue00a", "Left": "\ue012",
-        "Right": "\ue014"}
+KEYS = {"Tab": Keys.TAB, "Enter": Keys.ENTER, "Space": Keys.SPACE, "Shift": Keys.SHIFT, "Alt": Keys.ALT,
+        "Left": Keys.LEFT, "Right": Keys.RIGHT}
 
 
-def started(driver):
-    """Starts ChromeDriver. Returns its process and its port. ChromeDriver ends if the port that it has chosen for IPv4
-    is in use for IPv6; it then gets another chance."""
-    said = ""
-    for _ in range(10):
-        process = subprocess.Popen([driver, "--port=0"], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
-        for line in process.stdout:
-            said += line
-            port = re.search(r"started successfully on port (\d+)", line)
-            if port:
-                return process, port.group(1)
-        process.stdout.close()
-        process.wait()
-    raise RuntimeError(f"{driver}: does not start: {said}")
+def started(options):
+    """Starts ChromeDriver and Chromium. Another program can take the port that Selenium has chosen for ChromeDriver; it
+    then gets another chance."""
+    for _ in range(9):
+        with contextlib.suppress(WebDriverException):
+            return webdriver.Chrome(service=Service("/usr/bin/chromedriver"), options=options)
+    return webdriver.Chrome(service=Service("/usr/bin/chromedriver"), options=options)
 
 
 class Browser:
     """Chromium without a display. Only one thread at a time may use a Browser object."""
 
-    def __init__(self, driver="chromedriver", browser="/usr/bin/chromium"):
-        self._profile = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
-        self._driver, port = started(driver)
-        self._base = f"http://127.0.0.1:{port}/session"
-        arguments = [
-            "--headless=new", "--disable-gpu", "--disable-dev-shm-usage", "--no-first-run",
-            "--disable-extensions", "--disable-background-networking", "--disable-component-update",
-            "--disable-sync", "--hide-scrollbars", "--force-device-scale-factor=1",
-            f"--user-data-dir={self._profile.name}",
-        ]
+    def __init__(self):
+        options = webdriver.ChromeOptions()
+        options.binary_location = "/usr/bin/chromium"
+        options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
+        for argument in ("--headless=new", "--disable-gpu", "--disable-dev-shm-usage", "--no-first-run",
+                         "--disable-extensions", "--disable-background-networking", "--disable-component-update",
+                         "--disable-sync", "--hide-scrollbars", "--force-device-scale-factor=1"):
+            options.add_argument(argument)
         if os.geteuid() == 0:
-            arguments.append("--no-sandbox")  # the sandbox does not work for root
-        options = {
-            "goog:chromeOptions": {"args": arguments, "binary": browser},
-            "goog:loggingPrefs": {"browser": "ALL"},
-        }
-        session = self._post("", {"capabilities": {"alwaysMatch": options}})
-        self._base += "/" + session["sessionId"]
-        self._post("/timeouts", {"script": 1000 * SCRIPT})  # only detects a hang; `until` has its own timeout
-
-    def close(self):
-        try:
-            self._send("DELETE", "")
-        finally:
-            self._driver.terminate()
-            self._driver.wait()
-            self._driver.stdout.close()
-            self._profile.cleanup()
-
-    def _send(self, method, path, body=None):
-        data = None if body is None else json.dumps(body).encode()
-        request = urllib.request.Request(
-            self._base + path, data, {"Content-Type": "application/json"}, method=method
-        )
-        try:
-            with urllib.request.urlopen(request, timeout=SCRIPT + 20) as answer:
-                return json.load(answer)["value"]
-        except urllib.error.HTTPError as error:
-            raise AssertionError(json.load(error)["value"]["message"]) from None
-
-    def _post(self, path, body):
-        return self._send("POST", path, body)
-
-    def open(self, address):
-        self._post("/url", {"url": address})
+            options.add_argument("--no-sandbox")  # the sandbox does not work for root
+        self._driver = started(options)
+        self._driver.set_script_timeout(SCRIPT)  # only detects a hang; `until` has its own timeout
+        self._driver.command_executor.set_timeout(SCRIPT + 20)
+        self.close = self._driver.quit
+        self.open = self._driver.get
 
     def run(self, script, *arguments):
         """Runs `script` as the body of a function and returns its result."""
-        return self._post("/execute/sync", {"script": script, "args": list(arguments)})
+        return self._driver.execute_script(script, *arguments)
 
     def promised(self, script, *arguments):
         """Runs `script` as the body of an async function and returns its result."""
@@ -95,7 +58,7 @@ class Browser:
             "const done = arguments[arguments.length - 1];"
             f"(async () => {{ {script} }})().then(done, (error) => done('error: ' + error));"
         )
-        value = self._post("/execute/async", {"script": text, "args": list(arguments)})
+        value = self._driver.execute_async_script(text, *arguments)
         assert not str(value).startswith("error: "), value
         return value
 
@@ -113,33 +76,32 @@ class Browser:
         assert self.promised(script, *arguments), f"timeout: not true within {HANG} s: {condition} {arguments}"
 
     def find(self, selector):
-        return self._post("/element", {"using": "css selector", "value": selector})[ELEMENT]
+        return self._driver.find_element(By.CSS_SELECTOR, selector)
 
     def click(self, selector):
-        self._post(f"/element/{self.find(selector)}/click", {})
+        self.find(selector).click()
 
     def type(self, selector, text):
-        self._post(f"/element/{self.find(selector)}/value", {"text": text})
+        self.find(selector).send_keys(text)
+
+    def actions(self):
+        return ActionChains(self._driver, duration=0)
 
     def pointer(self, *actions):
         """Performs actions of the mouse. Each is "down", "up", or the selector of an element to move to."""
-        moves = [
-            {"type": f"pointer{action.capitalize()}", "button": 0}
-            if action in ("down", "up")
-            else {"type": "pointerMove", "x": 0, "y": 0, "origin": {ELEMENT: self.find(action)}}
-            for action in actions
-        ]
-        self._post("/actions", {"actions": [{"type": "pointer", "id": "mouse", "actions": moves}]})
+        mouse = self.actions()
+        for action in actions:
+            if action == "down":
+                mouse.click_and_hold()
+            elif action == "up":
+                mouse.release()
+            else:
+                mouse.move_to_element(self.find(action))
+        mouse.perform()
 
     def drag(self, selector, pixels):
         """Drags from the middle of the element by `pixels` to the right, or to the left if `pixels` is negative."""
-        origin = {ELEMENT: self.find(selector)}
-        self._post("/actions", {"actions": [{"type": "pointer", "id": "mouse", "actions": [
-            {"type": "pointerMove", "x": 0, "y": 0, "origin": origin},
-            {"type": "pointerDown", "button": 0},
-            {"type": "pointerMove", "x": pixels, "y": 0, "origin": origin},
-            {"type": "pointerUp", "button": 0},
-        ]}]})
+        self.actions().drag_and_drop_by_offset(self.find(selector), pixels, 0).perform()
 
     def touch(self, kind, *at):
         """Sends a touch event. `kind` is "start", "move", "end" or "cancel". If `kind` is "start" or "move", `at` is
@@ -150,16 +112,16 @@ class Browser:
     def key(self, *actions):
         """Presses and releases keys. Each action is a name from KEYS. With the prefix +, the key is only pressed; with
         the prefix -, it is only released."""
-        moves = []
+        keys = self.actions()
         for action in actions:
             if action[0] != "-":
-                moves.append({"type": "keyDown", "value": KEYS[action.lstrip("+")]})
+                keys.key_down(KEYS[action.lstrip("+")])
             if action[0] != "+":
-                moves.append({"type": "keyUp", "value": KEYS[action.lstrip("-")]})
-        self._post("/actions", {"actions": [{"type": "key", "id": "keyboard", "actions": moves}]})
+                keys.key_up(KEYS[action.lstrip("-")])
+        keys.perform()
 
     def devtools(self, command, **parameters):
-        return self._post("/goog/cdp/execute", {"cmd": command, "params": parameters})
+        return self._driver.execute_cdp_cmd(command, parameters)
 
     def size(self, width, height, phone=False):
         self.devtools(
@@ -187,7 +149,7 @@ class Browser:
         """Returns the messages that the browser has logged since the previous call, at all levels. Omits messages about
         failed connections, and messages that begin with chrome://, because pages of the browser itself log these."""
         nobody = ("ERR_CONNECTION_REFUSED", "ERR_CONNECTION_RESET", "closed before the connection is established")
-        said = self._post("/se/log", {"type": "browser"})
+        said = self._driver.get_log("browser")
         messages = [each["message"] for each in said if not each["message"].startswith("chrome://")]
         return [message for message in messages if not any(text in message for text in nobody)]
 
