@@ -1,4 +1,4 @@
-"""Tests parts of check-image separately, without a compiled image."""
+"""Tests parts of check-image separately: what the small images of the other tests do not contain."""
 
 from __future__ import annotations
 
@@ -14,71 +14,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "toolchain"))
 from check_image import call_graph, call_sites, main  # noqa: E402
 from check_image.disassembly import Instruction, StackPointerUnknown, stack_of  # noqa: E402
 from check_image.functions import Function, demangle, without_parameters  # noqa: E402
-from check_image.stack import DeepestChains, Graph, Level, Node, Unbounded, worst_case  # noqa: E402
-
-CALL_GRAPH = r"""graph: { title: "core.cpp"
-node: { title: "reset" label: "void reset()\ncore.cpp:1:1\n8 bytes (static)\n0 dynamic objects" }
-node: { title: "core.cpp:_ZL4turnv" label: "void turn()\ncore.cpp:2:1\n24 bytes (static)\n0 dynamic objects" }
-edge: { sourcename: "reset" targetname: "core.cpp:_ZL4turnv" label: "core.cpp:1:9" }
-node: { title: "_Z5writev" label: "void write()\ncore.cpp:3:1\n40 bytes (dynamic,bounded)\n0 dynamic objects" }
-edge: { sourcename: "core.cpp:_ZL4turnv" targetname: "_Z5writev" label: "core.cpp:2:9" }
-node: { title: "_Z4readv" label: "void read()\ncore.cpp:4:1\n16 bytes (static)\n0 dynamic objects" }
-edge: { sourcename: "core.cpp:_ZL4turnv" targetname: "_Z4readv" }
-node: { title: "memcpy" label: "void* memcpy(void*, const void*, size_t)\nstring.h:31:9" shape : ellipse }
-edge: { sourcename: "_Z4readv" targetname: "memcpy" label: "core.cpp:4:9" }
-node: { title: "__indirect_call" label: "Indirect Call Placeholder" shape : ellipse }
-edge: { sourcename: "_Z4readv" targetname: "__indirect_call" label: "core.cpp:4:20" }
-node: { title: "_Z4growj" label: "void grow(unsigned)\ncore.cpp:5:1\n16 bytes (dynamic)\n1 dynamic objects\n p" }
-node: { title: "_Zli2_mx" label: "long operator\"\" _m(long)\ncore.cpp:6:1\n0 bytes (static)\n0 dynamic objects" }
-}
-"""
-
-
-class CallGraph(unittest.TestCase):
-    def setUp(self) -> None:
-        self.records = {record.title.name: record for record in call_graph.parse(CALL_GRAPH)}
-
-    def test_only_compiled_functions_have_a_record(self) -> None:
-        self.assertEqual(
-            list(self.records), ["reset", "_ZL4turnv", "_Z5writev", "_Z4readv", "_Z4growj", "_Zli2_mx"]
-        )
-        self.assertEqual(self.records["_ZL4turnv"].title.file, "core.cpp")
-        self.assertEqual(self.records["_Z5writev"].location, "core.cpp:3:1")
-
-    def test_a_frame_has_the_size_that_the_compiler_states(self) -> None:
-        self.assertEqual([record.frame for record in self.records.values()], [8, 24, 40, 16, 16, 0])
-
-    def test_a_dynamic_frame_is_unbounded_unless_the_compiler_states_a_bound(self) -> None:
-        self.assertEqual([name for name, r in self.records.items() if not r.is_bounded], ["_Z4growj"])
-
-    def test_a_function_calls_the_targets_of_its_edges(self) -> None:
-        self.assertEqual({title.name for title in self.records["_ZL4turnv"].calls}, {"_Z5writev", "_Z4readv"})
-        self.assertEqual({title.name for title in self.records["_Z4readv"].calls}, {"memcpy"})
-        self.assertEqual(self.records["_Z4readv"].indirect_calls, ["core.cpp:4:20"])
-
-    def test_an_unexpected_line_is_rejected(self) -> None:
-        for line in ("node: { }", 'edge: { sourcename: "unknown" targetname: "other" }', "region: {"):
-            with self.assertRaises(call_graph.NotACallGraph):
-                call_graph.parse(line)
-
-    def test_the_deepest_chain_has_the_largest_sum_of_frames(self) -> None:
-        chain = DeepestChains(self.graph(4)).below(0)
-        self.assertEqual(str(chain), "reset 8 -> _ZL4turnv 24 -> _Z5writev 40")
-        self.assertEqual(chain.size, 72)
-        # The frames of _Z4readv and memcpy have 16 + 32 bytes together. The frame of _Z5writev has only 40 bytes.
-        self.assertEqual(
-            str(DeepestChains(self.graph(32)).below(0)), "reset 8 -> _ZL4turnv 24 -> _Z4readv 16 -> memcpy 32"
-        )
-
-    def graph(self, memcpy: int) -> Graph:
-        """Returns a graph of the recorded functions and of memcpy, whose frame has `memcpy` bytes. The address of a
-        function is its index in `names`."""
-        names = [*self.records, "memcpy"]
-        nodes = {
-            names.index(name): Node(name, r.frame, frozenset(names.index(title.name) for title in r.calls))
-            for name, r in self.records.items()
-        }
-        return {**nodes, names.index("memcpy"): Node("memcpy", memcpy, frozenset())}
+from check_image.stack import Graph, Level, Node, worst_case  # noqa: E402
 
 
 class WorstCase(unittest.TestCase):
@@ -90,10 +26,6 @@ class WorstCase(unittest.TestCase):
         10: Node("uart", 16, frozenset({3})),
         11: Node("timer", 24, frozenset()),
         12: Node("tick", 12, frozenset({3})),
-        20: Node("again", 8, frozenset({21})),
-        21: Node("and_again", 8, frozenset({20})),
-        30: Node("unknown", 0, frozenset(), "has no recorded stack"),
-        31: Node("asks", 8, frozenset({3, 30})),
     }
 
     def test_only_the_deepest_handler_of_a_level_counts(self) -> None:
@@ -103,16 +35,6 @@ class WorstCase(unittest.TestCase):
     def test_levels_add_up(self) -> None:
         levels = [Level("interrupts", [10, 11]), Level("tick", [12]), Level("faults", [])]
         self.assertEqual(worst_case(self.GRAPH, 0, levels).size, 112 + (36 + 24) + (36 + 16))
-
-    def test_recursion_has_no_bound(self) -> None:
-        with self.assertRaisesRegex(Unbounded, "^recursion: again -> and_again -> again; use a loop$"):
-            worst_case(self.GRAPH, 20, [])
-
-    def test_a_reachable_function_without_a_stack_record_has_no_bound(self) -> None:
-        with self.assertRaisesRegex(
-            Unbounded, "^unknown, reached by asks -> unknown: has no recorded stack$"
-        ):
-            worst_case(self.GRAPH, 0, [Level("interrupts", [31])])
 
 
 class UnsuitableFiles(unittest.TestCase):
@@ -127,6 +49,11 @@ class UnsuitableFiles(unittest.TestCase):
                 self.printed(image),
                 f"{image}: the file is not a 32-bit little-endian ELF file for Arm; name the linked image\n",
             )
+
+    def test_an_unexpected_line_of_a_call_graph_is_rejected(self) -> None:
+        for line in ("node: { }", 'edge: { sourcename: "unknown" targetname: "other" }', "region: {"):
+            with self.assertRaises(call_graph.NotACallGraph):
+                call_graph.parse(line)
 
     @staticmethod
     def printed(image: Path) -> str:
