@@ -93,17 +93,8 @@ TEST_P(Mbpoll, NamesTheExceptionsItGets) {
   const std::string value = "Illegal data value";
   expect_refusal({"-a", "1", "-t", "1", "-r", "0", "-c", "8"}, function);
   expect_refusal({"-a", "1", "-t", "0", "-r", "12", "-c", "2"}, address);
-  expect_refusal({"-a", "2", "-t", "0", "-r", "0"}, address);
-  expect_refusal({"-a", "2", "-t", "1", "-r", "7", "-c", "2"}, address);
-  expect_refusal({"-a", "2", "-t", "3", "-r", "7", "-c", "2"}, address);
-  expect_refusal({"-a", "1", "-t", "4", "-r", "0"}, address);
   expect_refusal({"-a", "1", "-t", "0", "-r", "13"}, address, {"1"});
-  expect_refusal({"-a", "1", "-t", "0", "-r", "12"}, address, {"1", "1"});
-  expect_refusal({"-a", "2", "-t", "4", "-r", "0"}, address, {"0"});
-  expect_refusal({"-a", "1", "-t", "4", "-r", "0x1E5"}, address, {"6", "6"});
   expect_refusal({"-a", "2", "-t", "0", "-r", "0x107"}, value, {"0"});
-  expect_refusal({"-a", "1", "-t", "4", "-r", "0x1E4"}, value, {"248"});
-  expect_refusal({"-a", "2", "-t", "4", "-r", "0x1E8"}, value, {"256"});
   expect_refusal({"-a", "1", "-t", "4", "-r", "0x1E4"}, value, {"9", "2"});
 }
 
