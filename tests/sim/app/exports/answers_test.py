@@ -4,7 +4,6 @@ and wb-mqtt-serial. Also tests that these exports contain all coil writes of `co
 ESPHome and Node-RED contain all reads of `ranges_to_read`.
 """
 
-import itertools
 import json
 import re
 import unittest
@@ -18,11 +17,6 @@ from program import ROOT, describe, models_with_modbus
 ESPHOME = {"coil": "coil", "discrete_input": "discrete_input", "holding": "holding", "read": "input"}
 NODE_RED = {"Coil": "coil", "Input": "discrete_input", "HoldingRegister": "holding", "InputRegister": "input"}
 WIREN_BOARD = {"coil": "coil", "discrete": "discrete_input", "holding": "holding", "input": "input"}
-
-# Each of these options of the program selects a type of frame. The dictionaries map the options to the names that Home
-# Assistant and Node-RED use for these types.
-HOME_ASSISTANT = {"tcp": "rtuovertcp", "modbus-tcp": "tcp"}
-NODE_RED_CLIENTS = {"tcp": "TELNET", "modbus-tcp": "DEFAULT"}
 
 # The number of outputs and the number of inputs of each model, from section 1 of wire.md. A row of its table begins
 # with the model, the inputs and the outputs.
@@ -60,9 +54,9 @@ def ranges_to_read(model, presets):
 
 
 class EveryMap(unittest.TestCase):
-    def of_each_model(self, play, kinds=("tcp", "modbus-tcp")):
-        for model, kind in itertools.product(models_with_modbus(), kinds):
-            with self.subTest(model=model, kind=kind), Line(model, kind) as line:
+    def of_each_model(self, play):
+        for model in models_with_modbus():
+            with self.subTest(model=model), Line(model) as line:
                 play(line, model)
 
     def expect_switch(self, line, read, write):
@@ -72,9 +66,8 @@ class EveryMap(unittest.TestCase):
 
     def test_home_assistant_switches_every_output_reads_every_sensor_and_has_every_action(self):
         def play(line, model):
-            text = describe(model, "--format", "home-assistant", "--port", f"{line.kind}:127.0.0.1:{line.port}")
+            text = describe(model, "--format", "home-assistant")
             hub = yaml.safe_load(text)[0]
-            self.assertEqual((hub["type"], hub["port"]), (HOME_ASSISTANT[line.kind], line.port))
             switches, sensors = hub.get("switches", []), hub.get("binary_sensors", []) + hub.get("sensors", [])
             self.assertEqual({switch["address"] for switch in switches}, set(range(CHANNELS[model][0])))
             for switch in switches:
@@ -98,14 +91,10 @@ class EveryMap(unittest.TestCase):
 
     def test_node_red_has_every_required_read_and_write_and_each_succeeds(self):
         def play(line, model):
-            text = describe(model, "--format", "node-red", "--port", f"{line.kind}:127.0.0.1:{line.port}")
-            nodes = {node["id"]: node for node in json.loads(text)}
+            nodes = {node["id"]: node for node in json.loads(describe(model, "--format", "node-red"))}
             read, written = set(), set()
             for node in nodes.values():
-                if node["type"] == "modbus-client":
-                    client = (node["tcpType"], node["tcpPort"])
-                    self.assertEqual(client, (NODE_RED_CLIENTS[line.kind], str(line.port)))
-                elif node["type"] == "modbus-read":
+                if node["type"] == "modbus-read":
                     first, count = int(node["adr"]), int(node["quantity"])
                     kind = NODE_RED[node["dataType"]]
                     self.assertEqual(len(line.read(kind, first, count)), count)
@@ -146,7 +135,7 @@ class EveryMap(unittest.TestCase):
             self.assertEqual(read, {(kind, first + i) for kind, first, size in ranges for i in range(size)})
             self.assertEqual(written, coils_to_write(model))
 
-        self.of_each_model(play, ["tcp"])  # the export contains no port
+        self.of_each_model(play)
 
     def test_wb_mqtt_serial_reads_its_channels_and_writes_every_required_coil(self):
         def play(line, model):
@@ -163,7 +152,7 @@ class EveryMap(unittest.TestCase):
                     written |= {(channel["address"], True), (channel["address"], False)}
             self.assertEqual(written, coils_to_write(model))
 
-        self.of_each_model(play, ["tcp"])  # a template contains no port
+        self.of_each_model(play)
 
 
 if __name__ == "__main__":

@@ -83,6 +83,14 @@ class HomeAssistant(unittest.TestCase):
             self.assertIn(f"# After a timeout of the host watchdog, {after} until", text)
 
 
+class NodeRed(unittest.TestCase):
+    def test_the_client_has_the_type_and_the_address_of_the_port(self):
+        for kind, wanted in {"tcp": "TELNET", "modbus-tcp": "DEFAULT"}.items():
+            nodes = json.loads(describe("EX9052D-M", "--format", "node-red", "--port", f"{kind}:192.0.2.7:4001"))
+            client = next(node for node in nodes if node["type"] == "modbus-client")
+            self.assertEqual((client["tcpType"], client["tcpHost"], client["tcpPort"]), (wanted, "192.0.2.7", "4001"))
+
+
 class EspHome(unittest.TestCase):
     def test_a_node_has_switches_sensors_and_buttons(self):
         node = yaml.safe_load(describe("EX9060D-M", "--format", "esphome", "--address", "2a"))

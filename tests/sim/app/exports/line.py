@@ -10,25 +10,14 @@ from program import PROGRAM
 FUNCTION_OF_READING = {"coil": 1, "discrete_input": 2, "holding": 3, "input": 4}
 
 
-def crc16(data):
-    crc = 0xFFFF
-    for byte in data:
-        crc ^= byte
-        for _ in range(8):
-            crc = crc >> 1 ^ (0xA001 if crc & 1 else 0)
-    return struct.pack("<H", crc)
-
-
 class Line:
-    """One module at address 01, which a master reaches over TCP.
+    """One module at address 01, which a master reaches over Modbus TCP.
 
-    The kind of the port selects the frames: tcp selects Modbus RTU, modbus-tcp selects Modbus TCP.
     `read` and `write_coil` raise OSError if the simulator has ended or sends nothing for 60 s.
     """
 
-    def __init__(self, model, kind="tcp"):
-        self.kind = kind
-        command = [PROGRAM, f"{model}@01", "--port", f"{kind}:0", "--timing", "instant"]
+    def __init__(self, model):
+        command = [PROGRAM, f"{model}@01", "--port", "modbus-tcp:0", "--timing", "instant"]
         self._program = subprocess.Popen(command, stdout=subprocess.PIPE, encoding="utf-8")
         self.port = self._port()
         self._socket = socket.create_connection(("127.0.0.1", self.port), timeout=60)  # seconds; only detects a hang
@@ -62,38 +51,19 @@ class Line:
             data += received
         return data
 
-    def _ask_rtu(self, request):
-        """Sends a request. Returns address, function and data of the reply. Raises ValueError if the CRC is wrong."""
-        self._socket.sendall(request + crc16(request))
-        reply = self._receive(3)
-        if reply[1] & 0x80:
-            reply += self._receive(2)
-        else:
-            reply += self._receive(5 if reply[1] >= 5 else reply[2] + 2)
-        if crc16(reply[:-2]) != reply[-2:]:
-            raise ValueError(f"wrong CRC: {reply.hex(' ')}")
-        return reply[:-2]
+    def _ask(self, function, first, value):
+        """Sends a request. Returns the data of the reply.
 
-    def _ask_modbus_tcp(self, request):
-        """Sends a request. Returns unit, function and data of the reply.
-
-        Raises ValueError if the transaction or the protocol in the header is wrong.
+        Raises ValueError if the reply is an exception, or if its header, unit or function is wrong.
         """
+        request = struct.pack(">BBHH", 1, function, first, value)
         self._transaction += 1
         self._socket.sendall(struct.pack(">HHH", self._transaction, 0, len(request)) + request)
         header = self._receive(6)
         transaction, protocol, length = struct.unpack(">HHH", header)
         if (transaction, protocol) != (self._transaction, 0):
             raise ValueError(f"wrong header: {header.hex(' ')}")
-        return self._receive(length)
-
-    def _ask(self, function, first, value):
-        """Sends a request. Returns the data of the reply.
-
-        Raises ValueError if the reply is an exception, or if its header, CRC, address or function is wrong.
-        """
-        request = struct.pack(">BBHH", 1, function, first, value)
-        reply = self._ask_modbus_tcp(request) if self.kind == "modbus-tcp" else self._ask_rtu(request)
+        reply = self._receive(length)
         if reply[:2] != request[:2]:
             expected = f"expected a reply that begins with {request[:2].hex(' ')}, in hex"
             raise ValueError(f"request {request.hex(' ')}: wrong reply {reply.hex(' ')}; {expected}")

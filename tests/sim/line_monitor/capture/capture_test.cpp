@@ -370,35 +370,6 @@ TEST(Capture, AWriteErrorEndsTheProgramWithOneLineAndLeavesNoCreatedFiles) {
   }
 }
 
-TEST(Capture, DoesNotOverwriteTheBusFileTheControlSocketThePseudoTerminalOrTheEepromFile) {
-  const Directory directory;
-  const std::string bus = R"({"capture": "link", "control": "ctl", "lines": [
-    {"port": "pty:tty", "modules": [{"model": "EX9042D", "eeprom": "n.bin"}]}]})";
-  write_file(directory / "bus.json", bus);
-  const std::vector<std::pair<std::string, std::string>> cases{{"bus.json", "the bus file bus.json"},
-                                                               {"ctl", "the control socket ctl"},
-                                                               {"tty", "the port tty"},
-                                                               {"n.bin", "a module's EEPROM file n.bin"}};
-  for (const auto& [path, what] : cases) {
-    std::filesystem::create_symlink(path, directory / "link");
-    for (const std::vector<std::string>& named : {std::vector<std::string>{}, {"--capture", path}}) {
-      std::vector<std::string> command{simulator_path(), "bus.json"};
-      command.insert(command.end(), named.begin(), named.end());
-      const Finished finished = run(command, directory.path());
-      EXPECT_EQ(finished.status, 2) << finished.error;
-      // If the EEPROM file does not exist yet, the program cannot detect that the link leads to this file. In
-      // this case, the program rejects the link with another message.
-      if (path != "n.bin" || !named.empty()) {
-        EXPECT_NE(finished.error.find(": is " + what + ", "), std::string::npos) << finished.error;
-      }
-      EXPECT_EQ(std::count(finished.error.begin(), finished.error.end(), '\n'), 1) << finished.error;
-    }
-    std::filesystem::remove(directory / "link");
-  }
-  EXPECT_EQ(bytes_of_file(directory / "bus.json"), bus);
-  EXPECT_FALSE(std::filesystem::exists(directory / "n.bin"));
-}
-
 // --- the JSON log ---
 
 TEST(JsonLog, IsTheOnlyTextOnStandardOutput) {
