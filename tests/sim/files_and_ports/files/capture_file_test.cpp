@@ -9,7 +9,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <chrono>
 #include <filesystem>
 #include <future>
@@ -52,18 +51,6 @@ std::string unavailability(const std::string& path) {
     return error.what();
   }
   return "";
-}
-
-TEST(CaptureFile, AnExistingFileIsNotOverwrittenBeforeTheCaptureBegins) {
-  const Directory directory;
-  write_file(directory / "a", "precious");
-  { const CaptureFile file(directory / "a", kPlace); }
-  EXPECT_EQ(bytes_of_file(directory / "a"), "precious");
-  CaptureFile file(directory / "a", kPlace);
-  file.begin();
-  EXPECT_EQ(bytes_of_file(directory / "a"), "");
-  file.append(block("one"));
-  EXPECT_EQ(bytes_of_file(directory / "a"), "one");
 }
 
 TEST(CaptureFile, IsUsedByOneSimulatorAtATime) {
@@ -130,22 +117,6 @@ TEST(CaptureFile, WaitsForTheReaderOfAFullPipe) {
     all.append(some, 0, static_cast<std::size_t>(std::max<ssize_t>(size, 0)));
   }
   EXPECT_EQ(all.size(), text.size());
-  close(reader);
-}
-
-TEST(CaptureFile, DiscardsAllBlocksAfterItGivesUpWaitingForTheReader) {
-  const Directory directory;
-  ASSERT_EQ(mkfifo((directory / "a").c_str(), 0600), 0);
-  const int reader = open((directory / "a").c_str(), O_RDONLY | O_NONBLOCK);
-  const auto capacity = static_cast<std::size_t>(fcntl(reader, F_GETPIPE_SZ));
-  CaptureFile file(directory / "a", kPlace, [] { return true; });
-  file.begin();
-  file.append(block(std::string(capacity + 1, 'x')));
-  std::string text(2 * capacity, ' ');
-  EXPECT_EQ(read(reader, text.data(), text.size()), static_cast<ssize_t>(capacity));
-  file.append(block("one"));
-  EXPECT_EQ(read(reader, text.data(), text.size()), -1);
-  EXPECT_EQ(errno, EAGAIN);
   close(reader);
 }
 
