@@ -18,7 +18,6 @@ const REQUESTS = {
   0x0f: (client, frame) => client.writeCoils(word(frame, 2), bits(frame)),
   0x10: (client, frame) => client.writeRegisters(word(frame, 2), words(frame)),
   0x11: (client) => client.reportServerID(0, 0), // the library requires two arguments and ignores them
-  0x14: (client, frame) => client.readFileRecords(word(frame, 4), word(frame, 6)),
   0x16: (client, frame) => client.maskWriteRegister(word(frame, 2), word(frame, 4), word(frame, 6)),
   0x2b: (client, frame) => client.readDeviceIdentification(frame[3], frame[4]),
 };

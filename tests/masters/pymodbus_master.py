@@ -14,14 +14,8 @@ from pymodbus import diag_message
 from pymodbus.bit_read_message import ReadCoilsRequest, ReadDiscreteInputsRequest
 from pymodbus.bit_write_message import WriteMultipleCoilsRequest, WriteSingleCoilRequest
 from pymodbus.client import ModbusSerialClient, ModbusTcpClient
-from pymodbus.file_message import FileRecord, ReadFifoQueueRequest, ReadFileRecordRequest, WriteFileRecordRequest
 from pymodbus.mei_message import ReadDeviceInformationRequest
-from pymodbus.other_message import (
-    GetCommEventCounterRequest,
-    GetCommEventLogRequest,
-    ReadExceptionStatusRequest,
-    ReportSlaveIdRequest,
-)
+from pymodbus.other_message import ReadExceptionStatusRequest, ReportSlaveIdRequest
 from pymodbus.pdu import ExceptionResponse, ModbusRequest, ModbusResponse
 from pymodbus.register_read_message import (
     ReadHoldingRegistersRequest,
@@ -113,11 +107,6 @@ def write_coils(data):
     return WriteMultipleCoilsRequest(address, unpack_bitstring(data[5:])[:count])
 
 
-def file_record(data):
-    _, file, record, length = struct.unpack(">BHHH", data[1:8])
-    return FileRecord(file_number=file, record_number=record, record_length=length, record_data=data[8:])
-
-
 def read_write_registers(data):
     read_address, read_count, write_address, _ = words(data[:8])
     return ReadWriteMultipleRegistersRequest(
@@ -138,16 +127,11 @@ REQUESTS = {
     0x06: lambda data: WriteSingleRegisterRequest(*words(data)),
     0x07: lambda data: ReadExceptionStatusRequest(),
     0x08: diagnostics,
-    0x0B: lambda data: GetCommEventCounterRequest(),
-    0x0C: lambda data: GetCommEventLogRequest(),
     0x0F: write_coils,
     0x10: lambda data: WriteMultipleRegistersRequest(words(data[:2])[0], list(words(data[5:]))),
     0x11: lambda data: ReportSlaveIdRequest(),
-    0x14: lambda data: ReadFileRecordRequest([file_record(data)]),
-    0x15: lambda data: WriteFileRecordRequest([file_record(data)]),
     0x16: lambda data: MaskWriteRegisterRequest(*words(data)),
     0x17: read_write_registers,
-    0x18: lambda data: ReadFifoQueueRequest(*words(data)),
     0x46: Function46Request,
 }
 
