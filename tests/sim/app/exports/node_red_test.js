@@ -72,17 +72,6 @@ test("the editor accepts the properties of every node", () => {
   }
 });
 
-test("the check of properties finds wrong nodes", () => {
-  const [client, read] = ["modbus-client", "modbus-read"].map((type) =>
-    flowOf("EX9052D-M").find((node) => node.type === type));
-  assert.notDeepEqual(mistakesOf({ ...read, address: 0 }), []);
-  assert.notDeepEqual(mistakesOf({ ...read, dataType: "DiscreteInput" }), []);
-  assert.notDeepEqual(mistakesOf({ ...read, adr: "" }), []);
-  assert.notDeepEqual(mistakesOf({ ...read, rate: undefined }), []);
-  assert.notDeepEqual(mistakesOf({ ...read, wires: [[]] }), []);
-  assert.notDeepEqual(mistakesOf({ ...client, tcpType: "RTU" }), []);
-});
-
 test("Node-RED finds the tab, the client and the target of each wire", () => {
   for (const model of MODELS) {
     const nodes = flowOf(model);
