@@ -43,6 +43,7 @@ bool is_accepted(const reference::ModelRow& model, unsigned function, unsigned a
   stored.modbus = true;
   module.store(stored);
   module.power(true, {});
+  module.select_mode(false);
   const auto high = static_cast<std::uint8_t>(address >> 8);
   const auto low = static_cast<std::uint8_t>(address & 0xFF);
   reference::Bytes request{0x01, static_cast<std::uint8_t>(function), high, low, 0x00, 0x01};
