@@ -1,5 +1,6 @@
 // Sends requests without pauses to two simulators with 32 modules each. Fails if a reply is missing or wrong,
-// or if the memory of a simulator grows by more than 256 KiB after its first transactions.
+// or if the memory of a simulator grows by more than 256 KiB after its first transactions. Also fails if a
+// module requires more than 16 KiB of memory.
 //
 //     soak [SECONDS]    default: 600
 #include <array>
@@ -32,19 +33,39 @@ constexpr int kInputs = 8;
 constexpr long kFirstTransactions = 200;
 /// The permitted growth of the memory of a simulator after its first transactions, in KiB.
 constexpr long kGrowth = 256;
+constexpr double kMostOfAModule = 16;  // KiB
 
 bool has_outputs(int address) { return address % 2 == 1; }
 
-std::vector<std::string> modules() {
+std::vector<std::string> modules(int count) {
   constexpr std::array<char, 17> kDigits{"0123456789ABCDEF"};
   std::vector<std::string> arguments;
-  for (int address = 1; address <= kModules; ++address) {
+  for (int address = 1; address <= count; ++address) {
     const auto byte = static_cast<unsigned>(address);
     arguments.push_back(std::string(has_outputs(address) ? "EX9042D-M@" : "EX9052D-M@") + kDigits[byte / 16] +
                         kDigits[byte % 16] + ",baud=" + std::to_string(kBaud));
   }
   arguments.insert(arguments.end(), {"--control", "control"});
   return arguments;
+}
+
+/// Returns the resident memory of a simulator, in KiB. Returns 0 if the system does not report it.
+long memory_of(const SimulatorProcess& simulator) {
+  std::ifstream status("/proc/" + std::to_string(simulator.pid()) + "/status");
+  for (std::string line; std::getline(status, line);) {
+    if (line.rfind("VmRSS:", 0) == 0) {
+      return std::stol(line.substr(line.find(':') + 1));
+    }
+  }
+  return 0;
+}
+
+/// Returns the memory that a module adds to a simulator, in KiB.
+double memory_of_a_module() {
+  constexpr int kMostModules = 247;
+  return static_cast<double>(memory_of(SimulatorProcess(modules(kMostModules))) -
+                             memory_of(SimulatorProcess(modules(1)))) /
+         (kMostModules - 1);
 }
 
 /// A simulator with one line, the master of this line, and the expected state of the modules.
@@ -65,16 +86,7 @@ class Bus {
 
   [[nodiscard]] long transactions() const { return transactions_; }
   [[nodiscard]] long wrong() const { return wrong_; }
-  /// Returns the resident memory of the simulator, in KiB. Returns 0 if the system does not report it.
-  [[nodiscard]] long memory() const {
-    std::ifstream status("/proc/" + std::to_string(simulator_.pid()) + "/status");
-    for (std::string line; std::getline(status, line);) {
-      if (line.rfind("VmRSS:", 0) == 0) {
-        return std::stol(line.substr(line.find(':') + 1));
-      }
-    }
-    return 0;
-  }
+  [[nodiscard]] long memory() const { return memory_of(simulator_); }
 
  private:
   void move_an_output(int address) {
@@ -97,7 +109,7 @@ class Bus {
     wrong_ += right ? 0 : 1;
   }
 
-  SimulatorProcess simulator_{modules()};
+  SimulatorProcess simulator_{modules(kModules)};
   LibmodbusMaster master_{simulator_.tty(), kBaud};
   ControlClient control_{simulator_.directory() + "/control"};
   long round_ = 0;
@@ -136,7 +148,9 @@ int main(int argc, char** argv) {
   for (std::thread& master : masters) {
     master.join();
   }
-  bool passed = true;
+  const double of_a_module = memory_of_a_module();
+  std::printf("memory of a module: %.1f KiB (limit: %.0f KiB)\n", of_a_module, kMostOfAModule);
+  bool passed = of_a_module <= kMostOfAModule;
   for (std::size_t i = 0; i < buses.size(); ++i) {
     const long grown = buses[i].memory() - before[i];
     std::printf("bus %zu: %ld transactions in %ld s, %ld wrong; %ld KiB, %+ld since the first transactions\n",
