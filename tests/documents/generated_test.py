@@ -35,10 +35,6 @@ class Generated(unittest.TestCase):
                 written = section_of("sim/docs/command-line.md", f"toolchain/help-tables {table}")
                 self.assertEqual(written, printed(["toolchain/help-tables", table], printed([PROGRAM, *words])))
 
-    def test_the_table_of_recorded_sizes_is_up_to_date(self) -> None:
-        written = section_of("boards/README.md", "toolchain/tabulate-sizes")
-        self.assertEqual(written, printed(["toolchain/tabulate-sizes"]))
-
     def test_the_wiring_of_the_pico_is_up_to_date(self) -> None:
         drawn = (ROOT / "boards/pico/wiring.svg").read_text(encoding="utf-8")
         self.assertEqual(drawn, printed(["toolchain/draw-wiring", "boards/pico/README.md"]))

@@ -1,18 +1,11 @@
-"""Tests check-image on images that it accepts. Also tests the module that reads and writes the records of sizes."""
+"""Tests check-image on images that it accepts, and on an image that exceeds its budget."""
 
 from __future__ import annotations
 
-import pathlib
 import re
-import sys
-import tempfile
 import unittest
 
 from sample import Verdict, check, holding
-
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "toolchain"))
-
-from check_image import records  # noqa: E402
 
 EXCEPTION = 36
 
@@ -219,29 +212,16 @@ class Accepts(unittest.TestCase):
             )
             self.assertTrue(verdict.accepted, verdict.problems)
 
-    def test_changes_since_the_record_are_printed(self) -> None:
+    def test_an_image_is_accepted_up_to_its_budget(self) -> None:
         source = 'volatile char a[100]; extern "C" void reset() { for (;;) a[0] = 1; }'
-        with tempfile.NamedTemporaryFile("w", suffix=".txt") as record:
-            record.write("a-board image 1 96 108\nanother image 1 1 1\n")
-            record.flush()
-            figures = check(source, options=f"--record {record.name} --board a-board").figures
-        self.assertRegex(figures, r"^image: flash \d+ \(\+\d+\) bytes, RAM 208 bytes \(100 \(\+4\) static, 108 stack")
-
-
-class Growth(unittest.TestCase):
-    RECORDED = records.Figures(1000, 400, 600)
-
-    def test_only_growth_of_more_than_five_percent_exceeds_the_record(self) -> None:
-        self.assertFalse(records.Figures(1050, 420, 630).exceeds(self.RECORDED))
-        self.assertTrue(records.Figures(1051, 400, 600).exceeds(self.RECORDED))
-        self.assertTrue(records.Figures(1000, 451, 600).exceeds(self.RECORDED))
-
-    def test_a_written_record_is_read_back(self) -> None:
-        rows = {("a-board", "EX9042D"): self.RECORDED, ("another", "EX9055D"): records.Figures(1, 2, 3)}
-        with tempfile.TemporaryDirectory() as folder:
-            path = pathlib.Path(folder, "record")
-            records.write(path, rows)
-            self.assertEqual(records.read(path), rows)
+        figures = check(source).figures
+        flash, ram, stack = (int(n) for n in re.search(r"flash (\d+) .*RAM (\d+) .*, (\d+) stack", figures).groups())
+        self.assertEqual((ram, stack), (208, 108))
+        self.assertTrue(check(source, options=f"--budget {flash} {ram} {stack}").accepted)
+        for budget in ((flash - 1, ram, stack), (flash, ram - 1, stack), (flash, ram, stack - 1)):
+            verdict = check(source, options="--budget " + " ".join(map(str, budget)))
+            self.assertFalse(verdict.accepted)
+            self.assertRegex(verdict.problems, r"^image: requires \d+ bytes of \w+; its budget is \d+ .*\n?$")
 
 
 if __name__ == "__main__":

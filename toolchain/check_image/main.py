@@ -7,12 +7,11 @@ import sys
 from dataclasses import dataclass
 from pathlib import Path
 
-from check_image import call_graph, call_sites, forbidden, records, sizes
+from check_image import call_graph, call_sites, forbidden, sizes
 from check_image.disassembly import Disassembly
 from check_image.functions import Functions
 from check_image.disabled_interrupts import DisabledInterrupts
 from check_image.linked_graph import LinkedGraph
-from check_image.records import Figures
 from check_image.stack import EXCEPTION_FRAME, Unbounded, WorstCase, worst_case
 from check_image.vectors import BadVectors, Vectors
 from elf_file import Elf, NotAnImage
@@ -45,8 +44,7 @@ def main(arguments: list[str]) -> int:
 def _parse(arguments: list[str]) -> argparse.Namespace:
     parser = argparse.ArgumentParser(
         prog="check-image",
-        description="Checks the contents of a firmware image. Prints its sizes, its worst-case stack, and the changes "
-        "since the record.",
+        description="Checks the contents of a firmware image. Prints its sizes and its worst-case stack.",
     )
     parser.add_argument(
         "image", type=Path, help="the linked ELF file, with a vector table in its section .vectors"
@@ -61,15 +59,11 @@ def _parse(arguments: list[str]) -> argparse.Namespace:
         ),
     )
     parser.add_argument(
-        "--record",
-        type=Path,
-        metavar="FILE",
-        help="print the changes since this record, which has lines of BOARD IMAGE FLASH STATIC STACK",
-    )
-    parser.add_argument(
-        "--board",
-        default="",
-        help="use the lines of this board in the record, and write the sizes to a file next to the image",
+        "--budget",
+        type=int,
+        nargs=3,
+        metavar=("FLASH", "RAM", "STACK"),
+        help="fail if the image requires more bytes of flash, of RAM with the stack, or of stack",
     )
     parser.add_argument(
         "--level",
@@ -109,7 +103,7 @@ def _check(options: argparse.Namespace) -> int:
                 " dump next to the call graph contains them; compile with -fdump-tree-optimized-lineno"
             )
     else:
-        problems += _report(options, Figures(sizes.flash(elf), sizes.static_ram(elf), stack.size), vectors, disabled)
+        problems += _report(options, elf, stack, vectors, disabled)
         if options.verbose:
             _report_stack(stack)
             _report_pointer_calls(linked)
@@ -138,25 +132,26 @@ def _read_units(paths: list[Path]) -> Units:
 
 
 def _report(
-    options: argparse.Namespace, figures: Figures, vectors: Vectors, disabled: DisabledInterrupts
+    options: argparse.Namespace, elf: Elf, stack: WorstCase, vectors: Vectors, disabled: DisabledInterrupts
 ) -> list[str]:
-    """Prints the sizes, their changes since the record, and the largest number of instructions for which interrupts
-    are disabled. With --board, writes the sizes to a file next to the image.
+    """Prints the sizes, and the largest number of instructions for which interrupts are disabled.
 
-    Returns a problem if the RAM is too small, otherwise an empty list. Does not check the flash, because the linker
-    fails if the flash is too small.
+    Returns a problem for each size that the board or the budget does not permit. Does not compare the flash with that
+    of the board, because the linker fails if the flash is too small.
     """
-    before = records.read(options.record).get((options.board, options.image.stem))
-    flash, static, stack = figures.since(before)
+    flash, static = sizes.flash(elf), sizes.static_ram(elf)
+    ram = static + stack.size
     print(
-        f"{options.image.stem}: flash {flash} bytes, RAM {figures.static + figures.stack} bytes "
-        f"({static} static, {stack} stack at worst), interrupts disabled for {disabled.longest} instructions"
+        f"{options.image.stem}: flash {flash} bytes, RAM {ram} bytes ({static} static, {stack.size} stack at worst), "
+        f"interrupts disabled for {disabled.longest} instructions"
     )
-    if options.board:
-        records.write(options.image.with_suffix(".size"), {(options.board, options.image.stem): figures})
-    ram = vectors.stack_top - sizes.RAM.start
-    used = figures.static + figures.stack
-    return [f"requires {used} bytes of RAM; the board has {ram}"] if used > ram else []
+    has = vectors.stack_top - sizes.RAM.start
+    problems = [f"requires {ram} bytes of RAM; the board has {has}"] if ram > has else []
+    if options.budget is not None:
+        for what, size, most in zip(("flash", "RAM", "stack"), (flash, ram, stack.size), options.budget):
+            if size > most:
+                problems.append(f"requires {size} bytes of {what}; its budget is {most} (boards/budgets)")
+    return problems
 
 
 def _report_stack(stack: WorstCase) -> None:
