@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cstdio>
-#include <cstring>
 #include <stdexcept>
 #include <vector>
 
@@ -203,11 +202,10 @@ bool AlarmClock::wait_for_alarm() {
     }
   }
   if (!machine_.gdb().has_packet()) {
-    constexpr std::size_t kAddress = sizeof(std::uint32_t);
-    std::array<std::uint8_t, kAddress> address{};
-    machine_.gate().receive_all(address.data(), address.size());
-    std::memcpy(&last_report_, address.data(), address.size());
-    last_report_ -= kReportBase;
+    std::array<std::uint64_t, 2> said{};  // see gate.cpp
+    machine_.gate().receive_all(reinterpret_cast<std::uint8_t*>(said.data()), sizeof said);
+    last_report_ = static_cast<std::uint32_t>(said[0]) - kReportBase;
+    instructions_ = said[1];
     at_gate_ = true;
     return true;
   }

@@ -61,6 +61,8 @@ class AlarmClock {
   [[nodiscard]] bool receiver_empty() const;
   [[nodiscard]] bool driver_on() const;
   [[nodiscard]] bool led_lit() const;
+  /// Returns the number of instructions that the image has executed since the emulator was started.
+  [[nodiscard]] std::uint64_t instructions() const { return instructions_; }
 
  private:
   void run(std::uint32_t clocks, const std::string& orders = {});
@@ -77,6 +79,7 @@ class AlarmClock {
   std::string watched_;        ///< the watched range in the debugger's format
   std::uint32_t ordered_ = 0;  ///< the last value of kNextAlarm in alarm_clock.cpp, in clocks
   std::uint32_t last_report_ = 0;  ///< the last report of the interrupt code
+  std::uint64_t instructions_ = 0;
 };
 
 }  // namespace ex9000::rig

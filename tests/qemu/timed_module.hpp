@@ -69,6 +69,10 @@ class TimedModule : public EmulatedBoard {
   /// Returns whether the module is powered and its driver enable was on at the last stop.
   [[nodiscard]] bool speaks() const { return powered() && clock_->driver_on(); }
 
+  /// Returns the number of instructions that the image had executed at the last stop, since the emulator was
+  /// started. The module must be powered.
+  [[nodiscard]] std::uint64_t instructions() const { return clock_->instructions(); }
+
   /// Assumes that the LED is steadily on. If LampWatch detects during a later call that the LED flashes, that
   /// call throws std::runtime_error.
   void assume_led_on() { lamp_.believe(now_); }
