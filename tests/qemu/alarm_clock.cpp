@@ -150,13 +150,6 @@ nanoseconds AlarmClock::make_edges(Pin pin, std::uint32_t edges) {
 }
 
 void AlarmClock::run(std::uint32_t clocks, const std::string& orders) {
-  begin_to_run(clocks, orders);
-  if (!wait_for_alarm()) {
-    throw std::runtime_error("emulator: it stops before a watched store; expected it to run until the alarm");
-  }
-}
-
-void AlarmClock::begin_to_run(std::uint32_t clocks, const std::string& orders) {
   std::string commands = orders;
   if (at_first_ || ordered_ != clocks) {  // `clocks` is often the same for several bytes of a request
     commands += QtestClient::write_command(kOrders + kNextAlarm, clocks);
@@ -174,6 +167,7 @@ void AlarmClock::begin_to_run(std::uint32_t clocks, const std::string& orders) {
     machine_.bus().carry_out(commands);
   }
   go_on();
+  wait_for_alarm();
 }
 
 void AlarmClock::go_on() {
@@ -185,9 +179,8 @@ void AlarmClock::go_on() {
   }
 }
 
-/// Waits until the machine stops. Returns true if the processor waits at the gate, and false if the machine
-/// has stopped before a watched store.
-bool AlarmClock::wait_for_alarm() {
+/// Waits until the processor waits at the gate.
+void AlarmClock::wait_for_alarm() {
   // The emulator can take seconds for an interrupt storm of 1.6 s of emulated time, and more than `kHang` on
   // a busy host. The emulator still replies to reads during that time.
   constexpr int kMostQuestions = 5;
@@ -195,8 +188,7 @@ bool AlarmClock::wait_for_alarm() {
     if (!wait_for_any({&machine_.gdb().socket(), &machine_.gate()})) {
       if (++asked > kMostQuestions) {
         throw std::runtime_error(
-            "emulator: it does not stop for 6 minutes; expected it to stop at the alarm or before a watched "
-            "store");
+            "emulator: it does not stop for 6 minutes; expected it to stop at the alarm");
       }
       machine_.bus().read(kTickCounter);
     }
@@ -207,13 +199,10 @@ bool AlarmClock::wait_for_alarm() {
     last_report_ = static_cast<std::uint32_t>(said[0]) - kReportBase;
     instructions_ = said[1];
     at_gate_ = true;
-    return true;
+    return;
   }
   const std::string packet = machine_.gdb().receive();
   go_on_ = "c";
-  if (packet.rfind("T05", 0) == 0 && packet.find("watch:") != std::string::npos) {
-    return false;
-  }
   throw Halted("image: it has stopped with " + packet + "; expected it to run until the alarm");
 }
 
@@ -231,36 +220,6 @@ void AlarmClock::halt() {
   }
   go_on_ = "F0";
   machine_.bus().write(kOrders + kHalt, 0);
-}
-
-void AlarmClock::watch_stores(std::uint32_t address, std::uint32_t size) {
-  halt();
-  std::array<char, 32> range{};
-  (void)std::snprintf(range.data(), range.size(), "2,%x,%x", address, size);
-  watched_ = range.data();
-  machine_.gdb().send(GdbClient::framed("Z" + watched_));
-  if (machine_.gdb().receive() != "OK") {
-    throw std::runtime_error("emulator: it rejects the watchpoint " + watched_ + "; expected OK");
-  }
-}
-
-/// With the option -icount, the emulator stops before a watched store, and stops there again when it
-/// continues. Therefore this function removes the watchpoint while the emulator executes one instruction.
-bool AlarmClock::run_to_store(nanoseconds time) {
-  if (at_store_) {
-    GdbClient& gdb = machine_.gdb();
-    gdb.send(GdbClient::framed("z" + watched_) + GdbClient::framed("s"));
-    while (gdb.receive() == "OK") {
-    }
-    gdb.send(GdbClient::framed("Z" + watched_) + GdbClient::framed("c"));
-    if (gdb.receive() != "OK") {
-      throw std::runtime_error("emulator: it rejects the watchpoint " + watched_ + "; expected OK");
-    }
-  } else {
-    begin_to_run(clocks(time - kInterruptTakes), {});
-  }
-  at_store_ = !wait_for_alarm();
-  return at_store_;
 }
 
 bool AlarmClock::receiver_empty() const { return (last_report_ & kReceiverEmpty) != 0; }

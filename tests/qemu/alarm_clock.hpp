@@ -44,14 +44,6 @@ class AlarmClock {
   /// duration. Between `set_up` and this call, the machine must have run; otherwise edges are lost.
   std::chrono::nanoseconds make_edges(Pin pin, std::uint32_t edges);
 
-  /// Makes `run_to_store` stop the machine before each store to one of the `size` bytes from the bus address
-  /// `address` on. After this call, only `run_to_store` may run the machine.
-  void watch_stores(std::uint32_t address, std::uint32_t size);
-  /// Runs the machine until the next watched store, but at most for `time`. If the previous call has returned
-  /// true, this call ignores `time` and continues with the rest of the earlier time. Returns whether the
-  /// machine has stopped before a store. Between `set_up` and the first call, the machine must have run.
-  bool run_to_store(std::chrono::nanoseconds time);
-
   /// Halts the whole machine, for example for a reset. While the processor waits at the gate, the rest of the
   /// machine is not halted. After this call the machine can be reset or can run again.
   void halt();
@@ -66,18 +58,15 @@ class AlarmClock {
 
  private:
   void run(std::uint32_t clocks, const std::string& orders = {});
-  void begin_to_run(std::uint32_t clocks, const std::string& orders);
   void go_on();
   std::uint32_t clocks(std::chrono::nanoseconds time);
-  bool wait_for_alarm();
+  void wait_for_alarm();
 
   Emulator& machine_;
-  bool at_first_ = true;       ///< the machine has not run since the last reset
-  bool at_gate_ = false;       ///< the processor waits at the gate
-  const char* go_on_ = "c";    ///< the debugger's packet that continues a machine that is not at the gate
-  bool at_store_ = false;      ///< the machine has stopped before a store, and the alarm has not occurred yet
-  std::string watched_;        ///< the watched range in the debugger's format
-  std::uint32_t ordered_ = 0;  ///< the last value of kNextAlarm in alarm_clock.cpp, in clocks
+  bool at_first_ = true;           ///< the machine has not run since the last reset
+  bool at_gate_ = false;           ///< the processor waits at the gate
+  const char* go_on_ = "c";        ///< the debugger's packet that continues a machine that is not at the gate
+  std::uint32_t ordered_ = 0;      ///< the last value of kNextAlarm in alarm_clock.cpp, in clocks
   std::uint32_t last_report_ = 0;  ///< the last report of the interrupt code
   std::uint64_t instructions_ = 0;
 };

@@ -35,8 +35,7 @@ class EmulatedBoard {
 
   /// Returns the emulator. Call this only while the board is powered.
   Emulator& emulator() { return *emulator_; }
-  /// Returns the content of the EEPROM, from its file.
-  [[nodiscard]] std::string memory() const { return system::bytes_of_file(directory_ / "memory"); }
+  /// Sets the content of the EEPROM's file.
   void set_memory(const std::string& bytes) { system::write_file(directory_ / "memory", bytes); }
 
  protected:

@@ -43,14 +43,6 @@ class TimedModule : public EmulatedBoard {
   /// Returns the time that has passed since the module was created or last replaced by `begin_anew`.
   [[nodiscard]] std::chrono::nanoseconds now() const { return now_; }
 
-  /// Makes `run_to_store` stop the module before each store to one of the `size` bytes from the bus address
-  /// `address` on. Until `kill`, only `run_to_store` may run the module.
-  void watch_stores(std::uint32_t address, std::uint32_t size) { clock_->watch_stores(address, size); }
-  /// Runs until the module is about to execute the next watched store, but not longer than
-  /// AlarmClock::run_to_store permits. Returns whether the module has stopped before a store. Does not change
-  /// `now()`.
-  bool run_to_store(std::chrono::nanoseconds time) { return clock_->run_to_store(time); }
-
   /// Runs until the watchdog or the image is about to reset the module. The emulator must then send `event`.
   /// It sends `WATCHDOG` only for a reset by the watchdog, and `SHUTDOWN` for a reset by the watchdog or by
   /// the image. Throws std::runtime_error if this event does not occur within `time`. `now()` omits up to
