@@ -1,3 +1,2 @@
 # For the firmware, the Pico W differs from the Pico only in the pin of the status LED (board.hpp).
 include(${CMAKE_CURRENT_LIST_DIR}/../pico/board.cmake)
-unset(test_programs)  # the presets of the Pico build these programs

@@ -10,8 +10,6 @@ set(board_libraries gcc)
 # drive of the boot ROM.
 set(starts_from_uf2 ON)
 
-set(test_programs tests/rp2040/flash_exercise)
-
 set(openocd_script ${CMAKE_CURRENT_LIST_DIR}/openocd.cfg)
 
 set(EX9000_MEMORY flash CACHE STRING "Memory of the settings: flash (the end of the flash) or eeprom (an AT24C64 on I2C)")

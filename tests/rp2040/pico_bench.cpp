@@ -64,10 +64,6 @@ std::string image_of(const Model& model, Memory memory) {
   return EX9000_BUILD_FOLDER + (preset + std::string(model.designation)) + ".bin";
 }
 
-std::string program_for_tests(const std::string& name) {
-  return EX9000_BUILD_FOLDER + ("/pico/" + name) + ".bin";
-}
-
 void PicoBench::begin_with(const std::string& file) {
   constexpr unsigned kTransmit = board::kUartPins.first_pin;
   powered_ = false;

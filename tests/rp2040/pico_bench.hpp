@@ -93,7 +93,5 @@ class PicoBench {
 
 /// Returns the path of the image of a model. The file contains the content of the flash.
 std::string image_of(const Model& model, Memory memory);
-/// Returns the path of a program that only tests use. The file contains the content of the flash.
-std::string program_for_tests(const std::string& name);
 
 }  // namespace ex9000::pico

@@ -1,12 +1,11 @@
-// A PL011 UART with the duration of each bit, errors, overrun, FIFO levels and receive timeout. Sources: RP2040 data
-// sheet, 4.2; Arm PrimeCell UART (PL011) TRM, 2.4 and 3.3.
+// A PL011 UART with the duration of each bit, errors and overrun, without FIFOs. Sources: RP2040 data sheet, 4.2; Arm
+// PrimeCell UART (PL011) TRM, 2.4 and 3.3.
 "use strict";
 const { BasePeripheral } = require("rp2040js");
 const { FORMATS, Receiver, Sender, bitsOf } = require("./line");
 
 const RECEIVED = 1 << 4;
 const TRANSMITTED = 1 << 5;
-const RECEIVE_TIMEOUT = 1 << 6;
 const FRAMING_ERROR = 1 << 7;
 const PARITY_ERROR = 1 << 8;
 const BREAK_ERROR = 1 << 9;
@@ -20,12 +19,8 @@ const DATA_OVERRUN = 1 << 11;
 const ENABLED = 1 << 0;
 const TRANSMIT_ENABLED = 1 << 8;
 const RECEIVE_ENABLED = 1 << 9;
-const FIFOS_ON = 1 << 4;
-// The formats that modules have, by the value of UARTLCR_H without FEN: WLEN with PEN, EPS and STP2.
+// The formats that modules have, by the value of UARTLCR_H: WLEN with PEN, EPS and STP2. FEN is 0.
 const LINE_CONTROL = { 0x60: FORMATS["8N1"], 0x62: FORMATS["8O1"], 0x66: FORMATS["8E1"], 0x68: FORMATS["8N2"] };
-
-const DEPTH = 32;
-const LEVELS = [4, 8, 16, 24, 28]; // received or waiting bytes, by the value of a field of UARTIFLS
 
 class Pl011 extends BasePeripheral {
   // `wires` contains { transmit(level), mayReceive(), mayTransmit() }. `transmit` sets the level of the transmit pin.
@@ -36,7 +31,6 @@ class Pl011 extends BasePeripheral {
     this.wires = wires;
     this.sender = new Sender(rp2040.clock, (level) => wires.transmit(level), () => this.sent());
     this.receiver = new Receiver(rp2040.clock, (character) => this.receive(character));
-    this.timeout = rp2040.clock.createAlarm(() => this.raise(RECEIVE_TIMEOUT));
     this.reset();
   }
 
@@ -48,27 +42,13 @@ class Pl011 extends BasePeripheral {
     this.latched = false;
     this.lineControl = 0;
     this.control = TRANSMIT_ENABLED | RECEIVE_ENABLED;
-    this.levels = 0x12;
     this.mask = 0;
     this.raw = 0;
     this.received = [];
     this.overrun = false;
     this.toSend = [];
-    this.timeout.cancel();
     this.listen();
     this.tell();
-  }
-
-  get depth() {
-    return this.lineControl & FIFOS_ON ? DEPTH : 1;
-  }
-
-  get receiveLevel() {
-    return this.lineControl & FIFOS_ON ? LEVELS[(this.levels >> 3) & 7] : 1;
-  }
-
-  get transmitLevel() {
-    return this.lineControl & FIFOS_ON ? LEVELS[this.levels & 7] : 0;
   }
 
   readUint32(offset) {
@@ -80,8 +60,8 @@ class Pl011 extends BasePeripheral {
     case 0x18:
       return (this.sender.busy || this.toSend.length ? 1 << 3 : 0)
         | (this.received.length === 0 ? 1 << 4 : 0)
-        | (this.toSend.length >= this.depth ? 1 << 5 : 0)
-        | (this.received.length >= this.depth ? 1 << 6 : 0)
+        | (this.toSend.length !== 0 ? 1 << 5 : 0)
+        | (this.received.length !== 0 ? 1 << 6 : 0)
         | (this.toSend.length === 0 ? 1 << 7 : 0);
     case 0x24:
       return this.integerDivisor;
@@ -91,8 +71,6 @@ class Pl011 extends BasePeripheral {
       return this.lineControl;
     case 0x30:
       return this.control;
-    case 0x34:
-      return this.levels;
     case 0x38:
       return this.mask;
     case 0x3c:
@@ -121,8 +99,8 @@ class Pl011 extends BasePeripheral {
       break;
     case 0x2c:
       this.setUp("the line control");
-      if (!Object.hasOwn(LINE_CONTROL, value & ~FIFOS_ON)) {
-        this.error(`line control 0x${value.toString(16)} is not in this model; expected 8N1, 8N2, 8E1 or 8O1`);
+      if (!Object.hasOwn(LINE_CONTROL, value)) {
+        this.error(`line control 0x${value.toString(16)} is not in this model; expected 8N1, 8N2, 8E1 or 8O1; no FIFO`);
       }
       this.lineControl = value;
       this.latch();
@@ -136,9 +114,6 @@ class Pl011 extends BasePeripheral {
       }
       this.control = value;
       this.listen();
-      break;
-    case 0x34:
-      this.levels = value;
       break;
     case 0x38:
       this.mask = value;
@@ -179,7 +154,7 @@ class Pl011 extends BasePeripheral {
   }
 
   get format() {
-    return LINE_CONTROL[this.lineControl & ~FIFOS_ON] ?? FORMATS["8N1"];
+    return LINE_CONTROL[this.lineControl] ?? FORMATS["8N1"];
   }
 
   get characterTime() {
@@ -199,15 +174,13 @@ class Pl011 extends BasePeripheral {
     if (!this.wires.mayTransmit()) {
       this.error("a byte is sent while the pin is not connected to the UART");
     }
-    if (this.toSend.length >= this.depth) {
+    if (this.toSend.length !== 0) {
       this.error("a byte is sent while there is no room for it");
     }
     if (this.sender.busy) {
       this.toSend.push(byte);
-      if (this.toSend.length > this.transmitLevel) {
-        this.raw &= ~TRANSMITTED;
-        this.tell();
-      }
+      this.raw &= ~TRANSMITTED;
+      this.tell();
     } else {
       this.sender.send(byte, this.bitTime, this.format);
       this.raise(TRANSMITTED); // the byte has left the holding register
@@ -219,9 +192,7 @@ class Pl011 extends BasePeripheral {
       return;
     }
     this.sender.send(this.toSend.shift(), this.bitTime, this.format);
-    if (this.toSend.length === this.transmitLevel) {
-      this.raise(TRANSMITTED);
-    }
+    this.raise(TRANSMITTED);
   }
 
   // --- receiving ---
@@ -231,7 +202,7 @@ class Pl011 extends BasePeripheral {
   }
 
   receive({ byte, good, rightParity, isBreak }) {
-    if (this.received.length >= this.depth) {
+    if (this.received.length !== 0) {
       this.overrun = true;
       this.raise(OVERRUN_ERROR);
       return;
@@ -245,12 +216,7 @@ class Pl011 extends BasePeripheral {
     if (!rightParity) {
       this.raise(PARITY_ERROR);
     }
-    if (this.received.length === this.receiveLevel) {
-      this.raise(RECEIVED);
-    }
-    if (this.lineControl & FIFOS_ON) {
-      this.timeout.schedule(32 * this.bitTime);
-    }
+    this.raise(RECEIVED);
   }
 
   takeReceived() {
@@ -258,13 +224,7 @@ class Pl011 extends BasePeripheral {
       this.error("the data register is read while nothing has been received");
     }
     const data = this.received.shift();
-    if (this.received.length < this.receiveLevel) {
-      this.raw &= ~RECEIVED;
-    }
-    if (this.received.length === 0) {
-      this.raw &= ~RECEIVE_TIMEOUT;
-      this.timeout.cancel();
-    }
+    this.raw &= ~RECEIVED;
     this.tell();
     return data;
   }
