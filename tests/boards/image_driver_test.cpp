@@ -1,6 +1,5 @@
 // Tests images on simulated boards, for example with faults of the EEPROM and of the line, and with short
-// pulses at the inputs. Also tests turn-around times, resets, the INIT* switch, the status LED and a long
-// uptime.
+// pulses at the inputs. Also tests resets, the INIT* switch, the status LED and a long uptime.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,7 +9,6 @@
 
 #include "firmware/model/model.hpp"
 #include "firmware/settings/settings.hpp"
-#include "sim/app/play/modbus_frame.hpp"
 #include "sim/virtual_line/wires/module.hpp"
 #include "tests/boards/images_under_test.hpp"
 #include "tests/mcu_model/board_bench.hpp"
@@ -43,27 +41,6 @@ class OnBoard : public testing::TestWithParam<ImageName> {
     EXPECT_EQ(bench.resets, 0U);
     EXPECT_EQ(bench.ask("$01M"), "!019055");
   }
-  /// Sends the command that stores a name. Switches the supply off when the time `after` has passed since the
-  /// start of the command. Switches the supply on again 50 ms later. Sets cut_a_page_. Returns whether the
-  /// master had received a character of the reply before the cut.
-  bool cut_while_it_stores(const std::string& name, Instant after) {
-    const std::string command = "~01O" + name + "\r";
-    bench.line.heard.clear();
-    bench.line.send({command.begin(), command.end()});
-    bench.run_for(after);
-    cut_a_page_ = bench.eeprom.programming();
-    bench.power_off();
-    const bool answered = !bench.line.heard.empty();
-    bench.run_for(milliseconds(50));
-    power_up();
-    return answered;
-  }
-  /// The number of power cuts with each outcome.
-  struct Outcomes {
-    unsigned old = 0;          ///< the old name
-    unsigned stored_only = 0;  ///< the new name, but no reply before the cut
-    unsigned answered = 0;     ///< the new name, and a reply before the cut
-  };
   Net& clock() { return bench.pins.at('B', I2cBlock::kClockPin); }
   Net& data() { return bench.pins.at('B', I2cBlock::kDataPin); }
 
@@ -87,7 +64,6 @@ class OnBoard : public testing::TestWithParam<ImageName> {
   }
 
   BoardBench bench;
-  bool cut_a_page_ = false;  ///< the EEPROM was programming a page at the last cut
 };
 
 /// A board whose I2C controller waits for a reset if a START finds the bus busy, and raises an interrupt
@@ -125,48 +101,6 @@ TEST_P(OnBoardWhoseI2cWaits, ComesUpWithin100msWithAStuckEepromBusAndStoresWhenI
   expect_lives_with_stuck_lines();
 }
 
-TEST_P(OnBoard, ComesUpWithin100msAfterAResetAtAnyTimeWhileItReadsItsSettings) {
-  bench.power_on();
-  for (int i = 0; i < 120; ++i) {
-    bench.run_for(milliseconds(2) + microseconds(97 * i));
-    bench.reset();
-    bench.run_for(kComesUpWithin);
-    ASSERT_TRUE(listens()) << i;
-    bench.reset();
-  }
-  bench.run_for(kComesUpWithin);
-  EXPECT_EQ(bench.ask("$01M"), "!019055");
-}
-
-TEST_P(OnBoard, HasOldOrNewSettingsAfterAPowerCutAndNewSettingsIfItHasReplied) {
-  // The command takes at most 9.4 ms, and the turn-around takes 1 ms. After that, the store takes about
-  // 10 ms.
-  constexpr microseconds kCommandIsSent{10'300};
-  constexpr microseconds kInBetween{5000};
-  power_up();
-  for (const bool torn_before : {false, true}) {
-    Outcomes outcomes;
-    for (int i = 0; i < 60; ++i) {
-      ASSERT_EQ(bench.ask("~01OOLD"), "!01");
-      if (torn_before) {
-        cut_while_it_stores("TORN", kCommandIsSent + kInBetween);
-        ASSERT_TRUE(cut_a_page_);
-        ASSERT_EQ(bench.ask("$01M"), "!01OLD");
-      }
-      const bool answered =
-          cut_while_it_stores("NEW", kCommandIsSent + microseconds(torn_before ? 480 : 270) * i);
-      const std::string name = bench.ask("$01M");
-      ASSERT_TRUE(name == "!01NEW" || (name == "!01OLD" && !answered)) << i << ": " << name;
-      outcomes.old += name == "!01OLD" ? 1U : 0U;
-      outcomes.answered += answered ? 1U : 0U;
-      outcomes.stored_only += name == "!01NEW" && !answered ? 1U : 0U;
-    }
-    EXPECT_GT(outcomes.old, 10U);
-    EXPECT_GT(outcomes.stored_only, 1U);
-    EXPECT_GT(outcomes.answered, 10U);
-  }
-}
-
 TEST_P(OnBoard, TheDriverIsOffUnlessTheModuleReplies) {
   power_up();
   EXPECT_TRUE(bench.line.drives.empty());
@@ -174,20 +108,6 @@ TEST_P(OnBoard, TheDriverIsOffUnlessTheModuleReplies) {
   bench.ask("$02M");
   ASSERT_EQ(bench.line.drives.size(), 1U);
   EXPECT_EQ(bench.line.bits_lost, 0U);
-}
-
-TEST_P(OnBoard, RepliesImmediatelyAfterTheTurnAroundTime) {
-  constexpr microseconds kAtOnce{100};  // not at the next tick
-  power_up();
-  for (int i = 0; i < 20; ++i) {
-    bench.run_for(milliseconds(20) + microseconds(51 * i));
-    bench.line.drives.clear();
-    EXPECT_EQ(bench.ask("$01M"), "!019055");
-    ASSERT_EQ(bench.line.drives.size(), 1U);
-    const Instant silence = bench.line.drives[0].from - bench.line.sent();
-    EXPECT_GE(silence, bench.line.character_time());
-    EXPECT_LE(silence, bench.line.character_time() + kAtOnce);
-  }
 }
 
 TEST_P(OnBoard, RestoresADisturbedOutputOrLedPinAtTheNextTick) {
@@ -214,23 +134,6 @@ TEST_P(OnBoard, RestoresADisturbedOutputOrLedPinAtTheNextTick) {
     EXPECT_TRUE(bench.led());
   }
   EXPECT_EQ(bench.resets, 0U);
-}
-
-class ModbusOnBoard : public OnBoard {};
-
-TEST_P(ModbusOnBoard, RepliesImmediatelyAfterT35) {
-  constexpr microseconds kAtOnce{100};
-  const Instant t35 = 77 * bench.line.bit_time() / 2;  // 3.5 characters of 11 bits
-  power_up();
-  for (int i = 0; i < 20; ++i) {
-    bench.run_for(milliseconds(20) + microseconds(51 * i));
-    bench.line.drives.clear();
-    EXPECT_EQ(bench.exchange(with_crc({1, 1, 0, 0, 0, 16})), with_crc({1, 1, 2, 0, 0}));
-    ASSERT_EQ(bench.line.drives.size(), 1U);
-    const Instant silence = bench.line.drives[0].from - bench.line.sent();
-    EXPECT_GE(silence, t35);
-    EXPECT_LE(silence, t35 + kAtOnce);
-  }
 }
 
 TEST_P(OnBoard, IgnoresABreakBetweenRequestsAndDropsARequestThatContainsABreak) {
@@ -320,17 +223,6 @@ TEST_P(OnBoard, CountsAndLatchesNoEdgesAtStartIfInputsAreHighOrLow) {
   }
   EXPECT_EQ(bench.ask("$01L1"), "!000000") << "a latch is set";
   EXPECT_EQ(bench.ask("$01L0"), "!000000") << "a latch is set";
-}
-
-TEST_P(OnBoard, IsResetByTheWatchdogWithin1600msIfTheTickStops) {
-  power_up();
-  ASSERT_EQ(bench.ask("$015"), "!011");
-  ASSERT_EQ(bench.ask("$015"), "!010");
-  bench.mcu->core.write(Core::kTickControl, 4);
-  bench.run_for(milliseconds(1590));
-  EXPECT_EQ(bench.watchdog_resets, 1U);
-  bench.run_for(kComesUpWithin);
-  EXPECT_EQ(bench.ask("$015"), "!011");
 }
 
 /// firmware/extensions.md, register 0x0301.
@@ -469,10 +361,6 @@ TEST_P(OnBoardForMonths, WorksAcrossTheWrapOfEvery32BitCount) {
 const auto kImages =
     testing::Values(ImageName{"lm3s6965evb", "EX9055D"}, ImageName{"ek-tm4c123gxl", "EX9055D"});
 INSTANTIATE_TEST_SUITE_P(Images, OnBoard, kImages, name_of);
-INSTANTIATE_TEST_SUITE_P(Images, ModbusOnBoard,
-                         testing::Values(ImageName{"lm3s6965evb", "EX9043D-M"},
-                                         ImageName{"ek-tm4c123gxl", "EX9043D-M"}),
-                         name_of);
 INSTANTIATE_TEST_SUITE_P(Images, OnBoardWhoseI2cWaits, kImages, name_of);
 INSTANTIATE_TEST_SUITE_P(Images, OnBoardForMonths,
                          testing::Values(ImageName{"ek-tm4c123gxl", "EX9055D_after_months"}), name_of);

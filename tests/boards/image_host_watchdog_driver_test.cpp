@@ -147,54 +147,6 @@ TEST_P(HostWatchdogOnBoard, NoCommandDrivesOutputsAfterTheExpiry) {
       moments, too_late);
 }
 
-// firmware/extensions.md: register 0x0251.
-TEST_P(HostWatchdogOnBoard, ExpiresOnlyAfterTheLastRequestIfEveryRequestRestartsIt) {
-  constexpr unsigned kVv = 5;
-  Settings settings = set_up(*find_model(image().model), protocol());
-  settings.fed_by_requests = true;
-  WatchedModule module(image(), settings);
-  BoardBench& bench = module.bench;
-  const Bytes request = module.framed("$01M", {1, 0x01, 0, 0, 0, 1});
-  const Bytes refused = module.framed("$01Z", {1, 0x41});
-  for (unsigned phase = 0; phase < 10; ++phase) {
-    SCOPED_TRACE(phase);
-    arm(module, kVv);
-    for (unsigned i = 0; i < 4; ++i) {
-      bench.run_for(kVv * milliseconds(100) - milliseconds(80));
-      module.receives(i % 2 == 0 ? request : refused);
-      ASSERT_EQ(bench.outputs(), kDriven);
-    }
-    bench.run_for(milliseconds(50) + phase * microseconds(1013));
-    const Instant over = module.receives(request) + kVv * milliseconds(100);
-    bench.run_until(over - kRounding);
-    ASSERT_EQ(bench.outputs(), kDriven);
-    bench.run_until(over + kExpiresWithin);
-    ASSERT_EQ(bench.outputs(), kSafeValue);
-    ASSERT_TRUE(module.timeout_status());
-  }
-}
-
-// firmware/extensions.md: an expiry ends all timed outputs.
-TEST_P(HostWatchdogOnBoard, ATimedOutputDoesNotChangeTheOutputsAfterTheExpiry) {
-  constexpr unsigned kVv = 5;
-  WatchedModule module(image(), set_up(*find_model(image().model), protocol()));
-  BoardBench& bench = module.bench;
-  for (unsigned units = 1; units <= 8; ++units) {  // units of 0.1 s; the times 1 to 4 end before the expiry
-    SCOPED_TRACE(units);
-    arm(module, kVv);
-    const Instant over = module.host_ok() + kVv * milliseconds(100);
-    bench.run_for(milliseconds(5));  // includes the silence that ends the host OK in Modbus
-    const auto digit = static_cast<std::uint8_t>(units);
-    const Bytes reply = module.ask("~01X0280000" + std::to_string(units), {1, 0x06, 0x02, 0x80, 0, digit});
-    ASSERT_EQ(reply, module.framed("!01", {1, 0x06, 0x02, 0x80, 0, digit}));
-    bench.run_until(over + kExpiresWithin);
-    ASSERT_EQ(bench.outputs(), kSafeValue);
-    module.changes.clear();
-    bench.run_for(seconds(1));
-    ASSERT_TRUE(module.changes.empty());
-  }
-}
-
 /// wire.md D6. If the module is storing a new safe value at the expiry, the outputs first take the old safe
 /// value. When the new safe value is stored, the outputs take the new safe value. After the expiry, the
 /// outputs never take the value of a later command.

@@ -1,4 +1,4 @@
-// Tests images whose stored line format is not 8N1.
+// Tests images in each line format: replies and their turn-around times, and masters with other formats.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -126,9 +126,11 @@ TEST_P(ImageInFormat, Uses9600Baud8N1InInitMode) {
 
 INSTANTIATE_TEST_SUITE_P(Images, ImageInFormat,
                          testing::Combine(testing::Values(ImageName{"lm3s6965evb", "EX9055D"},
+                                                          ImageName{"lm3s6965evb", "EX9043D-M"},
+                                                          ImageName{"ek-tm4c123gxl", "EX9055D"},
                                                           ImageName{"ek-tm4c123gxl", "EX9043D-M"}),
-                                          testing::Values(LineFormat::k8N2, LineFormat::k8E1,
-                                                          LineFormat::k8O1)),
+                                          testing::Values(LineFormat::k8N1, LineFormat::k8N2,
+                                                          LineFormat::k8E1, LineFormat::k8O1)),
                          [](const auto& each) {
                            const ImageName& image = std::get<0>(each.param);
                            return name_of(testing::TestParamInfo<ImageName>(image, 0)) + "_" +
