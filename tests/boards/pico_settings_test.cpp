@@ -174,6 +174,31 @@ TEST_F(PicoSettings, TheModuleRepliesInTimeToStoresHalfASecondApartWithTheSlowes
   EXPECT_GE(erases(), 13 + kStores / 31);
 }
 
+TEST_F(PicoSettings, StoresWithoutPausesSucceedOrAreRefusedInTimeWithTheSlowestFlash) {
+  begin();
+  bench_.execute("flash-times 400000000 3000000");
+  constexpr unsigned kStores = 800;  // the erased sectors have room for 420 records
+  unsigned refused = 0;
+  unsigned expected = kFirstTimeout;
+  for (unsigned i = 0; i < kStores; ++i) {
+    const std::uint8_t timeout = static_cast<std::uint8_t>(1 + i % 250);
+    const Bytes reply = ask(store_of(timeout), 5);
+    ASSERT_LE(waited_, kLatestReplyToAStore) << i;
+    const bool stored = reply == Bytes{kAddress, 6, 0x01, 0xE8, 0};
+    ASSERT_TRUE(stored || reply == with_crc({kAddress, 0x86, 4})) << i;
+    bench_.run_for(milliseconds(1));  // the rest of the reply
+    bench_.heard();
+    expected = stored ? timeout : expected;
+    refused += stored ? 0 : 1;
+  }
+  std::printf("%u stores without pauses, %u refused\n", kStores, refused);
+  EXPECT_GT(refused, 0U);
+  EXPECT_EQ(stored_timeout(), expected);
+  cut();
+  start();
+  EXPECT_EQ(stored_timeout(), expected);
+}
+
 TEST_F(PicoSettings, AModuleWithAnErasedFlashStoresTheFirstCommandInTime) {
   bench_.begin_with(image_of(model_, Memory::Flash));
   start();
