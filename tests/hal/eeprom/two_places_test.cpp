@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "tests/hal/eeprom/two_places_bench.hpp"
@@ -20,106 +21,72 @@ TEST(TwoPlaces, ReadsTheFirstPageOfEachPlaceOfABlankMemoryOnce) {
   EXPECT_EQ(memory.reads, (std::vector<std::uint16_t>{kCopies[0], kCopies[1]}));
 }
 
-TEST(TwoPlaces, UsesTheFactorySettingsOfEachModelIfTheMemoryIsBlank) {
-  for (const Model& each : kModels) {
-    FakeEeprom memory;
-    const Boot run(memory, each);
-    EXPECT_EQ(run.source(), SettingsSource::Blank) << each.designation;
-    EXPECT_TRUE(run.stored() == Settings::factory(each)) << each.designation;
-    EXPECT_TRUE(memory.writes.empty());
-  }
-}
+constexpr unsigned kBlank = 0;
+constexpr unsigned kFactory = 0;
 
-TEST(TwoPlaces, FindsTheOnlyGoodCopyBesideABlankPlace) {
-  for (const std::size_t copy : {0U, 1U}) {
-    FakeEeprom memory;
-    put(memory, copy, numbered(5), 7);
-    const Boot run(memory);
-    EXPECT_TRUE(run.stored() == numbered(5));
-  }
-}
+/// The content of one place.
+struct Copy {
+  unsigned number = kBlank;  ///< of the settings
+  std::uint16_t sequence = 0;
+  bool good = true;
+};
+struct Load {
+  const char* what;
+  Copy one;
+  Copy other;
+  unsigned found;  ///< number of the settings
+  SettingsSource source;
+};
+/// firmware/extensions.md, register 0x0306, lists the sources.
+constexpr Load kLoads[] = {
+    {"a blank memory", {}, {}, kFactory, SettingsSource::Blank},
+    {"a good copy beside a blank place", {5, 7}, {}, 5, SettingsSource::Good},
+    {"a good copy beside a corrupted one", {5, 7}, {6, 8, false}, 5, SettingsSource::OneCopyBad},
+    {"the later of two good copies", {5, 8}, {6, 7}, 5, SettingsSource::Good},
+    {"sequence 0 is later than FFFF", {5, 0}, {6, 0xFFFF}, 5, SettingsSource::Good},
+    {"two corrupted copies", {5, 7, false}, {6, 8, false}, kFactory, SettingsSource::NoneGood},
+    {"a corrupted copy beside a blank place", {5, 7, false}, {}, kFactory, SettingsSource::NoneGood},
+};
 
-TEST(TwoPlaces, FindsTheOnlyGoodCopyBesideACorruptedOne) {
-  for (const std::size_t copy : {0U, 1U}) {
-    FakeEeprom memory;
-    put(memory, copy, numbered(5), 7);
-    put(memory, 1 - copy, numbered(6), 8);
-    corrupt(memory, 1 - copy);
-    const Boot run(memory);
-    EXPECT_TRUE(run.stored() == numbered(5));
-    EXPECT_TRUE(memory.writes.empty());
-  }
-}
-
-TEST(TwoPlaces, FindsTheLaterOfTwoGoodCopies) {
-  for (const std::size_t later : {0U, 1U}) {
-    FakeEeprom memory;
-    put(memory, later, numbered(5), 8);
-    put(memory, 1 - later, numbered(6), 7);
-    EXPECT_TRUE(Boot(memory).stored() == numbered(5));
-  }
-}
-
-TEST(TwoPlaces, Sequence0IsLaterThanFFFF) {
-  for (const std::size_t later : {0U, 1U}) {
-    FakeEeprom memory;
-    put(memory, later, numbered(5), 0x0000);
-    put(memory, 1 - later, numbered(6), 0xFFFF);
-    EXPECT_TRUE(Boot(memory).stored() == numbered(5));
-  }
-}
-
-TEST(TwoPlaces, TwoCorruptedCopiesAreUnreadableAndStayAsTheyAre) {
-  FakeEeprom memory;
-  put(memory, 0, numbered(5), 7);
-  put(memory, 1, numbered(6), 8);
-  corrupt(memory, 0);
-  corrupt(memory, 1);
-  const Boot run(memory);
-  EXPECT_EQ(run.source(), SettingsSource::NoneGood);
-  EXPECT_TRUE(run.stored() == factory());
-  EXPECT_TRUE(memory.writes.empty());
-}
-
-TEST(TwoPlaces, ACorruptedCopyBesideABlankPlaceIsUnreadable) {
-  for (const std::size_t copy : {0U, 1U}) {
-    FakeEeprom memory;
-    put(memory, copy, numbered(5), 7);
-    corrupt(memory, copy);
-    const Boot run(memory);
-    EXPECT_EQ(run.source(), SettingsSource::NoneGood);
-    EXPECT_TRUE(run.stored() == factory());
+TEST(TwoPlaces, FindsTheLatestGoodCopyInEitherPlaceAndReportsTheState) {
+  for (const Load& load : kLoads) {
+    for (const std::size_t place : {0U, 1U}) {
+      SCOPED_TRACE(load.what);
+      FakeEeprom memory;
+      for (const auto& [copy, at] : {std::pair(load.one, place), std::pair(load.other, 1 - place)}) {
+        if (copy.number != kBlank) {
+          put(memory, at, numbered(copy.number), copy.sequence);
+        }
+        if (!copy.good) {
+          corrupt(memory, at);
+        }
+      }
+      const Boot run(memory);
+      EXPECT_EQ(run.source(), load.source);
+      EXPECT_TRUE(run.stored() == (load.found == kFactory ? factory() : numbered(load.found)));
+      EXPECT_TRUE(memory.writes.empty());
+    }
   }
 }
 
 TEST(TwoPlaces, SettingsOfAnotherModelAreUnreadable) {
   FakeEeprom memory;
   put(memory, 0, Settings::factory(model("EX9043D-M")), 7, model("EX9043D-M"));
-  put(memory, 1, Settings::factory(model("EX9043D-M")), 8, model("EX9043D-M"));
   const Boot run(memory);
   EXPECT_EQ(run.source(), SettingsSource::NoneGood);
   EXPECT_TRUE(run.stored() == factory());
 }
 
-TEST(TwoPlaces, AReadThatFailsOnceOrTwiceIsRepeated) {
-  for (std::size_t failing = 1; failing < kAttempts; ++failing) {
-    FakeEeprom memory;
-    put(memory, 0, numbered(5), 8);
-    put(memory, 1, numbered(6), 7);
-    memory.failing_reads = failing;
-    const Boot run(memory);
-    EXPECT_TRUE(run.stored() == numbered(5)) << failing;
-    EXPECT_EQ(memory.reads.size(), failing + 2);
-  }
-}
-
-TEST(TwoPlaces, AReadThatReturnsInvalidDataOnceOrTwiceIsRepeated) {
-  for (std::size_t noisy = 1; noisy < kAttempts; ++noisy) {
-    FakeEeprom memory;
-    put(memory, 0, numbered(5), 8);
-    put(memory, 1, numbered(6), 7);
-    memory.noisy_reads = noisy;
-    EXPECT_TRUE(Boot(memory).stored() == numbered(5)) << noisy;
+TEST(TwoPlaces, AReadThatFailsOrReturnsInvalidDataOnceOrTwiceIsRepeated) {
+  for (std::size_t FakeEeprom::*const failure : {&FakeEeprom::failing_reads, &FakeEeprom::noisy_reads}) {
+    for (std::size_t times = 1; times < kAttempts; ++times) {
+      FakeEeprom memory;
+      put(memory, 0, numbered(5), 8);
+      put(memory, 1, numbered(6), 7);
+      memory.*failure = times;
+      EXPECT_TRUE(Boot(memory).stored() == numbered(5)) << times;
+      EXPECT_EQ(memory.reads.size(), times + 2);
+    }
   }
 }
 
@@ -160,16 +127,6 @@ TEST(TwoPlaces, AMemoryThatDoesNotAnswerIsUnreadable) {
 
 // --- saving ---
 
-TEST(TwoPlaces, SavedSettingsAreFoundAtTheNextLoad) {
-  FakeEeprom memory;
-  Boot run(memory);
-  EXPECT_TRUE(run.save(numbered(1)));
-  EXPECT_TRUE(run.stored() == numbered(1));
-  const Boot next(memory);
-  EXPECT_EQ(next.source(), SettingsSource::Good);
-  EXPECT_TRUE(next.stored() == numbered(1));
-}
-
 TEST(TwoPlaces, ASaveWritesOneCopyOnceAndReadsItBack) {
   FakeEeprom memory;
   Boot run(memory);
@@ -191,25 +148,17 @@ TEST(TwoPlaces, ASaveWritesOnlyTheBytesOfItsRecord) {
   EXPECT_TRUE(Boot(memory, inputs).stored() == settings);
 }
 
-TEST(TwoPlaces, SavesAlternateBetweenTheCopies) {
-  FakeEeprom memory;
-  Boot run(memory);
-  for (unsigned i = 1; i <= 6; ++i) {
-    EXPECT_TRUE(run.save(numbered(i)));
-  }
-  for (std::size_t i = 1; i < memory.writes.size(); ++i) {
-    EXPECT_NE(memory.writes[i], memory.writes[i - 1]);
-  }
-}
-
-TEST(TwoPlaces, SavesAlternateAcrossResetsToo) {
-  FakeEeprom memory;
-  for (unsigned i = 1; i <= 6; ++i) {
-    EXPECT_TRUE(Boot(memory).save(numbered(i)));
-    EXPECT_TRUE(Boot(memory).stored() == numbered(i));
-  }
-  for (std::size_t i = 1; i < memory.writes.size(); ++i) {
-    EXPECT_NE(memory.writes[i], memory.writes[i - 1]);
+TEST(TwoPlaces, SavesAlternateBetweenTheCopiesAlsoAcrossResets) {
+  for (const bool resets : {false, true}) {
+    FakeEeprom memory;
+    Boot run(memory);
+    for (unsigned i = 1; i <= 6; ++i) {
+      EXPECT_TRUE(resets ? Boot(memory).save(numbered(i)) : run.save(numbered(i)));
+      EXPECT_TRUE(Boot(memory).stored() == numbered(i));
+    }
+    for (std::size_t i = 1; i < memory.writes.size(); ++i) {
+      EXPECT_NE(memory.writes[i], memory.writes[i - 1]);
+    }
   }
 }
 
@@ -266,25 +215,6 @@ TEST(TwoPlaces, IfAReadBeforeASaveFailsOnceOrTwiceItIsRepeated) {
     EXPECT_TRUE(run.save(numbered(9))) << failing;
     EXPECT_TRUE(Boot(memory).stored() == numbered(9)) << failing;
   }
-}
-
-// --- firmware/extensions.md: register 0x0306 ---
-
-using Source = SettingsSource;
-
-Source source_of(FakeEeprom& memory) { return Boot(memory).source(); }
-
-TEST(SettingsSource, ReportsTheStateOfTheCopies) {
-  FakeEeprom memory;
-  EXPECT_EQ(source_of(memory), Source::Blank);
-  put(memory, 0, numbered(5), 7);
-  EXPECT_EQ(source_of(memory), Source::Good);  // the other place is blank
-  put(memory, 1, numbered(6), 8);
-  EXPECT_EQ(source_of(memory), Source::Good);
-  corrupt(memory, 0);
-  EXPECT_EQ(source_of(memory), Source::OneCopyBad);
-  corrupt(memory, 1);
-  EXPECT_EQ(source_of(memory), Source::NoneGood);
 }
 
 }  // namespace
