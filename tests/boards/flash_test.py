@@ -61,13 +61,6 @@ class Flash(unittest.TestCase):
                 finished = openocd(["-f", script, "-c", "noinit", "-c", "shutdown"])
                 self.assertEqual(finished.returncode, 0, finished.stderr)
 
-    def test_openocd_gets_the_command_to_write_verify_and_reset(self) -> None:
-        for board, script in openocd_scripts().items():
-            with self.subTest(board):
-                self.assertEqual(
-                    openocd_words(script), ["-f", script, "-c", f"program {{{IMAGE}}} verify reset exit"]
-                )
-
     def test_openocd_resets_writes_verifies_and_resets_in_this_order(self) -> None:
         for board, script in openocd_scripts().items():
             with self.subTest(board):

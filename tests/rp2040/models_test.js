@@ -140,6 +140,11 @@ test("the SSI rejects frames before its set-up, new settings while enabled, and 
   assert.throws(() => ssi.writeUint32(0x14, 2), /while the SSI is enabled/);
   mcu.clkSys = 201e6;
   assert.throws(() => ssi.writeUint32(0x60, 0x03000000), /50.25 MHz; expected at most 50 MHz/);
+  ssi.writeUint32(0x08, 0);
+  ssi.writeUint32(0x00, 7 << 16);
+  ssi.writeUint32(0x08, 1);
+  flash.select(true);
+  assert.throws(() => ssi.writeUint32(0x60, 0x03), /50.25 MHz; expected at most 50 MHz/);
 });
 
 test("a block in reset cannot be used, and a UART without its clock does not leave its reset", () => {

@@ -155,7 +155,8 @@ class Ssi extends BasePeripheral {
     if (!this.shifting) {
       const command = (value >>> (this.frameBits - 8)) & 0xff;
       const clock = this.rp2040.clkSys / this.divider;
-      if (command === READ_DATA && this.frameBits === 32 && clock > READ_DATA_LIMIT) {
+      const isFirst = this.frameBits === 32 || this.chip.bytes.length === 0;
+      if (command === READ_DATA && isFirst && clock > READ_DATA_LIMIT) {
         this.error(`Read Data has a clock of ${clock / 1e6} MHz; expected at most ${READ_DATA_LIMIT / 1e6} MHz`);
       }
       this.pins.requestSelect(true);

@@ -42,16 +42,6 @@ TEST(RecordLog, ANewFlashMeansFactorySettings) {
   EXPECT_TRUE(run.keeper().certain());
 }
 
-TEST(RecordLog, LoadsTheLastOfManySaves) {
-  FlashChip chip = settled();
-  OnFlash run(chip);
-  for (unsigned i = 0; i < 500; ++i) {
-    ASSERT_TRUE(run.save(numbered(i)));
-    ASSERT_TRUE(loaded(chip) == numbered(i)) << i;
-    run.idle(5'000);
-  }
-}
-
 TEST(RecordLog, FindsTheNewestRecordAcrossTheWrapOfTheSequence) {
   FlashChip chip;
   put(chip, 1, numbered(1), 0xFFFF);
@@ -194,7 +184,7 @@ TEST(RecordLog, AResetOfTheMcuAtAnyTimeLeavesTheOldOrTheNewSettings) {
       OnFlash after(chip);
       EXPECT_TRUE(after.stored() == numbered(kPlacesOfASector - 1) || after.stored() == numbered(100))
           << delay;
-      EXPECT_LE(after.latency, 60'000U) << "a load must not wait for an erase";
+      EXPECT_LE(after.latency, 20'000U) << "a load must not wait for an erase";
       ASSERT_TRUE(after.save(numbered(200)));
       after.settle();
       EXPECT_TRUE(loaded(chip) == numbered(200));
@@ -297,15 +287,20 @@ TEST(RecordLog, IfTheReadBackDiffersThreeTimesAllRecordsOfTheSaveAreWithdrawn) {
   EXPECT_TRUE(loaded(chip) == numbered(3));
 }
 
+// wire.md D13: a module is ready to receive requests 100 ms after a reset. wire.md sections 3 and 7: it
+// replies 200 ms after a command that stores.
 TEST(RecordLog, AJobFailsInTimeWhileTheFlashHangsAndALaterOneSucceeds) {
   FlashChip chip = settled();
   OnFlash run(chip);
   ASSERT_TRUE(run.save(numbered(1)));
   chip.hangs = true;
   EXPECT_FALSE(run.save(numbered(2)));
-  EXPECT_LE(run.latency, Log::kLongestSave.microseconds() + 2'000);
-  EXPECT_EQ(OnFlash(chip).source(), SettingsSource::NoneGood);
-  EXPECT_LE(OnFlash(chip).latency, Log::kLongestLoad.microseconds() + 2'000);
+  EXPECT_LE(run.latency, 90'000U) << "the save of a timeout may come first";
+  OnFlash silent(chip);
+  EXPECT_EQ(silent.source(), SettingsSource::NoneGood);
+  EXPECT_LE(silent.latency, 50'000U);
+  EXPECT_FALSE(silent.save(numbered(2)));
+  EXPECT_LE(silent.latency, 90'000U);
   chip.hangs = false;
   EXPECT_TRUE(run.save(numbered(3)));
   EXPECT_TRUE(loaded(chip) == numbered(3));

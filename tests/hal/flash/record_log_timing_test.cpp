@@ -83,40 +83,6 @@ TEST(RecordLogTiming, TheSectorsErasedInAdvanceHaveRoomForABurst) {
   EXPECT_LE(run.latency, Log::kLongestSave.microseconds() + 2'000) << "a failing save must end in time";
 }
 
-TEST(RecordLogTiming, ASaveThatWaitsForAnEraseSucceedsIfTheEraseTakesATypicalTime) {
-  FlashChip chip;  // never used before, so no sector is known to be erased
-  EXPECT_TRUE(OnFlash(chip).save(numbered(1)));
-  EXPECT_TRUE(OnFlash(chip).stored() == numbered(1));
-}
-
-// wire.md D13: a module is ready to receive requests 100 ms after a reset. wire.md sections 3 and 7: it
-// replies 200 ms after a command that stores.
-TEST(RecordLogTiming, LoadsAndSavesThatCannotSucceedFailInTime) {
-  FlashChip chip = settled();
-  OnFlash run(chip);
-  ASSERT_TRUE(run.save(numbered(1)));
-  chip.hangs = true;
-  OnFlash silent(chip);
-  EXPECT_TRUE(silent.keeper().unreadable());
-  EXPECT_LE(silent.latency, 50'000U);
-  EXPECT_FALSE(silent.save(numbered(2)));
-  EXPECT_LE(silent.latency, 90'000U) << "the save of a timeout may come first";
-  EXPECT_FALSE(run.save(numbered(2)));
-  EXPECT_LE(run.latency, 90'000U);
-}
-
-TEST(RecordLogTiming, ALoadIsFastEvenIfAnEraseWasRunning) {
-  FlashChip chip = settled(FlashChip::kLongest);
-  ASSERT_TRUE(OnFlash(chip).save(numbered(6)));
-  OnFlash before(chip);
-  ASSERT_TRUE(before.save(numbered(7)));
-  before.run(100'000);
-  ASSERT_EQ(chip.operation(), FlashChip::Operation::Erase);
-  OnFlash next(chip);
-  EXPECT_TRUE(next.stored() == numbered(7));
-  EXPECT_LE(next.latency, 20'000U);
-}
-
 TEST(RecordLogTiming, TheScanOfAFullLogOfTheLongestRecordsTakesAtMost35MsAt16MHz) {
   FlashChip chip;
   RecordBytes record{};
