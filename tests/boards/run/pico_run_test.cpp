@@ -1,8 +1,6 @@
-// Tests the functions of boards/pico/run that run_test.cpp does not test: the file of the EEPROM, the baud
-// rate of the master, and the error if Node.js is missing.
+// Tests the functions of boards/pico/run that run_test.cpp does not test: the file of the EEPROM, and the
+// baud rate of the master.
 #include <gtest/gtest.h>
-
-#include <cstdlib>
 
 #include "tests/boards/run/running_image.hpp"
 
@@ -28,14 +26,6 @@ TEST(PicoRun, TheMasterUsesTheStoredBaudRateOfTheModule) {
   grounded.push_back("--init");
   EXPECT_EQ(RunningImage("EX9042D", grounded).ask("%0001400A00"), "!01");
   EXPECT_EQ(RunningImage("EX9042D", options).ask("$012"), "!01400A00");
-}
-
-TEST(PicoRun, NamesTheMissingPackage) {
-  const Directory directory;
-  const std::string path = getenv("PATH");
-  setenv("PATH", directory.path().c_str(), 1);
-  expect_refusal(directory, {image_of("EX9042D")}, {"install the package nodejs"});
-  setenv("PATH", path.c_str(), 1);
 }
 
 }  // namespace

@@ -1,17 +1,18 @@
 // Tests boards/lm3s6965evb/run in the cases that run_test.cpp does not test: the master never reads, a fault
-// or the module watchdog resets the module, the image is for the LaunchPad, QEMU reports an error, or QEMU is
-// missing.
+// or the module watchdog resets the module, the image is for the LaunchPad, or QEMU reports an error.
+#include <arpa/inet.h>
 #include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
 
 #include <array>
 #include <cstdio>
 #include <cstdlib>
 #include <thread>
 
-#include "firmware/hex.hpp"
 #include "tests/boards/run/running_image.hpp"
+#include "tests/qemu/gdb_client.hpp"
 #include "tests/support/free_port.hpp"
-#include "tests/support/socket_client.hpp"
 
 namespace ex9000::system {
 namespace {
@@ -34,7 +35,7 @@ TEST(QemuRun, AMasterThatNeverReadsDoesNotStopTheModule) {
 /// A debugger. The processor stops while the debugger is connected.
 class Debugger {
  public:
-  explicit Debugger(std::uint16_t port) : client_(port) {
+  explicit Debugger(std::uint16_t port) : client_(rig::UnixSocket(connected_to(port))) {
     ask("qXfer:features:read:target.xml:0,fff");  // QEMU then allows writes to single registers
   }
 
@@ -47,57 +48,30 @@ class Debugger {
   void leave() { EXPECT_EQ(ask("D"), "OK"); }
 
  private:
+  static int connected_to(std::uint16_t port) {
+    const int fd = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_port = htons(port);
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    EXPECT_EQ(connect(fd, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+    return fd;
+  }
   static std::string hex_of(std::uint32_t word) {
     std::array<char, 9> digits{};
     std::snprintf(digits.data(), digits.size(), "%08x", word);
     return digits.data();
   }
-
-  /// Sends a command of GDB's remote protocol and returns the reply without its framing.
   std::string ask(const std::string& command) {
-    unsigned sum = 0;
-    for (const char character : command) {
-      sum += static_cast<unsigned char>(character);
-    }
-    client_.send("$" + command + "#" + hex_of(sum & 0xFFU).substr(6));
-    std::string reply = packet();
+    client_.send(rig::GdbClient::framed(command));
+    std::string reply = client_.receive();
     while (!reply.empty() && reply[0] == 'T') {  // 'T' begins a report that the processor has stopped
-      reply = packet();
+      reply = client_.receive();
     }
     return reply;
   }
-  std::string packet() {
-    const std::string text = (up_to('$'), up_to('#'));
-    up_to_end_of_check();
-    client_.send("+");
-    return text;
-  }
-  std::string up_to(char end) {
-    std::size_t at = received_.find(end);
-    while (at == std::string::npos) {
-      receive();
-      at = received_.find(end);
-    }
-    const std::string text = received_.substr(0, at);
-    received_.erase(0, at + 1);
-    return text;
-  }
-  void up_to_end_of_check() {
-    while (received_.size() < 2) {
-      receive();
-    }
-    received_.erase(0, 2);
-  }
-  void receive() {
-    const std::string more = client_.receive_text(1);
-    if (more.empty()) {
-      throw std::runtime_error("the debugger gets no answer");
-    }
-    received_ += more;
-  }
 
-  SocketClient client_;
-  std::string received_;
+  rig::GdbClient client_;
 };
 
 /// If INIT* were low, the module would start in INIT mode and no longer reply at address 01.
@@ -142,15 +116,6 @@ TEST(QemuRun, ReportsTheErrorMessageOfQemu) {
   const RunningImage other("EX9042D", {"--gdb", port});
   expect_refusal(directory, {image_of("EX9042D"), "--gdb", port},
                  {"qemu-system-arm: the emulator has ended", "in use", "start it again"}, 1);
-}
-
-TEST(QemuRun, NamesTheMissingPackage) {
-  const Directory directory;
-  const std::string path = getenv("PATH");
-  setenv("PATH", directory.path().c_str(), 1);
-  expect_refusal(directory, {image_of("EX9042D")},
-                 {"qemu-system-arm: the program is missing; install the package qemu-system-arm"});
-  setenv("PATH", path.c_str(), 1);
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <array>
 #include <cerrno>
 #include <csignal>
+#include <cstdlib>
 #include <optional>
 
 #include "tests/boards/run/running_image.hpp"
@@ -244,6 +245,14 @@ TEST(Run, RefusesALinkThatItCannotCreate) {
   expect_refusal(directory, {image, "--link", "none/tty"}, {"--link none/tty: No such file"});
   const RunningImage other("EX9042D", {"--link", directory / "taken"});
   expect_refusal(directory, {image, "--link", "taken"}, {"--link taken: the path exists already"});
+}
+
+TEST(Run, NamesTheMissingPackage) {
+  const Directory directory;
+  const std::string path = getenv("PATH");
+  setenv("PATH", directory.path().c_str(), 1);
+  expect_refusal(directory, {image_of("EX9042D")}, {"install the package " EX9000_PACKAGE});
+  setenv("PATH", path.c_str(), 1);
 }
 
 }  // namespace
