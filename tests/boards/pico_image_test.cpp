@@ -97,15 +97,6 @@ TEST_F(PicoImage, AModuleRepliesInItsStoredLineFormatAndIgnoresAMasterWithAnothe
   }
 }
 
-TEST_F(PicoImage, TheModuleRepliesToEveryRequestOfAMasterThatDoesNotPauseAt115200Baud) {
-  begin("EX9043D-M", 115200);
-  for (int i = 0; i < 500; ++i) {
-    bench_.send(text("$01M\r"));
-    const play::Bytes reply = bench_.receive(9, milliseconds(5));
-    ASSERT_EQ(std::string(reply.begin(), reply.end()), "!019043M\r") << i;
-  }
-}
-
 TEST_F(PicoImage, AReplyBeginsOneCharacterAfterTheRequest) {
   constexpr nanoseconds kTolerance = std::chrono::microseconds(60);
   for (const std::uint32_t baud : {9600U, 115200U}) {
@@ -160,24 +151,6 @@ TEST_F(PicoImage, TheModuleCountsEveryPulseOfEightInputsDuringContinuousRequests
   EXPECT_EQ(bench_.counts().at("depth"), 1);
 }
 
-TEST_F(PicoImage, TheModuleReportsTheLevelsOfItsInputs) {
-  begin("EX9052D");
-  EXPECT_EQ(ask("@01"), ">0000\r");
-  const auto set_inputs = [this](std::uint32_t levels) {
-    for (unsigned channel = 0; channel < 8; ++channel) {
-      bench_.set_input(channel, (levels >> channel & 1U) != 0);
-    }
-    bench_.run_for(milliseconds(1));
-  };
-  set_inputs(0xB6);
-  EXPECT_EQ(ask("@01"), ">B600\r");
-  bench_.power(false);
-  set_inputs(0x5C);
-  bench_.power(true);
-  bench_.run_for(kComingUp);
-  EXPECT_EQ(ask("@01"), ">5C00\r") << "the levels at reset";
-}
-
 // wire.md section 2: a reset clears counters and latches, and the level of the inputs at reset is the
 // baseline. The pull-up of an open input takes some time to change the level of the pin.
 TEST_F(PicoImage, AnOpenInputHasNoEdgeAtAReset) {
@@ -216,17 +189,6 @@ TEST_F(PicoImage, AModuleStartsAfterAResetOfOnlyTheProcessor) {
   bench_.run_for(2 * kWatchdogPeriod);
   EXPECT_EQ(ask("$01M"), "!019043M\r");
   EXPECT_EQ(bench_.counts().at("timeouts"), 0);
-}
-
-// wire.md section 2: in INIT mode, the module has address 00 and uses no checksum.
-TEST_F(PicoImage, TheInitSwitchSelectsTheInitMode) {
-  begin();
-  EXPECT_EQ(ask("$00M"), "");
-  bench_.power(false);
-  bench_.set_init(true);
-  bench_.power(true);
-  bench_.run_for(kComingUp);
-  EXPECT_EQ(ask("$00M"), "!009043M\r");
 }
 
 // The LED on a Pico W is connected to the radio chip, so the image for a Pico W drives an external LED at

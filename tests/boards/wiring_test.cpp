@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <fstream>
 #include <map>
 #include <set>
@@ -173,7 +174,12 @@ TEST(Wiring, NoTableListsAReservedPin) {
   }
 }
 
+// A position is for example "J4.4" on the EK-TM4C123GXL, and "4" on a Pico.
 #ifdef EX9000_BOARD_HAS_HEADERS
+const char* const kColumn = "header";
+const char* const kNone = "";  // each pin in the tables is at a header
+const char* const kLead = " (P";
+
 /// The pins at positions 1 to 10 of each header of the EK-TM4C123GXL (user's guide SPMU296, "Headers and
 /// BoosterPacks").
 const std::map<std::string, std::array<std::string, 10>> kHeaders{
@@ -191,43 +197,23 @@ std::string pin_at(const std::string& position) {
              ? header->second.at(static_cast<std::size_t>(place - 1))
              : "nothing";
 }
+#endif
+#ifdef EX9000_BOARD_HAS_POSITIONS
+const char* const kColumn = "position";
+const char* const kNone = "–";
+const char* const kLead = " (GP";
 
-TEST(Wiring, EveryHeaderPositionInTheTablesMatchesItsPin) {
-  for (const auto& [head, pin_column] : std::map<std::string, std::size_t>{{"pin", 0}, {"signal", 1}}) {
-    const Table table = table_of(head);
-    ASSERT_EQ(table[0].at(pin_column + 1), "header");
-    for (auto row = table.begin() + 1; row != table.end(); ++row) {
-      EXPECT_EQ(pin_at(row->at(pin_column + 1)), row->at(pin_column)) << row->at(pin_column + 1);
-    }
-  }
-}
-
-TEST(Wiring, EveryHeaderPositionInTheTextMatchesItsPin) {
-  const std::string text = text_of(EX9000_BOARD_README);
-  int named = 0;
-  for (auto open = text.find(" (P"); open != std::string::npos; open = text.find(" (P", open + 1)) {
-    const auto start = text.rfind(' ', open - 1) + 1;
-    const std::string position = text.substr(start, open - start);  // "J4.4" of "J4.4 (PC4)"
-    if (position[0] == 'J') {
-      EXPECT_EQ(pin_at(position), text.substr(open + 2, 3)) << position;
-      ++named;
-    }
-  }
-  EXPECT_GE(named, 5);
-}
+std::string pin_at(const std::string& position) { return kPositions.at(std::stoul(position) - 1); }
 #endif
 
-#ifdef EX9000_BOARD_HAS_POSITIONS
-const char* const kNone = "–";
-
+#if defined(EX9000_BOARD_HAS_HEADERS) || defined(EX9000_BOARD_HAS_POSITIONS)
 TEST(Wiring, EveryPositionInTheTablesMatchesItsPin) {
   for (const auto& [head, pin_column] : std::map<std::string, std::size_t>{{"pin", 0}, {"signal", 1}}) {
     const Table table = table_of(head);
-    ASSERT_EQ(table[0].at(pin_column + 1), "position");
+    ASSERT_EQ(table[0].at(pin_column + 1), kColumn);
     for (auto row = table.begin() + 1; row != table.end(); ++row) {
-      if (row->at(pin_column + 1) != kNone) {
-        const std::size_t position = std::stoul(row->at(pin_column + 1));
-        EXPECT_EQ(kPositions.at(position - 1), row->at(pin_column)) << position;
+      if (const std::string& position = row->at(pin_column + 1); position != kNone) {
+        EXPECT_EQ(pin_at(position), row->at(pin_column)) << position;
       }
     }
   }
@@ -240,12 +226,13 @@ TEST(Wiring, EveryPositionInTheTextMatchesItsPin) {
   const std::string text = text_of(EX9000_BOARD_README);
 #endif
   int named = 0;
-  for (auto open = text.find(" (GP"); open != std::string::npos; open = text.find(" (GP", open + 1)) {
-    const auto start = text.rfind(' ', open - 1) + 1;
-    const std::size_t position = std::stoul(text.substr(start, open - start));  // "4" of "position 4 (GP2)"
-    EXPECT_EQ(kPositions.at(position - 1), text.substr(open + 2, text.find(')', open) - open - 2))
-        << position;
-    ++named;
+  for (auto open = text.find(kLead); open != std::string::npos; open = text.find(kLead, open + 1)) {
+    const auto start = text.find_last_of(" \n", open - 1) + 1;
+    const std::string position = text.substr(start, open - start);  // "J4.4" of "J4.4 (PC4)"
+    if (position[0] == 'J' || std::isdigit(static_cast<unsigned char>(position[0])) != 0) {
+      EXPECT_EQ(pin_at(position), text.substr(open + 2, text.find(')', open) - open - 2)) << position;
+      ++named;
+    }
   }
   EXPECT_GE(named, 5);
 }

@@ -150,7 +150,6 @@ const COMMANDS = {
   absent() {
     board.eeprom.present = false;
   },
-  stored: () => hexOf(board.eeprom.content),
   // flash ADDRESS SIZE: returns bytes of the flash chip
   flash: (address, size) => hexOf(board.flash.content.subarray(integer(address), integer(address) + integer(size))),
   // set-flash ADDRESS HEX: changes bytes of the flash chip
@@ -180,9 +179,6 @@ const COMMANDS = {
   write: (address, value) => board.chip.mcu.writeUint16(integer(address), integer(value)),
   // lose INTERRUPT: the processor does not notice this interrupt until the next reset
   lose: (interrupt) => board.chip.processor.lose(integer(interrupt)),
-  // cycles: returns the cycles of the instructions that the chip has executed since power-on or its last reset. The
-  // command `reset-processor` does not restart this count. Returns 0 while the supply is off.
-  cycles: () => board.chip?.mcu.core.cycles ?? 0,
 };
 
 function execute(line) {
