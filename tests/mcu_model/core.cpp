@@ -35,16 +35,10 @@ void Core::count_tick() {
 
 std::uint32_t Core::read(std::uint32_t offset) {
   switch (offset) {
-    case kTickControl:
-      return tick_control_;
-    case kTickReload:
-      return reload_;
     case kTickCurrent:
       return current();
     case kInterruptControl:
       return (pending_ >> kTick & 1U) != 0 ? kTickPending : 0;
-    case kSetEnable:
-      return enabled_;
     default:
       fault(offset, "the model has no such register of the processor");
   }

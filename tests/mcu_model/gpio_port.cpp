@@ -50,8 +50,6 @@ std::uint32_t& GpioPort::stored(std::uint32_t offset) {
       return sense_;
     case kBothEdges:
       return both_edges_;
-    case kEvent:
-      return event_;
     case kMask:
       return mask_;
     case kAlternate:
@@ -68,8 +66,6 @@ std::uint32_t& GpioPort::stored(std::uint32_t offset) {
       return pull_up_;
     case kPullDown:
       return pull_down_;
-    case kSlew:
-      return slew_;
     case kEnable:
       return enable_;
     case kAnalog:
@@ -87,9 +83,6 @@ std::uint32_t GpioPort::read(std::uint32_t offset) {
   if (offset < kDirection) {
     const std::uint32_t outputs = direction_ & ~function_;
     return ((data_ & outputs) | (input_ & ~outputs)) & (offset >> 2U);
-  }
-  if (offset == kRaw) {
-    return raw_;
   }
   if (offset == kMasked) {
     return raw_ & mask_;
@@ -180,7 +173,7 @@ void GpioPort::look_at(unsigned pin) {
     return;
   }
   input_ ^= bit;
-  if ((sense_ & bit) == 0 && ((both_edges_ & bit) != 0 || level == ((event_ & bit) != 0))) {
+  if ((sense_ & bit) == 0 && ((both_edges_ & bit) != 0 || !level)) {
     raw_ |= bit;
     tell_interrupt();
   }

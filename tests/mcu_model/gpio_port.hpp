@@ -17,7 +17,6 @@ class GpioPort final : public Peripheral {
   static constexpr std::uint32_t kDirection = 0x400;
   static constexpr std::uint32_t kSense = 0x404;
   static constexpr std::uint32_t kBothEdges = 0x408;
-  static constexpr std::uint32_t kEvent = 0x40C;
   static constexpr std::uint32_t kMask = 0x410;
   static constexpr std::uint32_t kRaw = 0x414;
   static constexpr std::uint32_t kMasked = 0x418;
@@ -29,7 +28,6 @@ class GpioPort final : public Peripheral {
   static constexpr std::uint32_t kOpenDrain = 0x50C;
   static constexpr std::uint32_t kPullUp = 0x510;
   static constexpr std::uint32_t kPullDown = 0x514;
-  static constexpr std::uint32_t kSlew = 0x518;
   static constexpr std::uint32_t kEnable = 0x51C;
   static constexpr std::uint32_t kAnalog = 0x528;
   static constexpr std::uint32_t kControl = 0x52C;
@@ -76,7 +74,6 @@ class GpioPort final : public Peripheral {
   std::uint32_t direction_ = 0;
   std::uint32_t sense_ = 0;
   std::uint32_t both_edges_ = 0;
-  std::uint32_t event_ = 0;
   std::uint32_t mask_ = 0;
   std::uint32_t raw_ = 0;
   std::uint32_t function_;
@@ -86,7 +83,6 @@ class GpioPort final : public Peripheral {
   std::uint32_t open_drain_ = 0;
   std::uint32_t pull_up_;
   std::uint32_t pull_down_ = 0;
-  std::uint32_t slew_ = 0;
   std::uint32_t enable_;
   std::uint32_t analog_ = 0;
   std::uint32_t control_ = 0;

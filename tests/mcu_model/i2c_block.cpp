@@ -51,8 +51,6 @@ void I2cBlock::software_reset() {
 
 std::uint32_t I2cBlock::read(std::uint32_t offset) {
   switch (offset) {
-    case kTarget:
-      return target_;
     case kControl:
       if (busy_) {
         return kBusy | kError | kArbitrationLost;  // the other bits are not valid while BUSY is set
@@ -60,16 +58,6 @@ std::uint32_t I2cBlock::read(std::uint32_t offset) {
       return status_ | (owns_bus_ ? kBusBusy : kIdle);
     case kData:
       return data_;
-    case kPeriod:
-      return period_;
-    case kMask:
-      return mask_;
-    case kRaw:
-      return raw_;
-    case kMasked:
-      return raw_ & mask_;
-    case kConfiguration:
-      return configuration_;
     default:
       fault(offset, "the model has no such register of an I2C master");
   }

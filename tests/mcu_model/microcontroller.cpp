@@ -205,9 +205,6 @@ std::uint32_t Microcontroller::read(std::uint32_t address) {
 
 void Microcontroller::write(std::uint32_t address, std::uint32_t value) {
   begin_access(address, true, value);
-  if (on_write_) {
-    on_write_(address, value);
-  }
   peripheral_at(address).write(address & 0xFFFU, value);
   check_reset();
 }

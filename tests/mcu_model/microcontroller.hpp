@@ -112,10 +112,6 @@ class Microcontroller {
   /// which they were enabled again.
   [[nodiscard]] std::uint64_t most_accesses_held() const { return most_held_; }
   [[nodiscard]] unsigned watchdog_expiries() const { return watchdog_expiries_; }
-  /// Sets a function to call before each write takes effect.
-  void on_write(std::function<void(std::uint32_t address, std::uint32_t value)> act) {
-    on_write_ = std::move(act);
-  }
 
   /// Stops a part of the firmware until the next reset.
   void hang(Hangs what) { hangs_ = what; }
@@ -162,7 +158,6 @@ class Microcontroller {
 
   std::vector<Place> places_;
   std::function<void(Instant)> pass_;
-  std::function<void(std::uint32_t, std::uint32_t)> on_write_;
   int clocks_an_access_ = 2;
   Hangs hangs_ = Hangs::Nothing;
   std::optional<ResetCause> reset_requested_;

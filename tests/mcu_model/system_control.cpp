@@ -38,9 +38,6 @@ std::uint32_t SystemControl::read(std::uint32_t offset) {
   if (offset >= kRcgc && offset < kRcgc + 12) {
     return gates_.at((offset - kRcgc) / 4);
   }
-  if (offset >= kSrcr && offset < kSrcr + 12) {
-    return resets_.at((offset - kSrcr) / 4);
-  }
   fault(offset, "the model has no such register of system control");
 }
 

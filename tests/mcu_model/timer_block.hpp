@@ -33,20 +33,8 @@ class TimerBlock final : public Peripheral {
 
   std::uint32_t read(std::uint32_t offset) override {
     switch (offset) {
-      case kConfiguration:
-        return configuration_;
-      case kMode:
-        return mode_;
-      case kControl:
-        return control_;
-      case kMask:
-        return mask_;
-      case kRaw:
-        return raw_;
       case kMasked:
         return raw_ & mask_;
-      case kInterval:
-        return interval_;
       default:
         fault(offset, "the model has no such register of a timer");
     }

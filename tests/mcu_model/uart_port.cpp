@@ -41,18 +41,6 @@ std::uint32_t UartPort::read(std::uint32_t offset) {
     case kFlags:
       return (shifting_ || transmit_holding_ ? 1U << 3U : 0) | (receive_holding_ ? 1U << 6U : 1U << 4U) |
              (transmit_holding_ ? 1U << 5U : 1U << 7U);
-    case kIntegerDivisor:
-      return integer_divisor_;
-    case kFractionalDivisor:
-      return fractional_divisor_;
-    case kLineControl:
-      return line_control_;
-    case kControl:
-      return control_;
-    case kMask:
-      return mask_;
-    case kRaw:
-      return raw_;
     case kMasked:
       return raw_ & mask_;
     default:

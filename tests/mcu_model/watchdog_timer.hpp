@@ -31,16 +31,7 @@ class WatchdogTimer final : public Peripheral {
   }
 
   std::uint32_t read(std::uint32_t offset) override {
-    switch (offset) {
-      case kLoad:
-        return load_;
-      case kControl:
-        return control_;
-      case kLock:
-        return locked_ ? 1 : 0;
-      default:
-        fault(offset, "the model has no such register of the watchdog");
-    }
+    fault(offset, "the model has no such register of the watchdog");
   }
 
   void write(std::uint32_t offset, std::uint32_t value) override {
