@@ -58,13 +58,6 @@ TEST(Run, TheModuleRepliesToACommandThatIsTypedByHand) {
   EXPECT_EQ(terminal.read_line(kHang), "!019042D\r");
 }
 
-TEST(Run, MastersMayConnectAndDisconnectRepeatedly) {
-  const RunningImage image("EX9042D");
-  for (int visit = 0; visit < 20; ++visit) {
-    EXPECT_EQ(image.ask("$01M"), "!019042D");
-  }
-}
-
 /// Observes when any process opens or closes a terminal. The kernel merges successive equal events.
 class Visits {
  public:

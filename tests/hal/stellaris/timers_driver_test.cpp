@@ -240,27 +240,30 @@ ResetReason taken_after(const Chip& chip, const std::vector<ResetCause>& resets)
   return hal::stellaris::SystemControl::take_reset_reason();
 }
 
-TEST(ReasonOfAReset, IsKnownForEachCauseAndUnknownWithoutACauseOnBothChips) {
+TEST(ReasonOfAReset, IsThatOfTheSupplyOrElseOfTheLastResetOnBothChips) {
+  struct Case {
+    std::vector<ResetCause> resets;
+    ResetReason reason;
+  };
+  const std::vector<Case> cases{
+      {{ResetCause::PowerOn}, ResetReason::PowerOn},
+      {{ResetCause::BrownOut}, ResetReason::PowerOn},
+      {{ResetCause::Pin}, ResetReason::ResetPin},
+      {{ResetCause::Watchdog}, ResetReason::ModuleWatchdog},
+      {{ResetCause::Software}, ResetReason::Fault},
+      {{}, ResetReason::Unknown},
+      {{ResetCause::PowerOn, ResetCause::BrownOut}, ResetReason::PowerOn},
+      {{ResetCause::Watchdog, ResetCause::BrownOut}, ResetReason::PowerOn},
+      {{ResetCause::Watchdog, ResetCause::Pin}, ResetReason::ResetPin},
+  };
   for (const Chip* chip : {&kLm3s6965, &kTm4c123}) {
-    EXPECT_EQ(taken_after(*chip, {ResetCause::PowerOn}), ResetReason::PowerOn);
-    EXPECT_EQ(taken_after(*chip, {ResetCause::BrownOut}), ResetReason::PowerOn);
-    EXPECT_EQ(taken_after(*chip, {ResetCause::Pin}), ResetReason::ResetPin);
-    EXPECT_EQ(taken_after(*chip, {ResetCause::Watchdog}), ResetReason::ModuleWatchdog);
-    EXPECT_EQ(taken_after(*chip, {ResetCause::Software}), ResetReason::Fault);
-    EXPECT_EQ(taken_after(*chip, {}), ResetReason::Unknown);
+    for (const Case& each : cases) {
+      SCOPED_TRACE(chip->name + std::string(", case ") + std::to_string(&each - cases.data()));
+      EXPECT_EQ(taken_after(*chip, each.resets), each.reason);
+    }
   }
-}
-
-TEST(ReasonOfAReset, IsPowerOnIfTheSupplyIsOneOfSeveralCauses) {
+  // Only on the LM3S6965 does a reset by the pin clear the other causes.
   EXPECT_EQ(taken_after(kTm4c123, {ResetCause::PowerOn, ResetCause::Pin}), ResetReason::PowerOn);
-  EXPECT_EQ(taken_after(kLm3s6965, {ResetCause::PowerOn, ResetCause::BrownOut}), ResetReason::PowerOn);
-  EXPECT_EQ(taken_after(kLm3s6965, {ResetCause::Watchdog, ResetCause::BrownOut}), ResetReason::PowerOn);
-}
-
-TEST(ReasonOfAReset, IsTheResetPinIfAPinResetFollowsAWatchdogReset) {
-  for (const Chip* chip : {&kLm3s6965, &kTm4c123}) {
-    EXPECT_EQ(taken_after(*chip, {ResetCause::Watchdog, ResetCause::Pin}), ResetReason::ResetPin);
-  }
 }
 
 TEST(ReasonOfAReset, IsClearedWhenItIsTaken) {
