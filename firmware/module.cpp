@@ -2,6 +2,8 @@
 
 #include <initializer_list>
 
+#include "firmware/expect.hpp"
+
 namespace ex9000 {
 
 namespace {
@@ -52,6 +54,8 @@ void Module::step(bool init_switch, Time now) {
   dispatch(now);
   keeper_.poll(state_.settings, now);
   led_.show(led_pattern_due(), now);
+  EX9000_EXPECT((state_.outputs & ~state_.model().output_mask()) == 0);
+  EX9000_EXPECT(!state_.settings.timeout_status || state_.outputs == state_.settings.safe_value);
 }
 
 // --- reset ---
@@ -84,6 +88,7 @@ void Module::use_settings(Time now) {
 /// Puts settings in force, at the reset and when a command has stored them, except those that wait for the
 /// next reset or need an Effect.
 void Module::apply(const Settings& settings, Time now) {
+  EX9000_EXPECT(settings.possible_for(state_.model()));
   if (state_.model().has_inputs()) {
     apply_to_inputs(settings, now);
   }
@@ -122,6 +127,7 @@ void Module::select_mode() {
 }
 
 void Module::listen(const LineTiming& timing) {
+  EX9000_EXPECT(listening());
   receiver_.listen({state_.in_force.protocol, state_.in_force.checksum, timing});
   receiver_.answer_to(state_.in_force.address);
   cycle_.keep_apart(turn_around());

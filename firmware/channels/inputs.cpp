@@ -1,5 +1,7 @@
 #include "firmware/channels/inputs.hpp"
 
+#include "firmware/expect.hpp"
+
 namespace ex9000 {
 
 void InputEdges::on_edge(unsigned channel, bool level, Time now) {
@@ -58,6 +60,7 @@ void Inputs::count(unsigned channel, std::uint32_t edges) {
     return;
   }
   const std::uint32_t modulus = range_ == CounterRange::FiveDigits ? 100'000U : 65'536U;
+  EX9000_EXPECT(counters_[channel] < modulus);
   const std::uint32_t bit = 1U << channel;
   const std::uint32_t was_high = levels_ >> channel & 1U;
   const std::uint32_t rising = (edges + 1U - was_high) / 2U;  // the first edge rises if the level was low

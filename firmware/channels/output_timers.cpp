@@ -1,5 +1,7 @@
 #include "firmware/channels/output_timers.hpp"
 
+#include "firmware/expect.hpp"
+
 namespace ex9000 {
 
 namespace {
@@ -13,6 +15,7 @@ constexpr Duration kLateStart(300);
 }  // namespace
 
 void OutputTimers::start(unsigned channel, std::uint16_t units, Time now) {
+  EX9000_EXPECT(units != 0);
   timers_[channel].units = units;
   timers_[channel].unit_end.set(now + kUnit + kLateStart);
   running_ = static_cast<std::uint16_t>(running_ | 1U << channel);

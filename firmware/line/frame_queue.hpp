@@ -7,6 +7,7 @@
 
 #include "firmware/bytes.hpp"
 #include "firmware/crossing.hpp"
+#include "firmware/expect.hpp"
 #include "firmware/model/built.hpp"
 #include "firmware/time.hpp"
 
@@ -53,7 +54,10 @@ class FrameQueue {
   [[nodiscard]] const Frame& waiting() const { return frames_[dropped_.load() % kFrames]; }
 
   /// Removes the waiting frame. For the main loop; call this only if `has_frame()`.
-  void drop_in_main_loop() { dropped_.store_in_main_loop(dropped_.load() + 1U); }
+  void drop_in_main_loop() {
+    EX9000_EXPECT(has_frame());
+    dropped_.store_in_main_loop(dropped_.load() + 1U);
+  }
 
  private:
   static constexpr std::uint32_t kFrames = 2;

@@ -1,6 +1,7 @@
 #include "firmware/request/request_cycle.hpp"
 
 #include "firmware/dcon/dcon.hpp"
+#include "firmware/expect.hpp"
 #include "firmware/modbus/modbus.hpp"
 
 namespace ex9000 {
@@ -17,6 +18,7 @@ void RequestCycle::poll(Time now) {
 }
 
 const Outcome& RequestCycle::judge(Bytes frame, Time now) {
+  EX9000_EXPECT(free());
   exchange_.begin(frame);
   earliest_reply_.set(now);
   earliest_reply_.delay_to(gap_end_);
@@ -42,6 +44,7 @@ void RequestCycle::keep_timeout_status() {
 }
 
 void RequestCycle::refuse_store() {
+  EX9000_EXPECT(phase_ == Phase::Storing);
   exchange_.outcome.clear();
   exchange_.outcome.refusal = Refusal::StoreFailed;
   if (exchange_.state.speaks_modbus()) {
@@ -61,6 +64,7 @@ Bytes RequestCycle::take_reply(Time now) {
   if (phase_ != Phase::ReplyReady || !earliest_reply_.reached(now)) {
     return {};
   }
+  EX9000_EXPECT(!replying());
   phase_ = Phase::Idle;
   replies_.store_in_main_loop(replies_.load() + 1U);
   return exchange_.reply.bytes();

@@ -5,6 +5,7 @@
 
 #include "firmware/bytes.hpp"
 #include "firmware/crossing.hpp"
+#include "firmware/expect.hpp"
 #include "firmware/request/exchange.hpp"
 #include "firmware/time.hpp"
 
@@ -47,7 +48,10 @@ class RequestCycle {
   /// Returns the outcome of the request. After `finish` it contains only the reason of a refusal.
   [[nodiscard]] const Outcome& outcome() const { return exchange_.outcome; }
   /// Changes the phase to Storing. Call this while AwaitingStore, when the store has begun.
-  void store_begun() { phase_ = Phase::Storing; }
+  void store_begun() {
+    EX9000_EXPECT(phase_ == Phase::AwaitingStore);
+    phase_ = Phase::Storing;
+  }
   /// Removes the change of the timeout status from the request, if the phase is AwaitingStore or Storing.
   /// Call this when the host watchdog has expired, because the request must not clear the new timeout status
   /// (wire.md D17).

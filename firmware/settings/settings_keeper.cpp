@@ -1,5 +1,6 @@
 #include "firmware/settings/settings_keeper.hpp"
 
+#include "firmware/expect.hpp"
 #include "firmware/request/statistics.hpp"
 
 namespace ex9000 {
@@ -17,6 +18,7 @@ Bytes bytes_of(const RecordBytes& record) { return {record.data(), record.size()
 }  // namespace
 
 MemoryJob SettingsKeeper::job() {
+  EX9000_EXPECT(busy());
   using Kind = MemoryJob::Kind;
   const Kind kind =
       step_ == Step::Save ? Kind::Save : (step_ == Step::Withdraw ? Kind::Withdraw : Kind::Load);
@@ -25,6 +27,7 @@ MemoryJob SettingsKeeper::job() {
 }
 
 void SettingsKeeper::done(const MemoryResult& result) {
+  EX9000_EXPECT(busy());
   const Step step = step_;
   step_ = Step::Idle;
   memory_ = result;
@@ -67,6 +70,7 @@ void SettingsKeeper::use_record() {
 // --- saving ---
 
 void SettingsKeeper::save(const Settings& settings, Time now) {
+  EX9000_EXPECT(!busy());
   end_own_action(now);
   begin_saving(settings, kAttemptsOfACommand);
   may_differ_ = true;  // even if the save succeeds, because the host watchdog may expire during it
@@ -85,6 +89,7 @@ void SettingsKeeper::begin_saving(const Settings& settings, std::uint8_t attempt
 }
 
 void SettingsKeeper::begin_writing() {
+  EX9000_EXPECT(saving_.possible_for(model_.get()));
   write_record(model_.get(), saving_, static_cast<std::uint16_t>(sequence_ + ahead_), record_);
   step_ = Step::Save;
 }

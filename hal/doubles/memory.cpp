@@ -1,19 +1,15 @@
 #include "hal/doubles/memory.hpp"
 
 #include <algorithm>
-#include <stdexcept>
+
+#include "firmware/expect.hpp"
 
 namespace ex9000::hal::doubles {
 
 void Memory::begin(bool writing, std::uint16_t address, std::size_t size) {
-  if (busy()) {
-    throw std::logic_error("memory: a job starts while another one is running; wait until busy() is false");
-  }
-  if (address + size > kSize || (writing && address / kPage != (address + size - 1) / kPage)) {
-    throw std::logic_error(
-        "memory: a job crosses the end of the memory, or a write crosses the end of a page; "
-        "keep each job within the memory, and each write within a page");
-  }
+  EX9000_EXPECT(!busy());
+  EX9000_EXPECT(address + size <= kSize);
+  EX9000_EXPECT(!writing || address / kPage == (address + size - 1) / kPage);
   // Besides the data, a read transfers four bytes: the device address twice, and a memory address of two
   // bytes. A write transfers the device address only once. This double nevertheless adds the time of four
   // bytes to each job.

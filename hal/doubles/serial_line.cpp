@@ -2,9 +2,12 @@
 
 #include <algorithm>
 
+#include "firmware/expect.hpp"
+
 namespace ex9000::hal::doubles {
 
 void SerialLine::send(Bytes bytes) {
+  EX9000_EXPECT(!sending());
   bytes_ = wire_.replaced(bytes);
   driving_ = true;
   wire_.drive(true);

@@ -1,5 +1,7 @@
 #include "tests/world/steps.hpp"
 
+#include <type_traits>
+
 #include "tests/oracles/reference/hexadecimal.hpp"
 
 namespace ex9000::world {
@@ -55,6 +57,20 @@ struct Text {
 }  // namespace
 
 std::string text_of(const Step& step) { return std::visit(Text{}, step); }
+
+std::size_t* module_of(Step& step) {
+  return std::visit(
+      [](auto& each) -> std::size_t* {
+        using Kind = std::decay_t<decltype(each)>;
+        if constexpr (std::is_same_v<Kind, Send> || std::is_same_v<Kind, Wait> ||
+                      std::is_same_v<Kind, Noise>) {
+          return nullptr;
+        } else {
+          return &each.module;
+        }
+      },
+      step);
+}
 
 std::string text_of(const Setup& setup) {
   std::string text = "the line begins at " + std::to_string(setup.begins.count()) + " ns\n";

@@ -69,6 +69,8 @@ using Step = std::variant<Send, Wait, Power, Reset, Init, Input, Pulse, Hang, Ti
                           SpoilReply, Noise>;
 
 std::string text_of(const Step& step);
+/// The module that the step concerns; null: none.
+std::size_t* module_of(Step& step);
 
 /// A module of a plant.
 struct Member {

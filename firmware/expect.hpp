@@ -1,0 +1,61 @@
+// Assertions, which only test builds check.
+#pragma once
+
+#ifdef EX9000_CHECKED
+
+#include <cstdio>
+#include <cstdlib>
+
+namespace ex9000 {
+
+/// A place with EX9000_EXPECT. All places of a program are in a list, also those that are never reached.
+class Expectation {
+ public:
+  explicit Expectation(const char* where) : where_(where), next_(first_) { first_ = this; }
+  Expectation(const Expectation&) = delete;
+  Expectation& operator=(const Expectation&) = delete;
+
+  void check(bool holds) {
+    reached_ = true;
+    if (!holds) {
+      std::fprintf(stderr, "does not hold: %s\n", where_);
+      std::abort();
+    }
+  }
+
+  [[nodiscard]] static const Expectation* first() { return first_; }
+  [[nodiscard]] const Expectation* next() const { return next_; }
+  [[nodiscard]] const char* where() const { return where_; }
+  [[nodiscard]] bool reached() const { return reached_; }
+
+ private:
+  static inline Expectation* first_ = nullptr;
+  const char* where_;
+  Expectation* next_;
+  bool reached_ = false;
+};
+
+template <class Where>
+struct ExpectationAt {
+  static inline Expectation expectation{Where::text()};
+};
+
+}  // namespace ex9000
+
+#define EX9000_TEXT_OF(line) #line
+#define EX9000_PLACE(file, line, condition) file ":" EX9000_TEXT_OF(line) ": " condition
+/// If the condition does not hold, a test build aborts. In an image and in a release this is nothing, and the
+/// condition is not evaluated. Not for constexpr functions.
+#define EX9000_EXPECT(condition)                                                         \
+  do {                                                                                   \
+    struct Where {                                                                       \
+      static const char* text() { return EX9000_PLACE(__FILE__, __LINE__, #condition); } \
+    };                                                                                   \
+    ::ex9000::ExpectationAt<Where>::expectation.check(condition);                        \
+  } while (false)
+
+#else
+
+#define EX9000_EXPECT(condition) static_cast<void>(0)
+
+#endif
