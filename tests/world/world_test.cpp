@@ -151,10 +151,12 @@ TEST(World, DoesNothingThatTheSpecificationForbids) {
       "at most %zu states of a module; %llu worlds given up\n",
       figures.worlds, first, std::chrono::duration<double, std::ratio<3600>>(figures.line_time).count(),
       figures.requests, figures.replies, figures.widest, figures.given_up);
+#ifdef EX9000_CHECKED
   for (const Expectation* each = Expectation::first(); each != nullptr && figures.worlds >= 300;
        each = each->next()) {
     EXPECT_TRUE(each->reached()) << "never reached: " << each->where();
   }
+#endif
   EXPECT_LE(figures.given_up, 1 + figures.worlds / 10);
 }
 
