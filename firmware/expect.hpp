@@ -11,25 +11,25 @@ namespace ex9000 {
 /// A place with EX9000_EXPECT. All places of a program are in a list, also those that are never reached.
 class Expectation {
  public:
-  explicit Expectation(const char* where) : where_(where), next_(first_) { first_ = this; }
+  explicit Expectation(const char* where) : where_(where), next_(all) { all = this; }
   Expectation(const Expectation&) = delete;
   Expectation& operator=(const Expectation&) = delete;
 
   void check(bool holds) {
     reached_ = true;
     if (!holds) {
-      std::fprintf(stderr, "does not hold: %s\n", where_);
+      (void)std::fprintf(stderr, "does not hold: %s\n", where_);
       std::abort();
     }
   }
 
-  [[nodiscard]] static const Expectation* first() { return first_; }
+  [[nodiscard]] static const Expectation* first() { return all; }
   [[nodiscard]] const Expectation* next() const { return next_; }
   [[nodiscard]] const char* where() const { return where_; }
   [[nodiscard]] bool reached() const { return reached_; }
 
  private:
-  static inline Expectation* first_ = nullptr;
+  static inline Expectation* all = nullptr;
   const char* where_;
   Expectation* next_;
   bool reached_ = false;
