@@ -17,8 +17,7 @@ using std::chrono::milliseconds;
 constexpr Time kNever = Time::max();
 /// The limits of silences are exact to this (wire.md D11).
 constexpr microseconds kExact{15};
-/// wire.md 6 and extensions.md: what the module does by itself is at most this late.
-constexpr milliseconds kLate{1};
+using reference::kLate;
 constexpr milliseconds kReplies{20};
 constexpr milliseconds kStores{200};
 /// wire.md D15

@@ -168,7 +168,7 @@ unsigned Module::time_left(unsigned channel) {
     return static_cast<unsigned>((std::max(time, Time(0)) + kTimeoutUnit - Time(1)) / kTimeoutUnit);
   };
   const unsigned least = rounded_up(timer->earliest - now_.latest);
-  return least + choice(rounded_up(timer->latest - now_.earliest) - least + 1);
+  return least + choice(rounded_up(timer->latest + kLate - now_.earliest) - least + 1);
 }
 
 /// Returns the channels with a running timer.

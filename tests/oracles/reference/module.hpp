@@ -1,7 +1,7 @@
 // A second implementation of a module, written from the specification alone and as simply as possible. It
 // processes all bytes of a request in one call, has no interrupts, and stores settings immediately. It shares
 // no code with the firmware, except the names of the line formats. If this module and the firmware agree on a
-// random session, two independent readings of the specification agree. Section, E and D numbers refer to
+// random world, two independent readings of the specification agree. Section, E and D numbers refer to
 // wire.md.
 #pragma once
 
@@ -25,6 +25,8 @@ using Bytes = std::vector<std::uint8_t>;
 using Time = std::chrono::nanoseconds;
 /// wire.md 2: the longest time from power-on or reset until the module listens.
 inline constexpr std::chrono::milliseconds kComingUp{100};
+/// wire.md 6 and extensions.md: what the module does by itself is at most this late.
+inline constexpr std::chrono::milliseconds kLate{1};
 /// A time that is only known to lie between two.
 struct Moment {
   Time earliest;
