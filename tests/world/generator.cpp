@@ -1,5 +1,6 @@
 #include "tests/world/generator.hpp"
 
+#include <algorithm>
 #include <iterator>
 #include <utility>
 
@@ -13,25 +14,37 @@ using std::chrono::milliseconds;
 enum What : unsigned {
   kPower,
   kReset,
-  kInputs,
   kHang,
+  kDelay,
+  kTick,
+  kInit,
   kMemory,
   kSpoiled,
   kNoise,
+  kInputs,
+  // not a step of its own
   kDamaged,
   kOtherMode,
   kEarly,
   kOthers,
-  kInit,
-  kDelays,
-  kTick,
   kCount,
 };
+
+/// What happens besides requests, once in so many steps.
+struct Fault {
+  What what;
+  unsigned times;
+};
+constexpr Fault kFaults[] = {{kPower, 60}, {kReset, 60},   {kHang, 200},   {kDelay, 60}, {kTick, 400},
+                             {kInit, 40},  {kMemory, 100}, {kSpoiled, 40}, {kNoise, 60}, {kInputs, 4}};
 
 }  // namespace
 
 Generator::Generator(std::uint64_t seed, const Requests& requests)
-    : requests_(requests), random_(seed), left_out_(random_.below(1U << kCount)) {
+    : requests_(requests),
+      random_(seed),
+      left_out_(random_.below(1U << kCount)),
+      loud_(random_.below(1U << kCount) & random_.below(1U << kCount)) {
   const unsigned count = random_.once_in(3) ? 1 + random_.below(12) : 1 + random_.below(3);
   for (unsigned i = 0; i < count; ++i) {
     setup_.members.push_back(member());
@@ -44,9 +57,10 @@ Generator::Generator(std::uint64_t seed, const Requests& requests)
 }
 
 /// Returns whether something happens now that happens once in `times` steps on average, unless this run
-/// leaves it out.
+/// leaves it out or has more of it.
 bool Generator::often(unsigned what, unsigned times) {
-  return random_.once_in(times) && (left_out_ >> what & 1U) == 0;
+  const bool loud = (loud_ >> what & 1U) != 0;
+  return random_.once_in(loud ? std::max(2U, times / 5) : times) && (left_out_ >> what & 1U) == 0;
 }
 
 Member Generator::member() {
@@ -114,93 +128,148 @@ Bytes Generator::request(std::size_t index, const Possible& target) {
   return bytes;
 }
 
-Step Generator::next(const Plant& plant) {
-  const std::size_t index =
-      aim_ ? *std::exchange(aim_, {}) : random_.below(static_cast<unsigned>(plant.size()));
-  const Time now = plant.now();
-  if (pulses_ != 0) {  // so many pulses that counters wrap, but not faster than an input can count them
-    --pulses_;
-    return pulses_ % 2 == 0 ? Step(Wait{milliseconds(1000)}) : Step(pulsing_);
-  }
-  if (!plant.powered(index) && random_.once_in(3)) {
-    return Power{index, true};
-  }
-  const Possible& target = plant.likely(index);
-  if (waits_ != 0) {
-    --waits_;
-    if (often(kEarly, 8)) {
-      return Wait{microseconds(random_.below(6000))};
-    }
-    return Wait{random_.once_in(30) ? Time(milliseconds(random_.below(3000)))
-                                    : Time(milliseconds(20 + random_.below(40)))};
-  }
-  if (often(kPower, 60)) {
-    return Power{index, !plant.powered(index)};
-  }
-  // A module whose settings or INIT* wait for a reset gets one more often.
-  if (often(kReset, target.module().powered() && target.module().waits_for_reset() ? 10 : 60)) {
-    return Reset{index};
-  }
-  if (often(kHang, 200)) {
-    return Hang{index, Time(0)};
-  }
-  if (often(kDelays, 60)) {
-    return Hang{index, microseconds(random_.below(random_.once_in(4) ? 1'000'000 : 30'000))};
-  }
-  if (often(kTick, 400)) {
-    return TickStops{index};
-  }
-  if (often(kInit, target.module().init_asserted() ? 20 : 40)) {
-    return Init{index, !target.module().init_asserted()};
-  }
-  if (often(kMemory, 100)) {
-    return MemoryFails{index, random_.once_in(3)};
-  }
-  if (often(kSpoiled, 40)) {
-    return SpoilReply{index, random_.once_in(2) ? Time(0) : Time(milliseconds(random_.below(100)))};
-  }
-  if (often(kNoise, 60)) {
-    sim::NoiseRates rates;
-    if (random_.once_in(2)) {
-      rates.flipped_bit = random_.once_in(2) ? 0.001 : 0.01;
-      rates.lost_character = random_.once_in(2) ? 0.01 : 0;
-      rates.stray_character = random_.once_in(2) ? 0.01 : 0;
-      rates.stray_zero = random_.once_in(2) ? 0.02 : 0;
-    }
-    return Noise{rates};
-  }
-  if (target.module().row().inputs != 0 && often(kInputs, 4)) {
-    unsigned channel = random_.below(target.module().row().inputs);
-    if (target.module().settling_input() && random_.once_in(2)) {
-      channel = *target.module().settling_input();
-    }
-    if (random_.once_in(40)) {
-      pulses_ = 2 * (1 + random_.below(6));
-      pulsing_ = Pulse{index, channel, 20'000};
-    }
-    aim_ = index;  // a request often arrives while the time of a filter runs
-    return random_.once_in(2) ? Step(Input{index, channel, random_.once_in(2)})
-                              : Step(Pulse{index, channel, 1 + random_.below(5)});
-  }
+/// The time that a request takes, with the silence after it.
+Time Generator::time_of(const Send& send) {
+  const auto bits = static_cast<std::int64_t>(11 * send.bytes.size() + 30);
+  return Time(bits * 1'000'000'000 / send.mode.baud);
+}
+
+Send Generator::send(std::size_t index, const Possible& target) {
   const reference::Module& module = target.module();
-  // A request often arrives when the host watchdog expires.
-  if (module.expiry() && random_.once_in(4)) {
-    const Time before = microseconds(random_.below(random_.once_in(2) ? 20'000 : 200'000));
-    if (const Time then = module.expiry()->earliest - before; then > now && then < now + milliseconds(3000)) {
-      aim_ = index;
-      return Wait{then - now};
-    }
-  }
   hal::SerialMode mode{module.powered() ? module.rate() : 9600,
                        module.powered() ? module.format() : LineFormat::k8N1};
   if (often(kOtherMode, 30)) {
     mode.baud = random_.one_of({1200U, 4800U, 9600U, 19200U, 115200U});
     mode.format = random_.one_of({LineFormat::k8N1, LineFormat::k8N2, LineFormat::k8E1, LineFormat::k8O1});
   }
-  waits_ = 1 + random_.below(2);
   const std::size_t master =
       often(kOthers, 3) ? random_.below(static_cast<unsigned>(setup_.masters)) : std::size_t{0};
-  return Send{master, mode, request(index, target)};
+  return {master, mode, request(index, target)};
+}
+
+Step Generator::fault(unsigned what, std::size_t index, const Plant& plant) {
+  const reference::Module& module = plant.likely(index).module();
+  switch (what) {
+    case kPower:
+      return Power{index, !plant.powered(index)};
+    case kReset:
+      return Reset{index};
+    case kHang:
+      return Hang{index, Time(0)};
+    case kDelay:
+      return Hang{index, microseconds(random_.below(random_.once_in(4) ? 1'000'000 : 30'000))};
+    case kTick:
+      return TickStops{index};
+    case kInit:
+      return Init{index, !module.init_asserted()};
+    case kMemory:
+      return MemoryFails{index, random_.once_in(3)};
+    case kSpoiled:
+      return SpoilReply{index, random_.once_in(2) ? Time(0) : Time(milliseconds(random_.below(100)))};
+    case kNoise: {
+      sim::NoiseRates rates;
+      if (random_.once_in(2)) {
+        rates.flipped_bit = random_.once_in(2) ? 0.001 : 0.01;
+        rates.lost_character = random_.once_in(2) ? 0.01 : 0;
+        rates.stray_character = random_.once_in(2) ? 0.01 : 0;
+        rates.stray_zero = random_.once_in(2) ? 0.02 : 0;
+      }
+      return Noise{rates};
+    }
+    default: {
+      unsigned channel = random_.below(std::max(1U, module.row().inputs));
+      if (module.settling_input() && random_.once_in(2)) {
+        channel = *module.settling_input();
+      }
+      return random_.once_in(2) ? Step(Input{index, channel, random_.once_in(2)})
+                                : Step(Pulse{index, channel, 1 + random_.below(5)});
+    }
+  }
+}
+
+/// Any fault that this run does not leave out.
+Step Generator::any_fault(std::size_t index, const Plant& plant) {
+  const Fault& one = kFaults[random_.below(static_cast<unsigned>(std::size(kFaults)))];
+  return (left_out_ >> one.what & 1U) == 0 ? fault(one.what, index, plant) : Wait{Time(0)};
+}
+
+/// At the expiry of the host watchdog, a request arrives or a fault happens.
+void Generator::aim_at(Time expiry, std::size_t index, const Plant& plant) {
+  const Possible& target = plant.likely(index);
+  const Time left = expiry - plant.now();
+  const Time before = microseconds(random_.below(random_.once_in(2) ? 20'000 : 150'000));
+  if (random_.once_in(4)) {
+    plan_.emplace_back(Wait{std::max(Time(0), left - milliseconds(10) + before)});
+    plan_.push_back(any_fault(index, plant));
+    return;
+  }
+  const Send request = send(index, target);
+  plan_.emplace_back(Wait{std::max(Time(0), left - time_of(request) - before + milliseconds(10))});
+  if ((left_out_ >> kDelay & 1U) == 0 && random_.once_in(4)) {
+    plan_.emplace_back(Hang{index, time_of(request) + microseconds(random_.below(60'000))});
+  }
+  plan_.emplace_back(request);
+}
+
+/// Sends a request. If it stores settings, a fault often happens while it is stored.
+void Generator::ask(std::size_t index, const Plant& plant) {
+  const Possible& target = plant.likely(index);
+  const Send request = send(index, target);
+  plan_.emplace_back(request);
+  if (target.would_store(request.bytes) && random_.once_in(3)) {
+    plan_.emplace_back(Wait{time_of(request) + microseconds(random_.below(90'000))});
+    plan_.push_back(any_fault(index, plant));
+  }
+  for (unsigned waits = 1 + random_.below(2); waits != 0; --waits) {
+    plan_.emplace_back(Wait{often(kEarly, 8)      ? Time(microseconds(random_.below(6000)))
+                            : random_.once_in(30) ? Time(milliseconds(random_.below(3000)))
+                                                  : Time(milliseconds(20 + random_.below(40)))});
+  }
+}
+
+void Generator::decide(const Plant& plant) {
+  const std::size_t index =
+      aim_ ? *std::exchange(aim_, {}) : random_.below(static_cast<unsigned>(plant.size()));
+  const reference::Module& module = plant.likely(index).module();
+  if (!plant.powered(index) && random_.once_in(3)) {
+    plan_.emplace_back(Power{index, true});
+    return;
+  }
+  for (const Fault& each : kFaults) {
+    // What waits for something gets it more often.
+    const bool sooner = (each.what == kReset && module.powered() && module.waits_for_reset()) ||
+                        (each.what == kInit && module.init_asserted());
+    if ((each.what != kInputs || module.row().inputs != 0) && often(each.what, sooner ? 10 : each.times)) {
+      if (each.what == kInputs) {
+        aim_ = index;  // a request often arrives while the time of a filter runs
+        if (random_.once_in(40)) {
+          // So many pulses that counters wrap, but not faster than an input can count them.
+          const unsigned channel = random_.below(module.row().inputs);
+          for (unsigned pulses = 1 + random_.below(6); pulses != 0; --pulses) {
+            plan_.emplace_back(Pulse{index, channel, 20'000});
+            plan_.emplace_back(Wait{milliseconds(1000)});
+          }
+        }
+      }
+      plan_.push_back(fault(each.what, index, plant));
+      return;
+    }
+  }
+  if (module.expiry() && random_.once_in(3) && plant.now() < module.expiry()->earliest &&
+      module.expiry()->earliest < plant.now() + milliseconds(3000)) {
+    aim_at(module.expiry()->earliest, index, plant);
+  } else {
+    ask(index, plant);
+  }
+}
+
+Step Generator::next(const Plant& plant) {
+  if (plan_.empty()) {
+    decide(plant);
+  }
+  Step step = plan_.front();
+  plan_.pop_front();
+  return step;
 }
 
 }  // namespace ex9000::world

@@ -1,6 +1,7 @@
 // Builds a plant and its history from one number.
 #pragma once
 
+#include <deque>
 #include <optional>
 #include <vector>
 
@@ -22,16 +23,22 @@ class Generator {
   Member member();
   [[nodiscard]] bool often(unsigned what, unsigned times);
   Bytes request(std::size_t index, const Possible& target);
+  Send send(std::size_t index, const Possible& target);
+  static Time time_of(const Send& send);
+  Step fault(unsigned what, std::size_t index, const Plant& plant);
+  Step any_fault(std::size_t index, const Plant& plant);
+  void aim_at(Time expiry, std::size_t index, const Plant& plant);
+  void ask(std::size_t index, const Plant& plant);
+  void decide(const Plant& plant);
 
   const Requests& requests_;
   reference::Random random_;
   unsigned left_out_;  ///< a mask: each run leaves out a random part
+  unsigned loud_;      ///< a mask: and has more of another
   Setup setup_;
   std::vector<Requests::Place> places_;  ///< for each module
-  unsigned waits_ = 0;
-  unsigned pulses_ = 0;
-  Pulse pulsing_{};
-  std::optional<std::size_t> aim_;  ///< the module that gets the next step
+  std::deque<Step> plan_;                ///< the next steps
+  std::optional<std::size_t> aim_;       ///< the module that gets the next step
 };
 
 }  // namespace ex9000::world

@@ -68,9 +68,23 @@ Time Possible::half_bits(unsigned count) const { return Time(count * 500'000'000
 /// From the end of the first stop bit to the end of the last one.
 Time Possible::stop_bits_left() const { return half_bits(module_.format() == LineFormat::k8N2 ? 2 : 0); }
 
+/// wire.md D18 and D11: the silence before a reply, and the one that ends a frame of RTU.
+Time Possible::gap() const {
+  return !module_.runs_modbus()   ? half_bits(2 * reference::character_bits(module_.format()))
+         : module_.rate() > 19200 ? Time(microseconds(1750))
+                                  : half_bits(77);
+}
+
 void Possible::store(const reference::Stored& stored) {
   module_.store(stored);
   saved_ = stored;
+}
+
+/// The settings in force are in the memory now.
+void Possible::save() {
+  older_ = saved_;
+  saved_ = module_.stored();
+  timeout_unsaved_.reset();
 }
 
 std::vector<reference::Stored> Possible::may_be_stored() const {
@@ -96,6 +110,9 @@ std::vector<Possible> Possible::power_off() const {
     if (!(stored == module_.stored()) || !(stored == saved_)) {
       next.module_.store(stored);
     }
+    if (!(stored == saved_)) {
+      next.older_ = saved_;
+    }
     next.saved_ = stored;
     next.ghosts_.clear();
     if (all.size() > 1) {
@@ -108,10 +125,11 @@ std::vector<Possible> Possible::power_off() const {
     }
     next.open_.clear();
     next.bad_.clear();
-    next.skipping_ = next.sending_ = next.unreadable_ = next.stores_again_ = false;
+    next.skipping_ = next.sending_ = next.unreadable_ = next.stores_again_ = next.loads_older_ = false;
     next.hung_.reset();
     next.tick_stopped_.reset();
     next.hangs_until_ = Time::min();
+    next.replied_ = Time::min();
     next.overtaken_.reset();
     next.waiting_.clear();
     next.due_.reset();
@@ -175,11 +193,9 @@ bool Possible::is_whole() const {
 
 /// Modbus: when the open frame ends, without the uncertainty of the clocks (wire.md D11).
 Time Possible::frame_limit() const {
-  const bool fixed = module_.rate() > 19200;
-  const Time silence = stop_bits_left() + (fixed ? Time(microseconds(1750)) : half_bits(77));
   const unsigned received =
       reference::character_bits(module_.format()) - (module_.format() == LineFormat::k8N2 ? 1 : 0);
-  return last_ + silence + (is_whole() ? Time(0) : half_bits(2 * received));
+  return last_ + stop_bits_left() + gap() + (is_whole() ? Time(0) : half_bits(2 * received));
 }
 
 /// The open frame is complete.
@@ -208,10 +224,14 @@ std::vector<Possible> Possible::frame_ends(Moment judged) const {
   std::vector<Possible> received{next};
   // A lost frame need not restart the host watchdog. A main loop that hung may see the end of the timeout
   // later than a frame that came too late.
-  if (module_.expiry() && next.module_.expiry() &&
-      (may_be_lost || module_.expiry()->earliest <= judged.latest)) {
-    received.push_back(next);
-    received.back().module_.keep_expiry(*module_.expiry());
+  const auto& expiry = module_.expiry();
+  if (expiry && next.module_.expiry()) {
+    if (expiry->latest < judged.earliest) {
+      received[0].module_.keep_expiry(*expiry);
+    } else if (may_be_lost || expiry->earliest <= judged.latest) {
+      received.push_back(next);
+      received.back().module_.keep_expiry(*expiry);
+    }
   }
   std::vector<Possible> after;
   for (Possible& each : received) {
@@ -262,8 +282,7 @@ std::vector<Possible> Possible::hear(std::uint8_t byte, bool good, Time end) con
   if (byte != '\r' || !good) {
     return {next};
   }
-  const Time judged = end + stop_bits_left() + half_bits(2 * reference::character_bits(module_.format()));
-  return next.frame_ends({end, judged + kExact});
+  return next.frame_ends({end, end + stop_bits_left() + gap() + kExact});
 }
 
 // --- events ---
@@ -329,8 +348,7 @@ bool Possible::futures(Time since, Time now, std::vector<Possible>& after) const
     happens(timeout_unsaved_->earliest, works == kNever ? kNever : works + retry + 2 * kStores,
             [](Possible& next) {
               next.module_.timeout_stored();
-              next.saved_ = next.module_.stored();
-              next.timeout_unsaved_.reset();
+              next.save();
             });
   }
   for (unsigned channel = 0; channel < kChannels; ++channel) {
@@ -365,7 +383,7 @@ void Possible::come_up(Time since, Time now, std::vector<Possible>& after) const
     }
     // A failed store leaves a memory that is no longer blank and has no good copy (wire.md D8).
     const bool may_be_unreadable = memory_fails_until_ >= reset_at_ || module_.may_have_spoilt_blank_memory();
-    if (unreadable_ && !may_be_unreadable) {
+    if ((unreadable_ && !may_be_unreadable) || (loads_older_ && memory_fails_until_ < reset_at_)) {
       return;
     }
     if (unreadable_) {
@@ -379,6 +397,14 @@ void Possible::come_up(Time since, Time now, std::vector<Possible>& after) const
   next.start_ = Start::InputsCount;
   next.module_.reset({std::max(since, reset_at_), now}, module_.reset_reason());
   after.push_back(next);
+  if (older_) {  // extensions.md: 0x0306 reads 1
+    Possible fallen_back = next;
+    fallen_back.loads_older_ = fallen_back.stores_again_ = true;
+    fallen_back.module_.store(*older_);
+    fallen_back.module_.doubt_memory();
+    fallen_back.module_.reset({std::max(since, reset_at_), now}, module_.reset_reason());
+    after.push_back(fallen_back);
+  }
   next.unreadable_ = next.stores_again_ = true;
   next.module_.use_factory_settings();
   next.module_.reset({std::max(since, reset_at_), now}, module_.reset_reason());
@@ -409,6 +435,13 @@ bool Possible::first_stores() const {
   return trial.on_frame(waiting_[0].bytes, waiting_[0].bad, {}, overtaken_).stores;
 }
 
+bool Possible::would_store(const Bytes& request) const {
+  const std::vector<bool> good(request.size());
+  reference::Module trial = module_;
+  return module_.powered() && start_ == Start::Over && (module_.runs_modbus() || request.back() == '\r') &&
+         reference::Module(module_).on_receipt(request, good, {}) && trial.on_frame(request, good, {}).stores;
+}
+
 /// When the reply to the first frame must have begun.
 Time Possible::first_by(bool stores) const {
   const Time limit = stores ? Time(kStores) : Time(kReplies);
@@ -422,9 +455,10 @@ void Possible::execute(Time since, Time now, std::vector<Possible>& after) const
   if (first.judged.earliest > now) {
     return;
   }
-  const Moment when{std::max(first.judged.earliest, std::min(since, now)), now};
-  const Time gap =
-      module_.runs_modbus() ? Time(0) : half_bits(2 * reference::character_bits(module_.format()));
+  const Moment when{std::max({first.judged.earliest, hangs_until_, std::min(since, now)}), now};
+  if (module_.expiry() && module_.expiry()->latest < when.earliest) {
+    return;  // the host watchdog expires before
+  }
   const auto done = [&](const reference::Module& module, const reference::Answer& answer, bool stores,
                         bool saves) {
     const Bytes& reply = answer.reply;
@@ -434,13 +468,12 @@ void Possible::execute(Time since, Time now, std::vector<Possible>& after) const
     next.waiting_.erase(next.waiting_.begin());
     next.free_ = now;
     if (saves) {
-      next.saved_ = module.stored();
-      next.timeout_unsaved_.reset();
+      next.save();
       next.unreadable_ = next.stores_again_ = false;
       next.ghosts_.clear();
     }
     if (!reply.empty()) {
-      const Time earliest = module_.runs_modbus() ? first.judged.earliest : first.last + gap - kExact;
+      const Time earliest = module_.runs_modbus() ? first.judged.earliest : first.last + gap() - kExact;
       next.due_ =
           Due{reply,
               answer.refusal,
@@ -462,7 +495,7 @@ void Possible::execute(Time since, Time now, std::vector<Possible>& after) const
       const reference::Answer refused = refusing.on_frame_without_store(first.bytes, first.bad, when);
       refusing.doubt_memory();
       done(refusing, refused, true, false);
-      after.back().ghosts_ = {module.stored()};
+      after.back().ghosts_.push_back(module.stored());
       after.back().stores_again_ = true;
     }
   });
@@ -481,7 +514,7 @@ bool Possible::may_be_lit(Time since, Time now) const {
 // --- replies ---
 
 std::vector<Possible> Possible::reply(const Bytes& bytes, Time begins) const {
-  if (!due_ || due_->bytes != bytes || begins < due_->begins.earliest ||
+  if (!due_ || due_->bytes != bytes || begins < due_->begins.earliest || begins < replied_ + gap() - kExact ||
       begins > std::max(due_->begins.latest, hangs_until_ + kReplies)) {
     return {};
   }
@@ -507,14 +540,14 @@ std::vector<Possible> Possible::reply(const Bytes& bytes, Time begins) const {
 
 void Possible::replied(Time end) {
   sending_ = false;
-  free_ = end;
+  free_ = replied_ = end;
 }
 
 bool Possible::is_like(const Possible& other) const {
   const auto state = [](const Possible& p) {
     return std::tie(p.start_, p.reset_at_, p.open_, p.bad_, p.last_, p.skipping_, p.overtaken_, p.sending_,
                     p.hung_, p.tick_stopped_, p.hangs_until_, p.saved_, p.unreadable_, p.stores_again_,
-                    p.ghosts_, p.memory_fails_until_);
+                    p.ghosts_, p.older_, p.loads_older_, p.memory_fails_until_);
   };
   return state(*this) == state(other) && due_.has_value() == other.due_.has_value() &&
          (!due_ || due_->bytes == other.due_->bytes) &&

@@ -69,6 +69,8 @@ class Possible {
   [[nodiscard]] const reference::Module& module() const { return module_; }
   reference::Module& module() { return module_; }
   [[nodiscard]] unsigned outputs() const { return start_ < Start::Driven ? 0 : module_.outputs(); }
+  /// Returns whether a request without line errors would store settings.
+  [[nodiscard]] bool would_store(const Bytes& request) const;
   /// The main loop does nothing.
   [[nodiscard]] bool hangs(Time now) const { return hung_ || now < hangs_until_; }
   /// Returns whether the LED may be dark.
@@ -88,9 +90,11 @@ class Possible {
  private:
   [[nodiscard]] Time half_bits(unsigned count) const;
   [[nodiscard]] Time stop_bits_left() const;
+  [[nodiscard]] Time gap() const;
   [[nodiscard]] bool is_whole() const;
   [[nodiscard]] std::vector<Possible> frame_ends(Moment judged) const;
   [[nodiscard]] Time frame_limit() const;
+  void save();
   void come_up(Time since, Time now, std::vector<Possible>& after) const;
   void execute(Time since, Time now, std::vector<Possible>& after) const;
   [[nodiscard]] bool first_stores() const;
@@ -119,12 +123,15 @@ class Possible {
   std::optional<Time> hung_;          ///< since when
   std::optional<Time> tick_stopped_;  ///< since when
   Time hangs_until_ = Time::min();    ///< by then, the main loop runs again
+  Time replied_ = Time::min();        ///< the end of its last reply
   Time free_{0};                      ///< by then the module has nothing else to do
   reference::Stored saved_;
-  bool unreadable_ = false;                ///< the module could not read its settings
-  bool stores_again_ = false;              ///< a reset might not load the settings in force (wire.md 8)
-  std::vector<reference::Stored> ghosts_;  ///< that an interrupted store may have left
-  std::optional<Moment> timeout_unsaved_;  ///< the timeout that is not stored yet
+  std::optional<reference::Stored> older_;  ///< in the other copy
+  bool loads_older_ = false;                ///< the module could not read the newest copy
+  bool unreadable_ = false;                 ///< the module could not read its settings
+  bool stores_again_ = false;               ///< a reset might not load the settings in force (wire.md 8)
+  std::vector<reference::Stored> ghosts_;   ///< that an interrupted store may have left
+  std::optional<Moment> timeout_unsaved_;   ///< the timeout that is not stored yet
   Time memory_fails_until_ = Time::min();
   Time flashes_since_{0};  ///< if the LED flashes
 };
