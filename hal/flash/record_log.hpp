@@ -53,8 +53,10 @@ inline constexpr std::array<std::uint8_t, 8> kNoMark{};
 ///
 /// With the longest times of the data sheet and a poll every millisecond, a save takes at most 8 ms if it
 /// does not wait and no attempt fails; typically, it takes 1 ms. A load reads at most 58 kB and checks at
-/// most 434 records. A load fails if the flash does not answer within kLongestLoad, and a save fails if it
-/// has not ended after kLongestSave.
+/// most 434 records. If a reset has interrupted an erase, the load suspends it and reads this sector too,
+/// because it cannot know which one it is. What it finds there does not matter: a sector that is erased holds
+/// neither a mark nor the record in force. A load fails if the flash does not answer within kLongestLoad, and
+/// a save fails if it has not ended after kLongestSave.
 ///
 /// The tests in tests/hal measure these times, cut the power at each operation, and count erases.
 template <class Flash, std::uint32_t kBegin>
