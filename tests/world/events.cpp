@@ -1,0 +1,270 @@
+// What a module does by itself, in windows of time: it starts, stores, executes frames, expires.
+#include "tests/world/possible.hpp"
+
+#include <algorithm>
+
+#include "tests/world/limits.hpp"
+
+namespace ex9000::world {
+
+namespace {
+
+using std::chrono::microseconds;
+using std::chrono::milliseconds;
+
+constexpr unsigned kChannels = 16;
+
+/// Calls `run` for each combination of choices that `module` has in it.
+template <class Run>
+void for_each_choice(const reference::Module& module, Run run) {
+  std::vector<unsigned> choices;
+  do {
+    reference::Module trial = module;
+    trial.choose(choices);
+    run(trial);
+    const std::vector<unsigned>& alternatives = trial.alternatives();
+    choices.resize(alternatives.size(), 0);
+    while (!choices.empty() && ++choices.back() >= alternatives[choices.size() - 1]) {
+      choices.pop_back();
+    }
+  } while (!choices.empty());
+}
+
+/// Returns whether the event of `channel` may be the first one of all channels.
+template <class Moments>
+bool may_be_next(unsigned channel, Moments moment_of) {
+  const std::optional<Moment> mine = moment_of(channel);
+  bool may = mine.has_value();
+  for (unsigned other = 0; may && other < kChannels; ++other) {
+    const std::optional<Moment> its = moment_of(other);
+    may = !its || !(its->latest < mine->earliest || (*its == *mine && other < channel));
+  }
+  return may;
+}
+}  // namespace
+
+bool Possible::futures(Time since, Time now, std::vector<Possible>& after) const {
+  bool stays = true;
+  const auto happens = [&](Time earliest, Time latest, auto event) {
+    if (earliest <= now && now >= hangs_until_) {
+      Possible next = *this;
+      event(next);
+      after.push_back(next);
+      stays = stays && (now <= latest || now <= hangs_until_ + kLate);
+    }
+  };
+  if (init_changes_) {
+    const Time taken = std::max(init_changes_->when, hangs_until_) + kInitTaken;
+    happens(init_changes_->when + kInitSettled, tick_stopped_ ? kNever : taken, [](Possible& next) {
+      next.module_.set_init(next.init_changes_->asserted);
+      next.init_changes_.reset();
+    });
+  }
+  if (!module_.powered()) {
+    return stays;
+  }
+  if (start_ != Start::Over) {
+    stays = stays && (hung_ || now <= std::max(reset_at_, hangs_until_) + reference::kComingUp);
+    if (start_ != Start::Driven) {
+      come_up(since, now, after);
+      return stays;
+    }
+  }
+  if (module_.runs_modbus() && !open_.empty()) {
+    const Time limit = frame_limit();
+    if (limit - kExact <= now) {
+      for (const Possible& next : frame_ends({limit - kExact, limit + kExact})) {
+        after.push_back(next);
+      }
+      stays = stays && now <= limit + kExact;
+    }
+  }
+  if (hung_) {
+    return stays && now <= *hung_ + kModuleWatchdog;
+  }
+  stays = stays && (!tick_stopped_ || now <= std::max(*tick_stopped_, hangs_until_) + kModuleWatchdog);
+  if (now < hangs_until_) {
+    return stays;
+  }
+  if (module_.expiry()) {
+    happens(module_.expiry()->earliest, module_.expiry()->latest + kLate, [&](Possible& next) {
+      next.module_.expire();
+      next.flashes_since_ = now;
+      next.timeout_unsaved_ = Moment{std::max(since, module_.expiry()->earliest), now};
+      if (first_stores() && waiting_[0].judged.earliest <= now) {
+        Possible overtaken = next;
+        overtaken.overtaken_ = module_.lasting_outputs();
+        after.push_back(overtaken);
+      }
+    });
+  }
+  if (timeout_unsaved_) {
+    const Time works = std::max({timeout_unsaved_->latest, memory_fails_until_, hangs_until_});
+    const Time retry = memory_fails_until_ > timeout_unsaved_->earliest ? Time(kRetry) : Time(0);
+    happens(timeout_unsaved_->earliest, works == kNever ? kNever : works + retry + 2 * kStores,
+            [](Possible& next) {
+              next.module_.timeout_stored();
+              next.save();
+            });
+  }
+  for (unsigned channel = 0; channel < kChannels; ++channel) {
+    if (may_be_next(channel, [this](unsigned each) { return module_.end_of_output(each); })) {
+      const Moment ends = *module_.end_of_output(channel);
+      happens(ends.earliest, ends.latest + kLate,
+              [=](Possible& next) { next.module_.end_timed_output(channel); });
+    }
+    if (may_be_next(channel, [this](unsigned each) { return module_.settling(each); })) {
+      const Moment settles = *module_.settling(channel);
+      happens(settles.earliest, settles.latest + kLate,
+              [=](Possible& next) { next.module_.settle_input(channel); });
+    }
+  }
+  if (due_) {
+    return stays && now <= std::max(due_->begins.latest, hangs_until_ + kReplies);
+  }
+  if (!waiting_.empty() && !sending_) {
+    execute(since, now, after);
+    stays = stays && now <= first_by(stores_again_ || first_stores());
+  }
+  return stays;
+}
+
+/// The inputs begin to count, and later the outputs are driven.
+void Possible::come_up(Time since, Time now, std::vector<Possible>& after) const {
+  Possible next = *this;
+  next.flashes_since_ = now;
+  if (start_ == Start::InputsCount) {
+    if (now < hangs_until_) {
+      return;
+    }
+    // A failed store leaves a memory that is no longer blank and has no good copy (wire.md D8).
+    const bool may_be_unreadable = memory_fails_until_ >= reset_at_ || module_.may_have_spoilt_blank_memory();
+    if ((unreadable_ && !may_be_unreadable) || (loads_older_ && memory_fails_until_ < reset_at_)) {
+      return;
+    }
+    if (unreadable_) {
+      next.module_.doubt_memory();
+    }
+    next.start_ = Start::Driven;
+    next.module_.started(now);
+    after.push_back(next);
+    return;
+  }
+  next.start_ = Start::InputsCount;
+  next.module_.reset({std::max(since, reset_at_), now}, module_.reset_reason());
+  after.push_back(next);
+  if (older_) {  // extensions.md: 0x0306 reads 1
+    Possible fallen_back = next;
+    fallen_back.loads_older_ = fallen_back.stores_again_ = true;
+    fallen_back.module_.store(*older_);
+    fallen_back.module_.doubt_memory();
+    fallen_back.module_.reset({std::max(since, reset_at_), now}, module_.reset_reason());
+    after.push_back(fallen_back);
+  }
+  next.unreadable_ = next.stores_again_ = true;
+  next.module_.use_factory_settings();
+  next.module_.reset({std::max(since, reset_at_), now}, module_.reset_reason());
+  after.push_back(next);
+}
+
+std::vector<Possible> Possible::listen(unsigned rate, LineFormat format, Time now) const {
+  std::vector<Possible> after;
+  for (const bool init : {false, true}) {
+    if (start_ == Start::Driven && (init_changes_ || init == module_.init_asserted())) {
+      Possible next = *this;
+      next.start_ = Start::Over;
+      next.free_ = now;
+      next.module_.select_mode(init);
+      if (next.module_.rate() == rate && next.module_.format() == format) {
+        after.push_back(next);
+      }
+    }
+  }
+  return after;
+}
+
+bool Possible::first_stores() const {
+  if (waiting_.empty() || due_ || sending_) {
+    return false;
+  }
+  reference::Module trial = module_;
+  return trial.on_frame(waiting_[0].bytes, waiting_[0].bad, {}, overtaken_).stores;
+}
+
+bool Possible::would_store(const Bytes& request) const {
+  const std::vector<bool> good(request.size());
+  reference::Module trial = module_;
+  return module_.powered() && start_ == Start::Over && (module_.runs_modbus() || request.back() == '\r') &&
+         reference::Module(module_).on_receipt(request, good, {}) && trial.on_frame(request, good, {}).stores;
+}
+
+/// When the reply to the first frame must have begun.
+Time Possible::first_by(bool stores) const {
+  const Time limit = stores ? Time(kStores) : Time(kReplies);
+  return std::max(
+             {waiting_[0].judged.latest, free_, hangs_until_, waiting_[0].last + module_.reply_delay()}) +
+         limit + (timeout_unsaved_ ? Time(kStores) : Time(0));
+}
+
+void Possible::execute(Time since, Time now, std::vector<Possible>& after) const {
+  const Waiting& first = waiting_[0];
+  if (first.judged.earliest > now) {
+    return;
+  }
+  const Moment when{std::max({first.judged.earliest, hangs_until_, std::min(since, now)}), now};
+  if (module_.expiry() && module_.expiry()->latest < when.earliest) {
+    return;  // the host watchdog expires before
+  }
+  const auto done = [&](const reference::Module& module, const reference::Answer& answer, bool stores,
+                        bool saves) {
+    const Bytes& reply = answer.reply;
+    Possible next = *this;
+    next.module_ = module;
+    next.overtaken_.reset();
+    next.waiting_.erase(next.waiting_.begin());
+    next.free_ = now;
+    if (saves) {
+      next.save();
+      next.unreadable_ = next.stores_again_ = false;
+      next.ghosts_.clear();
+    }
+    if (!reply.empty()) {
+      const Time earliest = module_.runs_modbus() ? first.judged.earliest : first.last + gap() - kExact;
+      next.due_ =
+          Due{reply,
+              answer.refusal,
+              {std::max(earliest, first.last + module_.reply_delay()) - microseconds(2), first_by(stores)}};
+    }
+    after.push_back(next);
+  };
+  for_each_choice(module_, [&](reference::Module& module) {
+    const reference::Answer answer = module.on_frame(first.bytes, first.bad, when, overtaken_);
+    done(module, answer, answer.stores, answer.stores);
+    const bool stores_again = (stores_again_ || timeout_unsaved_) && answer.sets && !answer.stores;
+    if (stores_again) {
+      reference::Module again = module;
+      again.store_again();
+      done(again, answer, true, true);
+    }
+    if ((answer.stores || stores_again) && memory_fails_until_ >= now) {
+      reference::Module refusing = module_;
+      const reference::Answer refused = refusing.on_frame_without_store(first.bytes, first.bad, when);
+      refusing.doubt_memory();
+      done(refusing, refused, true, false);
+      after.back().ghosts_.push_back(module.stored());
+      after.back().stores_again_ = true;
+    }
+  });
+}
+
+bool Possible::may_be_lit(Time since, Time now) const {
+  if (!module_.powered() || start_ != Start::Over || hangs(now) || tick_stopped_) {
+    return true;
+  }
+  // Two flashes every 2 s, or flashes at 2 Hz.
+  const Time longest = module_.led_flashes() ? Time(milliseconds(300)) : Time(milliseconds(2100));
+  return !(module_.led_flashes() || unreadable_) ||
+         now - std::max({since, flashes_since_, hangs_until_}) <= longest;
+}
+
+}  // namespace ex9000::world

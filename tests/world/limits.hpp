@@ -1,0 +1,24 @@
+// What wire.md permits in time.
+#pragma once
+
+#include "tests/oracles/reference/module.hpp"
+
+namespace ex9000::world {
+
+using reference::kLate;
+using reference::Time;
+
+inline constexpr Time kNever = Time::max();
+/// The limits of silences are exact to this (D11).
+inline constexpr std::chrono::microseconds kExact{15};
+inline constexpr std::chrono::milliseconds kReplies{20};
+inline constexpr std::chrono::milliseconds kStores{200};
+/// D15
+inline constexpr std::chrono::milliseconds kRetry{1000};
+inline constexpr std::chrono::milliseconds kModuleWatchdog{1600};
+inline constexpr unsigned kResetByWatchdog = 2;
+/// D13
+inline constexpr std::chrono::milliseconds kInitSettled{10};
+inline constexpr std::chrono::milliseconds kInitTaken{20};
+
+}  // namespace ex9000::world
