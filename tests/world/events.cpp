@@ -153,10 +153,10 @@ void Possible::come_up(Time since, Time now, std::vector<Possible>& after) const
   next.start_ = Start::InputsCount;
   next.module_.reset({std::max(since, reset_at_), now}, module_.reset_reason());
   after.push_back(next);
-  if (older_) {  // extensions.md: 0x0306 reads 1
+  for (const reference::Stored& older : older_) {  // extensions.md: 0x0306 reads 1
     Possible fallen_back = next;
     fallen_back.loads_older_ = fallen_back.stores_again_ = true;
-    fallen_back.module_.store(*older_);
+    fallen_back.module_.store(older);
     fallen_back.module_.doubt_memory();
     fallen_back.module_.reset({std::max(since, reset_at_), now}, module_.reset_reason());
     after.push_back(fallen_back);

@@ -27,6 +27,7 @@ enum What : unsigned {
   kOtherMode,
   kEarly,
   kOthers,
+  kWatchdog,
   kCount,
 };
 
@@ -104,7 +105,10 @@ Member Generator::member() {
 Bytes Generator::request(std::size_t index, const Possible& target) {
   const reference::Module& module = target.module();
   if (module.settling_input() && random_.once_in(4)) {
-    return requests_.set_filter(module, *module.settling_input(), random_);
+    return Requests::set_filter(module, *module.settling_input(), random_);
+  }
+  if (!module.expiry() && often(kWatchdog, 10)) {
+    return Requests::set_watchdog(module, random_);
   }
   Bytes bytes = requests_.next(module, random_, places_[index]);
   if (often(kDamaged, 12) && !bytes.empty()) {
@@ -203,7 +207,10 @@ void Generator::aim_at(Time expiry, std::size_t index, const Plant& plant) {
     plan_.push_back(any_fault(index, plant));
     return;
   }
-  const Send request = send(index, target);
+  Send request = send(index, target);
+  for (unsigned tries = random_.below(30); tries != 0 && !target.would_store(request.bytes); --tries) {
+    request = send(index, target);
+  }
   plan_.emplace_back(Wait{std::max(Time(0), left - time_of(request) - before + milliseconds(10))});
   if ((left_out_ >> kDelay & 1U) == 0 && random_.once_in(4)) {
     plan_.emplace_back(Hang{index, time_of(request) + microseconds(random_.below(60'000))});
@@ -255,8 +262,11 @@ void Generator::decide(const Plant& plant) {
       return;
     }
   }
-  if (module.expiry() && random_.once_in(3) && plant.now() < module.expiry()->earliest &&
-      module.expiry()->earliest < plant.now() + milliseconds(3000)) {
+  if (plant.likely(index).hangs(plant.now()) && !random_.once_in(4)) {
+    // The more frames wait, the more of them may be lost.
+    plan_.emplace_back(Wait{milliseconds(random_.below(100))});
+  } else if (module.expiry() && random_.once_in(3) && plant.now() < module.expiry()->earliest &&
+             module.expiry()->earliest < plant.now() + milliseconds(3000)) {
     aim_at(module.expiry()->earliest, index, plant);
   } else {
     ask(index, plant);

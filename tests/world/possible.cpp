@@ -1,12 +1,25 @@
 // What a module keeps, loses and loads, and which states are alike.
 #include "tests/world/possible.hpp"
 
+#include <algorithm>
 #include <tuple>
 
 #include "tests/oracles/reference/hexadecimal.hpp"
 #include "tests/world/limits.hpp"
 
 namespace ex9000::world {
+
+namespace {
+
+void add_missing(std::vector<reference::Stored>& to, const std::vector<reference::Stored>& from) {
+  for (const reference::Stored& each : from) {
+    if (std::find(to.begin(), to.end(), each) == to.end()) {
+      to.push_back(each);
+    }
+  }
+}
+
+}  // namespace
 
 void Possible::store(const reference::Stored& stored) {
   module_.store(stored);
@@ -15,21 +28,21 @@ void Possible::store(const reference::Stored& stored) {
 
 /// The settings in force are in the memory now.
 void Possible::save() {
-  older_ = saved_;
+  older_ = {saved_};
   saved_ = module_.stored();
   timeout_unsaved_.reset();
 }
 
 std::vector<reference::Stored> Possible::may_be_stored() const {
   std::vector<reference::Stored> all{saved_};
-  all.insert(all.end(), ghosts_.begin(), ghosts_.end());
+  add_missing(all, ghosts_);
   if (timeout_unsaved_) {
-    all.push_back(module_.stored());
+    add_missing(all, {module_.stored()});
   }
   if (first_stores()) {
     reference::Module trial = module_;
     trial.on_frame(waiting_[0].bytes, waiting_[0].bad, {}, overtaken_);
-    all.push_back(trial.stored());
+    add_missing(all, {trial.stored()});
   }
   return all;
 }
@@ -44,17 +57,12 @@ std::vector<Possible> Possible::power_off() const {
       next.module_.store(stored);
     }
     if (!(stored == saved_)) {
-      next.older_ = saved_;
+      add_missing(next.older_, {saved_});
     }
     next.saved_ = stored;
-    next.ghosts_.clear();
+    next.ghosts_ = all;
     if (all.size() > 1) {
       next.module_.doubt_memory();
-    }
-    for (const reference::Stored& other : all) {
-      if (!(other == stored) && next.ghosts_.size() < 2) {
-        next.ghosts_.push_back(other);
-      }
     }
     next.open_.clear();
     next.bad_.clear();
@@ -116,7 +124,7 @@ bool Possible::is_like(const Possible& other) const {
   const auto state = [](const Possible& p) {
     return std::tie(p.start_, p.reset_at_, p.open_, p.bad_, p.last_, p.skipping_, p.overtaken_, p.sending_,
                     p.hung_, p.tick_stopped_, p.hangs_until_, p.saved_, p.unreadable_, p.stores_again_,
-                    p.ghosts_, p.older_, p.loads_older_, p.memory_fails_until_);
+                    p.loads_older_, p.memory_fails_until_);
   };
   return state(*this) == state(other) && due_.has_value() == other.due_.has_value() &&
          (!due_ || due_->bytes == other.due_->bytes) &&
@@ -129,6 +137,8 @@ bool Possible::is_like(const Possible& other) const {
 }
 
 void Possible::widen(const Possible& other) {
+  add_missing(ghosts_, other.ghosts_);
+  add_missing(older_, other.older_);
   module_.widen(other.module_);
   if (due_) {
     due_->begins = hull(due_->begins, other.due_->begins);

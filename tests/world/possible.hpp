@@ -126,12 +126,12 @@ class Possible {
   Time replied_ = Time::min();        ///< the end of its last reply
   Time free_{0};                      ///< by then the module has nothing else to do
   reference::Stored saved_;
-  std::optional<reference::Stored> older_;  ///< in the other copy
-  bool loads_older_ = false;                ///< the module could not read the newest copy
-  bool unreadable_ = false;                 ///< the module could not read its settings
-  bool stores_again_ = false;               ///< a reset might not load the settings in force (wire.md 8)
-  std::vector<reference::Stored> ghosts_;   ///< that an interrupted store may have left
-  std::optional<Moment> timeout_unsaved_;   ///< the timeout that is not stored yet
+  std::vector<reference::Stored> older_;   ///< may be in the other copy
+  bool loads_older_ = false;               ///< the module could not read the newest copy
+  bool unreadable_ = false;                ///< the module could not read its settings
+  bool stores_again_ = false;              ///< a reset might not load the settings in force (wire.md 8)
+  std::vector<reference::Stored> ghosts_;  ///< that an interrupted store may have left
+  std::optional<Moment> timeout_unsaved_;  ///< the timeout that is not stored yet
   Time memory_fails_until_ = Time::min();
   Time flashes_since_{0};  ///< if the LED flashes
 };

@@ -53,6 +53,20 @@ void vary(Bytes& frame, bool modbus, const Module& module, Random& random) {
   }
 }
 
+/// A line with the module's address and, if it is on, the checksum.
+Bytes line_of(const Module& module, char delimiter, const std::string& body) {
+  const std::string command = delimiter + reference::hex(module.address(), 2) + body;
+  const std::string line = command + (module.checksum() ? reference::check_of(command) : "") + "\r";
+  return Bytes(line.begin(), line.end());
+}
+
+/// A write of one coil or register.
+Bytes write_of(const Module& module, unsigned function, unsigned row, unsigned value) {
+  const auto byte = [](unsigned number) { return static_cast<std::uint8_t>(number % 256); };
+  return with_crc(
+      {byte(module.address()), byte(function), byte(row / 256), byte(row), byte(value / 256), byte(value)});
+}
+
 }  // namespace
 
 Requests::Requests() {
@@ -87,17 +101,20 @@ void Requests::add(Forms& forms, const Sequence& requests, bool modbus) {
   }
 }
 
-Bytes Requests::set_filter(const Module& module, unsigned channel, Random& random) const {
+Bytes Requests::set_filter(const Module& module, unsigned channel, Random& random) {
   const unsigned time = random.one_of({0U, 1U, 20U, 100U, 500U, 2000U, 2001U});
+  const unsigned row = 0x0240 + channel;
+  return module.runs_modbus() ? write_of(module, 0x06, row, time)
+                              : line_of(module, '~', "X" + reference::hex(row, 4) + reference::hex(time, 4));
+}
+
+Bytes Requests::set_watchdog(const Module& module, Random& random) {
+  const unsigned timeout = 1 + random.below(random.once_in(2) ? 4 : 20);
   if (module.runs_modbus()) {
-    return with_crc({static_cast<std::uint8_t>(module.address()), 0x06, 0x02,
-                     static_cast<std::uint8_t>(0x40 + channel), static_cast<std::uint8_t>(time / 256),
-                     static_cast<std::uint8_t>(time % 256)});
+    return random.once_in(2) ? write_of(module, 0x05, 0x0104, 0xFF00)
+                             : write_of(module, 0x06, 0x01E8, timeout);
   }
-  const std::string command = "~" + reference::hex(module.address(), 2) + "X" +
-                              reference::hex(0x0240 + channel, 4) + reference::hex(time, 4);
-  const std::string line = command + (module.checksum() ? reference::check_of(command) : "") + "\r";
-  return Bytes(line.begin(), line.end());
+  return line_of(module, '~', "31" + reference::hex(timeout, 2));
 }
 
 Bytes Requests::next(const Module& module, Random& random, Place& place) const {

@@ -30,7 +30,9 @@ class Requests {
   /// damaged. `place`: from the request before; the result is often the next one of its transcript.
   Bytes next(const reference::Module& module, reference::Random& random, Place& place) const;
   /// A request that sets the filter time of an input.
-  Bytes set_filter(const reference::Module& module, unsigned channel, reference::Random& random) const;
+  static Bytes set_filter(const reference::Module& module, unsigned channel, reference::Random& random);
+  /// A request that enables the host watchdog or sets its timeout.
+  static Bytes set_watchdog(const reference::Module& module, reference::Random& random);
 
  private:
   using Forms = std::map<std::string, std::vector<Place>>;
