@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "firmware/expect.hpp"
+
 namespace ex9000::sim {
 
 struct Wires::End final : WireEnd {
@@ -57,6 +59,7 @@ WireEnd& Wires::attach(Station& station) {
 }
 
 void Wires::run_next(VirtualTime until) {
+  EX9000_EXPECT(next() != kNever);
   clock_.set(std::max(next(), clock_.virtual_now()));
   if (next_wire_event() <= clock_.virtual_now()) {
     run_wire();
@@ -84,6 +87,7 @@ void Wires::drive(End& end, bool on) {
   }
   end.driving = on;
   drivers_on_ += on ? 1U : -1U;
+  EX9000_EXPECT(drivers_on_ <= ends_.size());
   const VirtualTime now = clock_.virtual_now();
   if (!on) {
     stop_sending(end);
@@ -103,6 +107,7 @@ void Wires::drive(End& end, bool on) {
 }
 
 void Wires::send(End& end) {
+  EX9000_EXPECT(end.driving);
   end.next_start = end.since = clock_.virtual_now();
   end.begun = 0;
   sending_.push_back(&end);
