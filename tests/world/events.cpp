@@ -94,11 +94,14 @@ bool Possible::futures(Time since, Time now, std::vector<Possible>& after) const
       if (first_stores() && waiting_[0].judged.earliest <= now) {
         Possible overtaken = next;
         overtaken.overtaken_ = module_.lasting_outputs();
+        reference::Module trial = module_;
+        trial.on_frame(waiting_[0].bytes, waiting_[0].bad, {});
+        overtaken.overtaken_store_ = trial.stored();
         after.push_back(overtaken);
       }
     });
   }
-  if (timeout_unsaved_) {
+  if (timeout_unsaved_ && !overtaken_) {
     const Time works = std::max({timeout_unsaved_->latest, memory_fails_until_, hangs_until_});
     const Time retry = memory_fails_until_ > timeout_unsaved_->earliest ? Time(kRetry) : Time(0);
     happens(timeout_unsaved_->earliest, works == kNever ? kNever : works + retry + 2 * kStores,
@@ -236,6 +239,11 @@ void Possible::execute(Time since, Time now, std::vector<Possible>& after) const
               {std::max(earliest, first.last + module_.reply_delay()) - microseconds(2), first_by(stores)}};
     }
     after.push_back(next);
+    if (saves && overtaken_) {
+      next.saved_ = overtaken_store_;
+      next.timeout_unsaved_ = when;
+      after.push_back(next);
+    }
   };
   for_each_choice(module_, [&](reference::Module& module) {
     const reference::Answer answer = module.on_frame(first.bytes, first.bad, when, overtaken_);

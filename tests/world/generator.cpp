@@ -108,7 +108,7 @@ Bytes Generator::request(std::size_t index, const Possible& target) {
     return Requests::set_filter(module, *module.settling_input(), random_);
   }
   if (!module.expiry() && often(kWatchdog, 10)) {
-    return Requests::set_watchdog(module, random_);
+    return Requests::of_watchdog(module, random_);
   }
   Bytes bytes = requests_.next(module, random_, places_[index]);
   if (often(kDamaged, 12) && !bytes.empty()) {
@@ -209,13 +209,15 @@ void Generator::aim_at(Time expiry, std::size_t index, const Plant& plant) {
   }
   Send request = send(index, target);
   for (unsigned tries = random_.below(30); tries != 0 && !target.would_store(request.bytes); --tries) {
-    request = send(index, target);
+    request.bytes = random_.once_in(2) ? Requests::of_watchdog(target.module(), random_)
+                                       : requests_.next(target.module(), random_, places_[index]);
   }
   plan_.emplace_back(Wait{std::max(Time(0), left - time_of(request) - before + milliseconds(10))});
   if ((left_out_ >> kDelay & 1U) == 0 && random_.once_in(4)) {
     plan_.emplace_back(Hang{index, time_of(request) + microseconds(random_.below(60'000))});
   }
   plan_.emplace_back(request);
+  plan_.emplace_back(Wait{time_of(request) + microseconds(random_.below(60'000))});
 }
 
 /// Sends a request. If it stores settings, a fault often happens while it is stored.

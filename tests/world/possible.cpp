@@ -43,6 +43,9 @@ std::vector<reference::Stored> Possible::may_be_stored() const {
     reference::Module trial = module_;
     trial.on_frame(waiting_[0].bytes, waiting_[0].bad, {}, overtaken_);
     add_missing(all, {trial.stored()});
+    if (overtaken_) {
+      add_missing(all, {overtaken_store_});
+    }
   }
   return all;
 }
@@ -122,9 +125,9 @@ void Possible::memory_fails(bool fails, Time now) { memory_fails_until_ = fails 
 
 bool Possible::is_like(const Possible& other) const {
   const auto state = [](const Possible& p) {
-    return std::tie(p.start_, p.reset_at_, p.open_, p.bad_, p.last_, p.skipping_, p.overtaken_, p.sending_,
-                    p.hung_, p.tick_stopped_, p.hangs_until_, p.saved_, p.unreadable_, p.stores_again_,
-                    p.loads_older_, p.memory_fails_until_);
+    return std::tie(p.start_, p.reset_at_, p.open_, p.bad_, p.last_, p.skipping_, p.overtaken_,
+                    p.overtaken_store_, p.sending_, p.hung_, p.tick_stopped_, p.hangs_until_, p.saved_,
+                    p.unreadable_, p.stores_again_, p.loads_older_, p.memory_fails_until_);
   };
   return state(*this) == state(other) && due_.has_value() == other.due_.has_value() &&
          (!due_ || due_->bytes == other.due_->bytes) &&

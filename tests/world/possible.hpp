@@ -118,6 +118,7 @@ class Possible {
   std::vector<Waiting> waiting_;
   /// If the first one of `waiting_` was judged before the last timeout, the lasting outputs before that.
   std::optional<unsigned> overtaken_;
+  reference::Stored overtaken_store_;  ///< and what it stores if its store began before that
   std::optional<Due> due_;
   bool sending_ = false;
   std::optional<Time> hung_;          ///< since when

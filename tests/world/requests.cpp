@@ -60,7 +60,7 @@ Bytes line_of(const Module& module, char delimiter, const std::string& body) {
   return Bytes(line.begin(), line.end());
 }
 
-/// A write of one coil or register.
+/// A write of one coil or register, or a read.
 Bytes write_of(const Module& module, unsigned function, unsigned row, unsigned value) {
   const auto byte = [](unsigned number) { return static_cast<std::uint8_t>(number % 256); };
   return with_crc(
@@ -108,13 +108,20 @@ Bytes Requests::set_filter(const Module& module, unsigned channel, Random& rando
                               : line_of(module, '~', "X" + reference::hex(row, 4) + reference::hex(time, 4));
 }
 
-Bytes Requests::set_watchdog(const Module& module, Random& random) {
+Bytes Requests::of_watchdog(const Module& module, Random& random) {
   const unsigned timeout = 1 + random.below(random.once_in(2) ? 4 : 20);
+  const unsigned which = random.below(6);
   if (module.runs_modbus()) {
-    return random.once_in(2) ? write_of(module, 0x05, 0x0104, 0xFF00)
-                             : write_of(module, 0x06, 0x01E8, timeout);
+    return which < 2    ? write_of(module, 0x05, 0x0104, 0xFF00)
+           : which == 2 ? write_of(module, 0x06, 0x01E8, timeout)
+           : which == 3 ? write_of(module, 0x05, 0x0080 + random.below(module.row().outputs + 1), 0xFF00)
+           : which == 4 ? write_of(module, 0x03, 0x3038, 1)  // host OK
+                        : write_of(module, 0x05, 0x010D, 0xFF00);
   }
-  return line_of(module, '~', "31" + reference::hex(timeout, 2));
+  return which < 3    ? line_of(module, '~', "31" + reference::hex(timeout, 2))
+         : which == 3 ? line_of(module, '~', "5S")
+         : which == 4 ? line_of(module, '~', "0")
+                      : line_of(module, '~', "1");
 }
 
 Bytes Requests::next(const Module& module, Random& random, Place& place) const {

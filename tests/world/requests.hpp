@@ -31,8 +31,8 @@ class Requests {
   Bytes next(const reference::Module& module, reference::Random& random, Place& place) const;
   /// A request that sets the filter time of an input.
   static Bytes set_filter(const reference::Module& module, unsigned channel, reference::Random& random);
-  /// A request that enables the host watchdog or sets its timeout.
-  static Bytes set_watchdog(const reference::Module& module, reference::Random& random);
+  /// A request that concerns the host watchdog.
+  static Bytes of_watchdog(const reference::Module& module, reference::Random& random);
 
  private:
   using Forms = std::map<std::string, std::vector<Place>>;
