@@ -97,7 +97,11 @@ bool Possible::futures(Time since, Time now, std::vector<Possible>& after) const
         reference::Module trial = module_;
         trial.on_frame(waiting_[0].bytes, waiting_[0].bad, {});
         overtaken.overtaken_store_ = trial.stored();
-        after.push_back(overtaken);
+        if (first_judged_by() < std::max(since, module_.expiry()->earliest)) {
+          next = overtaken;
+        } else {
+          after.push_back(overtaken);
+        }
       }
     });
   }
@@ -201,6 +205,11 @@ bool Possible::would_store(const Bytes& request) const {
          reference::Module(module_).on_receipt(request, good, {}) && trial.on_frame(request, good, {}).stores;
 }
 
+/// wire.md 8: when the first frame has been judged.
+Time Possible::first_judged_by() const {
+  return std::max({waiting_[0].judged.latest, free_, hangs_until_}) + kLate;
+}
+
 /// When the reply to the first frame must have begun.
 Time Possible::first_by(bool stores) const {
   const Time limit = stores ? Time(kStores) : Time(kReplies);
@@ -247,7 +256,9 @@ void Possible::execute(Time since, Time now, std::vector<Possible>& after) const
   };
   for_each_choice(module_, [&](reference::Module& module) {
     const reference::Answer answer = module.on_frame(first.bytes, first.bad, when, overtaken_);
-    done(module, answer, answer.stores, answer.stores);
+    if (answer.stores || when.earliest <= first_judged_by()) {
+      done(module, answer, answer.stores, answer.stores);
+    }
     const bool stores_again = (stores_again_ || timeout_unsaved_) && answer.sets && !answer.stores;
     if (stores_again) {
       reference::Module again = module;

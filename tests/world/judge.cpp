@@ -1,6 +1,8 @@
 #include "tests/world/judge.hpp"
 
 #include <algorithm>
+#include <numeric>
+#include <optional>
 #include <set>
 
 #include "tests/oracles/reference/hexadecimal.hpp"
@@ -20,15 +22,16 @@ std::string hex_of(const Bytes& bytes) {
   return text;
 }
 
-/// Adds a state, unless one like it is there.
-void add(std::vector<Possible>& all, Possible&& one) {
+/// Adds a state, unless one like it is there. Returns its position if that changes anything.
+std::optional<std::size_t> add(std::vector<Possible>& all, Possible&& one) {
   const auto like =
       std::find_if(all.begin(), all.end(), [&](const Possible& each) { return each.is_like(one); });
-  if (like == all.end()) {
-    all.push_back(std::move(one));
-  } else {
-    like->widen(one);
+  const auto at = static_cast<std::size_t>(like - all.begin());
+  if (like != all.end()) {
+    return like->widen(one) ? std::optional(at) : std::nullopt;
   }
+  all.push_back(std::move(one));
+  return at;
 }
 
 }  // namespace
@@ -51,15 +54,26 @@ void Judge::pass(Time now) {
     return;
   }
   std::vector<Possible> seen = all_;
-  std::vector<Possible> found;
-  for (std::size_t next = 0; next < seen.size() && seen.size() <= 4 * kMost; ++next) {
+  std::vector<bool> stay(seen.size());
+  std::vector<std::size_t> open(seen.size());
+  std::iota(open.begin(), open.end(), std::size_t{0});
+  while (!open.empty() && seen.size() <= 4 * kMost) {
+    const std::size_t at = open.back();
+    open.pop_back();
     after.clear();
-    const Possible present = seen[next];
-    if (stays(present)) {
-      add(found, Possible(present));
-    }
+    const Possible present = seen[at];
+    stay[at] = stays(present);
     for (Possible& each : after) {
-      add(seen, std::move(each));
+      if (const auto changed = add(seen, std::move(each))) {
+        open.push_back(*changed);
+      }
+    }
+    stay.resize(seen.size());
+  }
+  std::vector<Possible> found;
+  for (std::size_t at = 0; at < seen.size(); ++at) {
+    if (stay[at]) {
+      found.push_back(seen[at]);
     }
   }
   if (seen.size() > 4 * kMost) {

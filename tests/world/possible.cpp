@@ -139,22 +139,31 @@ bool Possible::is_like(const Possible& other) const {
          module_.is_like(other.module_);
 }
 
-void Possible::widen(const Possible& other) {
+bool Possible::widen(const Possible& other) {
+  bool changed = module_.widen(other.module_);
+  const auto cover = [&](Moment& mine, const Moment& its) {
+    changed = reference::widen(mine, its) || changed;
+  };
+  const auto take_later = [&](Time& mine, Time its) {
+    changed = changed || mine < its;
+    mine = std::max(mine, its);
+  };
   add_missing(ghosts_, other.ghosts_);
   add_missing(older_, other.older_);
-  module_.widen(other.module_);
   if (due_) {
-    due_->begins = hull(due_->begins, other.due_->begins);
+    cover(due_->begins, other.due_->begins);
   }
   if (timeout_unsaved_) {
-    timeout_unsaved_ = hull(*timeout_unsaved_, *other.timeout_unsaved_);
+    cover(*timeout_unsaved_, *other.timeout_unsaved_);
   }
   for (std::size_t i = 0; i < waiting_.size(); ++i) {
-    waiting_[i].judged = hull(waiting_[i].judged, other.waiting_[i].judged);
+    cover(waiting_[i].judged, other.waiting_[i].judged);
+    changed = changed || other.waiting_[i].last < waiting_[i].last;
     waiting_[i].last = std::min(waiting_[i].last, other.waiting_[i].last);
   }
-  free_ = std::max(free_, other.free_);
-  flashes_since_ = std::max(flashes_since_, other.flashes_since_);
+  take_later(free_, other.free_);
+  take_later(flashes_since_, other.flashes_since_);
+  return changed;
 }
 
 std::string Possible::text() const {

@@ -84,8 +84,8 @@ class Possible {
 
   /// Returns whether the states differ at most in times that are not exactly known.
   [[nodiscard]] bool is_like(const Possible& other) const;
-  /// Makes the times cover those of a state that is like this one.
-  void widen(const Possible& other);
+  /// Makes the times cover those of a state that is like this one. Returns whether that changes any.
+  bool widen(const Possible& other);
 
  private:
   [[nodiscard]] Time half_bits(unsigned count) const;
@@ -98,6 +98,7 @@ class Possible {
   void come_up(Time since, Time now, std::vector<Possible>& after) const;
   void execute(Time since, Time now, std::vector<Possible>& after) const;
   [[nodiscard]] bool first_stores() const;
+  [[nodiscard]] Time first_judged_by() const;
   [[nodiscard]] Time first_by(bool stores) const;
   [[nodiscard]] std::vector<reference::Stored> may_be_stored() const;
 

@@ -300,18 +300,17 @@ bool Module::is_like(const Module& other) const {
          state(*this) == state(other);
 }
 
-void Module::widen(const Module& other) {
-  const auto widen = [](std::optional<Moment>& mine, const std::optional<Moment>& its) {
-    if (mine) {
-      mine = hull(*mine, *its);
-    }
+bool Module::widen(const Module& other) {
+  bool changed = reference::widen(came_up_, other.came_up_);
+  const auto cover = [&](std::optional<Moment>& mine, const std::optional<Moment>& its) {
+    changed = (mine && reference::widen(*mine, *its)) || changed;
   };
-  widen(expiry_, other.expiry_);
+  cover(expiry_, other.expiry_);
   for (unsigned channel = 0; channel < timers_.size(); ++channel) {
-    widen(timers_[channel], other.timers_[channel]);
-    widen(settling_[channel], other.settling_[channel]);
+    cover(timers_[channel], other.timers_[channel]);
+    cover(settling_[channel], other.settling_[channel]);
   }
-  came_up_ = hull(came_up_, other.came_up_);
+  return changed;
 }
 
 }  // namespace ex9000::reference

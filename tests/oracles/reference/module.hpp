@@ -38,6 +38,12 @@ inline bool operator==(const Moment& a, const Moment& b) {
 inline Moment hull(const Moment& a, const Moment& b) {
   return {std::min(a.earliest, b.earliest), std::max(a.latest, b.latest)};
 }
+/// Makes `mine` cover `its`. Returns whether that changes it.
+inline bool widen(Moment& mine, const Moment& its) {
+  const Moment before = mine;
+  mine = hull(mine, its);
+  return !(mine == before);
+}
 inline Moment operator+(const Moment& moment, Time time) {
   return {moment.earliest + time, moment.latest + time};
 }
@@ -155,8 +161,8 @@ class Module {
 
   /// Returns whether the modules differ at most in their moments.
   [[nodiscard]] bool is_like(const Module& other) const;
-  /// Makes the moments cover those of a module that is like this one.
-  void widen(const Module& other);
+  /// Makes the moments cover those of a module that is like this one. Returns whether that changes any.
+  bool widen(const Module& other);
 
   // --- visible state ---
 
