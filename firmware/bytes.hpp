@@ -1,4 +1,4 @@
-// Views of bytes. A view does not own its bytes.
+// Views of bytes, which they do not own.
 #pragma once
 
 #include <cstddef>
@@ -6,13 +6,13 @@
 
 namespace ex9000 {
 
-/// Read-only view of `size` bytes. The owner of the bytes defines how long the view is valid.
+/// Read-only; the owner of the bytes says how long a view is valid.
 struct Bytes {
   const std::uint8_t* data = nullptr;
   std::size_t size = 0;
 
   [[gnu::always_inline]] constexpr std::uint8_t operator[](std::size_t index) const { return data[index]; }
-  /// Returns the bytes from `offset` to the end; empty if `offset` is at or after the end.
+  /// Empty if `offset` is at or after the end.
   [[nodiscard, gnu::always_inline]] constexpr Bytes from(std::size_t offset) const {
     return offset < size ? Bytes{data + offset, size - offset} : Bytes{};
   }
@@ -22,12 +22,11 @@ struct Bytes {
   [[nodiscard]] constexpr const std::uint8_t* begin() const { return data; }
   [[nodiscard]] constexpr const std::uint8_t* end() const { return data + size; }
 
-  /// Returns the 16 bits at `offset`, high byte first (the Modbus byte order). Does not check the range.
+  /// High byte first, as in Modbus. The range is not checked.
   [[nodiscard, gnu::always_inline]] constexpr std::uint16_t word(std::size_t offset) const {
     return static_cast<std::uint16_t>((data[offset] << 8U) | data[offset + 1]);
   }
-  /// Return the 16 or 32 bits at `offset`, low byte first (the byte order of stored settings). These
-  /// functions do not check the range.
+  /// Low byte first, as in stored settings. The range is not checked.
   [[nodiscard]] constexpr std::uint16_t low_byte_first_16(std::size_t offset) const {
     return static_cast<std::uint16_t>(data[offset] | (data[offset + 1] << 8U));
   }
@@ -36,7 +35,6 @@ struct Bytes {
   }
 };
 
-/// Writable view of `size` bytes.
 struct MutableBytes {
   std::uint8_t* data = nullptr;
   std::size_t size = 0;

@@ -1,4 +1,4 @@
-// Values that interrupts and the main loop share. The type of a value defines which side may write it.
+// Values that interrupts and the main loop share. The type says which side may write.
 #pragma once
 
 #include <atomic>
@@ -9,10 +9,9 @@ namespace ex9000 {
 
 namespace detail {
 
-/// An aligned value of at most a machine word, so that a load or a store is one instruction and needs no
-/// lock. It is volatile, so that the compiler keeps each access. The fences prevent the compiler from moving
-/// a later access before a load, or an earlier access after a store. Fences for the processor are not
-/// necessary, because the interrupts and the main loop run on the same core.
+/// An aligned value of at most a machine word: a load or a store is one instruction and needs no lock.
+/// Volatile keeps each access. The fences keep the compiler from moving a later access before a load, or an
+/// earlier one after a store. The processor needs no fence: both sides run on the same core.
 template <class T>
 class Crossing {
   // NOLINTNEXTLINE(bugprone-sizeof-expression): if T is a pointer, the size of the pointer is meant
@@ -38,24 +37,22 @@ class Crossing {
 
 }  // namespace detail
 
-/// Only interrupts write this value, and they must not interrupt each other while they write it. Interrupts
-/// and the main loop may read it.
+/// Only interrupts write, and must not interrupt each other meanwhile. Both sides may read.
 template <class T>
 class WrittenByInterrupt : public detail::Crossing<T> {
  public:
   [[gnu::always_inline]] void store_in_interrupt(T value) { this->store(value); }
 };
 
-/// Only the main loop writes this value. Interrupts and the main loop may read it.
+/// Only the main loop writes. Both sides may read.
 template <class T>
 class WrittenByMainLoop : public detail::Crossing<T> {
  public:
   [[gnu::always_inline]] void store_in_main_loop(T value) { this->store(value); }
 };
 
-/// A value that is too large for one instruction, so only one side at a time owns it. The main loop owns it
-/// first and hands it over by storing to a WrittenByMainLoop. The interrupts return it by storing to a
-/// WrittenByInterrupt. A side may access the value only while it owns the value.
+/// Too large for one instruction, so only its owner may access it: first the main loop, which hands it over
+/// by storing to a WrittenByMainLoop. The interrupts return it by storing to a WrittenByInterrupt.
 template <class T>
 class HandedToInterrupt {
  public:

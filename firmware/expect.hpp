@@ -8,7 +8,7 @@
 
 namespace ex9000 {
 
-/// A place with EX9000_EXPECT. All places of a program are in a list, also those that are never reached.
+/// A place with EX9000_EXPECT. The list has all places of a program, also those never reached.
 class Expectation {
  public:
   explicit Expectation(const char* where) : where_(where), next_(all) { all = this; }
@@ -44,8 +44,7 @@ struct ExpectationAt {
 
 #define EX9000_TEXT_OF(line) #line
 #define EX9000_PLACE(file, line, condition) file ":" EX9000_TEXT_OF(line) ": " condition
-/// If the condition does not hold, a test build aborts. In an image and in a release this is nothing, and the
-/// condition is not evaluated. Not for constexpr functions.
+/// A test build aborts if this does not hold; images and releases do not evaluate it. Not for constexpr code.
 #define EX9000_EXPECT(condition)                                                         \
   do {                                                                                   \
     struct Where {                                                                       \

@@ -1,11 +1,10 @@
-// Hex digits of the DCON protocol: 0 to 9 and A to F. The letters must be upper case.
+// Hex digits of DCON: 0 to 9 and A to F, upper case only. The value of any other character is -1.
 #pragma once
 
 #include <cstdint>
 
 namespace ex9000 {
 
-/// Returns 0 to 15, or -1 if `character` is not an upper-case hex digit.
 constexpr int hex_value(std::uint8_t character) {
   if (character >= '0' && character <= '9') {
     return character - '0';
@@ -16,20 +15,17 @@ constexpr int hex_value(std::uint8_t character) {
   return -1;
 }
 
-/// Returns the value of two hex digits, 0 to 255, or -1 if one of them is not an upper-case hex digit.
 constexpr int hex_byte(std::uint8_t high, std::uint8_t low) {
   const int upper = hex_value(high);
   const int lower = hex_value(low);
   return upper < 0 || lower < 0 ? -1 : upper * 16 + lower;
 }
 
-/// Returns the hex digit of the low four bits of `value`.
 constexpr std::uint8_t hex_digit(unsigned value) {
   return static_cast<std::uint8_t>("0123456789ABCDEF"[value & 0xFU]);
 }
 
-/// Returns the two hex digits of `value`. The high digit, which is the first character in a text, is in the
-/// low byte.
+/// The high digit, the first one in a text, is in the low byte.
 constexpr std::uint16_t hex_digits(std::uint8_t value) {
   return static_cast<std::uint16_t>(hex_digit(value >> 4U) | hex_digit(value) << 8U);
 }

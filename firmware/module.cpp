@@ -10,7 +10,7 @@ namespace {
 
 constexpr Duration kInitTimeout = milliseconds(50);  // wire.md D13
 constexpr std::uint8_t kInitModeAddress = 0x00;
-/// What a reply may take beyond the time of its bytes, for gaps that late interrupts cause.
+/// What a reply may take beyond its bytes, for gaps that late interrupts cause.
 constexpr Duration kReplyMargin = milliseconds(100);
 constexpr Duration kClockResolution(1);  // an event may be this much later than its recorded time
 
@@ -66,7 +66,7 @@ void Module::start_up(Time now) {
     start_ = Start::AwaitingInit;
     collect_edges(now);  // a filter may already be waiting for the end of its time
   }
-  // The module starts even if the INIT* switch never settles.
+  // Start even if the INIT* switch never settles.
   if (init_switch_.known() || init_timeout_.reached(now)) {
     init_timeout_.disarm();
   }
@@ -85,8 +85,7 @@ void Module::use_settings(Time now) {
   host_watchdog_.restart(now);
 }
 
-/// Puts settings in force, at the reset and when a command has stored them, except those that wait for the
-/// next reset or need an Effect.
+/// At reset and after a command's store; not those that wait for the next reset or need an Effect.
 void Module::apply(const Settings& settings, Time now) {
   EX9000_EXPECT(settings.possible_for(state_.model()));
   if (state_.model().has_inputs()) {
@@ -99,8 +98,8 @@ void Module::apply(const Settings& settings, Time now) {
   }
 }
 
-/// Edges until now count with the previous inversion and filters. If a changed level does not count yet, it
-/// counts when the new filter time has passed since the last edge of its channel.
+/// Edges until now count with the previous inversion and filters. A changed level that does not count yet
+/// does so when the new filter time has passed since its channel's last edge.
 void Module::apply_to_inputs(const Settings& settings, Time now) {
   edges_.time_edges(true);  // a new filter uses the time of each edge that the next line does not collect
   collect_edges(now);
@@ -136,7 +135,7 @@ void Module::listen(const LineTiming& timing) {
 // --- events from interrupts ---
 
 void Module::collect_edges(Time now) {
-  // During loading, the inputs do not have the counting edge, inversion and filters of the settings.
+  // Before loading ends, the inputs lack the counting edge, inversion and filters.
   if (state_.model().has_inputs() && start_ != Start::Loading) {
     state_.inputs.collect(edges_, state_.model().inputs, now);
   }
@@ -148,8 +147,7 @@ void Module::count_host_oks() {
   }
   const HostOks::Times times = receiver_.host_oks().take_in_main_loop();
   for (const Time received : {times.first, times.last}) {
-    // A host OK counts from its recorded time, not from now. If the watchdog expired at or before the
-    // recorded time, the host OK is too late.
+    // It counts from its recorded time. If the watchdog had expired by then, the host OK is too late.
     expire_host_watchdog(received);
     host_watchdog_.restart(received);
   }
@@ -169,7 +167,7 @@ void Module::expire_host_watchdog(Time now) {
   if (!settings.watchdog_enabled || !host_watchdog_.expired(settings, now)) {
     return;
   }
-  // The outputs must not wait for the memory. The keeper stores the new settings as soon as it can.
+  // The outputs must not wait for the memory: the keeper stores when it can.
   settings.timeout_status = true;
   settings.watchdog_enabled = false;
   state_.outputs = settings.safe_value;
@@ -181,8 +179,6 @@ void Module::expire_host_watchdog(Time now) {
 
 // --- requests ---
 
-/// Judges the waiting frame if it is due. Then calls `continue_store` if the request changes settings,
-/// otherwise `commit`.
 void Module::dispatch(Time now) {
   if (!receiver_.queue().has_frame() || !request_due().reached(now)) {
     return;
@@ -201,9 +197,8 @@ void Module::dispatch(Time now) {
   }
 }
 
-/// When the waiting frame may be judged; disarmed while another one is being processed. Call this only if a
-/// frame is waiting. A Modbus frame is complete only after its silence (exception: wire.md D9). A DCON frame
-/// is complete when its turn-around time begins.
+/// Only if a frame is waiting; disarmed while another is being processed. A Modbus frame is complete after
+/// its silence (but: wire.md D9), a DCON frame when its turn-around time begins.
 Deadline Module::request_due() const {
   if (!cycle_.free()) {
     return {};
@@ -216,7 +211,7 @@ Duration Module::turn_around() const {
   return state_.speaks_modbus() ? receiver_.timing().rtu_silence : receiver_.timing().dcon_turn_around;
 }
 
-/// Continues the store of a command. Call this only while `cycle_.stores()`.
+/// Only while `cycle_.stores()`.
 void Module::continue_store(Time now) {
   if (keeper_.busy()) {
     return;
@@ -247,8 +242,7 @@ Bytes Module::take_reply(Time now) {
   return reply;
 }
 
-/// Carries out a request that has been judged. If the request changes settings, these settings must be stored
-/// already.
+/// Carries out a judged request. Settings that it changes must be stored already.
 void Module::commit(Time now) {
   if (cycle_.outcome().changes_settings()) {
     apply(cycle_.outcome().change().applied_to(state_.settings), now);
@@ -276,7 +270,6 @@ void Module::drive_outputs(Time now) {
   }
 }
 
-/// Switches off the outputs whose timers have expired.
 void Module::end_timed_outputs(Time now) {
   state_.outputs = static_cast<std::uint16_t>(state_.outputs & ~state_.output_timers.expire(now));
 }
@@ -322,8 +315,7 @@ void Module::commit_effects(Time now) {
 
 void Module::finish_request() {
   const Refusal refusal = cycle_.outcome().refusal;
-  // In ASCII, only replies that begin with `?` count as exceptions. The reply for blocked outputs begins with
-  // `!`.
+  // In ASCII, only `?` counts as an exception; the reply for blocked outputs begins with `!`.
   const bool refused =
       refusal != Refusal::None && (state_.speaks_modbus() || refusal != Refusal::OutputsBlocked);
   Diagnostics& diagnostics = state_.diagnostics;

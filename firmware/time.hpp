@@ -5,7 +5,6 @@
 
 namespace ex9000 {
 
-/// A duration in microseconds, 0 to 2^32-1 (71.6 minutes).
 class Duration {
  public:
   constexpr Duration() = default;
@@ -29,15 +28,14 @@ class Duration {
 
 constexpr Duration milliseconds(std::uint32_t value) { return Duration(value * 1000U); }
 
-/// A point in time. Times wrap, so they have no order, and this class has no operator `<`. The result of
-/// `since` is correct if `earlier` is not the later point, and if the two points are less than 71.6 minutes
-/// apart.
+/// Times wrap, so they have no order and no `<`. `since` needs `earlier` not to be the later point, and less
+/// than 71.6 minutes between the two.
 class Time {
  public:
   constexpr Time() = default;
   constexpr explicit Time(std::uint32_t microseconds) : microseconds_(microseconds) {}
 
-  /// Returns the raw count, for code that can pass only one 32-bit word.
+  /// For code that can pass only one 32-bit word.
   [[nodiscard]] constexpr std::uint32_t microseconds() const { return microseconds_; }
   [[nodiscard]] constexpr Duration since(Time earlier) const {
     return Duration(microseconds_ - earlier.microseconds_);
@@ -53,9 +51,8 @@ class Time {
   std::uint32_t microseconds_ = 0;
 };
 
-/// A point in time that may be in the future; never, while it is disarmed. Its functions are correct within
-/// 35 minutes before and after that point, so the code that has acted on a deadline must disarm it or set it
-/// again.
+/// A point in time; never, while disarmed. Correct within 35 minutes before and after it, so whoever has
+/// acted on a deadline must disarm it or set it again.
 class Deadline {
  public:
   constexpr Deadline() = default;
@@ -66,7 +63,7 @@ class Deadline {
     armed_ = true;
   }
   constexpr void disarm() { armed_ = false; }
-  /// Adds `by` to the time of an armed deadline.
+  /// Only while armed.
   constexpr void postpone(Duration by) { when_ = when_ + by; }
   /// Becomes `other` if that is earlier.
   [[gnu::always_inline]] constexpr void advance_to(const Deadline& other) {
@@ -85,7 +82,7 @@ class Deadline {
   [[nodiscard, gnu::always_inline]] constexpr bool reached(Time now) const {
     return armed_ && now.since(when_).microseconds() < kHalfRange;
   }
-  /// Returns the time until the deadline; 0 if it is reached. Call this only while the deadline is armed.
+  /// 0 if reached. Only while armed.
   [[nodiscard]] constexpr Duration remaining(Time now) const {
     return reached(now) ? Duration() : when_.since(now);
   }

@@ -54,7 +54,7 @@ void Inputs::collect(InputEdges& edges, unsigned channels, Time now) {
   }
 }
 
-/// Counts and latches `edges` alternating edges of `channel`, and updates its level.
+/// Counts and latches `edges` alternating edges, and updates the level.
 void Inputs::count(unsigned channel, std::uint32_t edges) {
   if (edges == 0) {
     return;
@@ -74,8 +74,7 @@ void Inputs::count(unsigned channel, std::uint32_t edges) {
   long_counters_[channel] += counted;
 }
 
-/// Returns the time at which the changed level of `channel` counts. Call this only while the channel is
-/// settling.
+/// When the changed level counts. Only while the channel is settling.
 Deadline Inputs::settles_at(const InputEdges& edges, unsigned channel) const {
   constexpr Duration kRoundUp(1);  // the edge may have happened up to 1 us later than its recorded time
   return Deadline(edges.last_edge(channel) + milliseconds(filters_.of(channel)) + kRoundUp);

@@ -7,9 +7,8 @@ namespace ex9000 {
 namespace {
 
 constexpr Duration kUnit = milliseconds(100);
-/// `start` gets the time at which the main loop's pass began. The same pass switches the output on, at most
-/// 300 us after that time. A timer therefore runs 300 us longer, so that the output is never on for less than
-/// the requested time.
+/// `start` gets the time at which the pass began; the same pass switches the output on, at most 300 us later.
+/// So a timer runs 300 us longer: the output is never on for less than the requested time.
 constexpr Duration kLateStart(300);
 
 }  // namespace

@@ -9,25 +9,20 @@
 
 namespace ex9000 {
 
-/// One timer for each output. A timer counts units of 0.1 s, because its time, up to 6553.5 s, may be longer
-/// than a Deadline permits (time.hpp). For the main loop only.
+/// One timer per output. It counts units of 0.1 s, because its time, up to 6553.5 s, may be longer than a
+/// Deadline permits (time.hpp). In masks, bit n is channel n. For the main loop only.
 class OutputTimers {
  public:
-  /// Starts the timer of `channel` with a time of `units` x 0.1 s. `units`: 1 to 65535. A running timer
-  /// starts again.
+  /// `units`: 1 to 65535. Restarts a running timer.
   void start(unsigned channel, std::uint16_t units, Time now);
-  /// Stops the timers of `channels`, bit n for channel n.
   void stop(std::uint16_t channels) { running_ = static_cast<std::uint16_t>(running_ & ~channels); }
-  /// Stops the timers that have expired and returns their channels, bit n for channel n. While a timer runs,
-  /// call this in every pass of the main loop; two calls must be at most 30 minutes apart.
+  /// Stops expired timers; returns their mask. While a timer runs: in every pass, at most 30 minutes apart.
   std::uint16_t expire(Time now);
 
-  /// Returns the channels whose timer is running; bit n is channel n.
   [[nodiscard]] std::uint16_t running() const { return running_; }
-  /// Returns how many units of 0.1 s were left at the last `start` or `expire`, including the current unit; 0
-  /// if the timer of `channel` does not run.
+  /// Units left at the last `start` or `expire`, with the current one; 0 if the timer does not run.
   [[nodiscard]] std::uint16_t left(unsigned channel) const;
-  /// When `expire` must be called; disarmed if no timer runs.
+  /// When to call `expire`; disarmed if no timer runs.
   [[nodiscard]] Deadline next_end() const;
 
  private:

@@ -1,5 +1,4 @@
-// Commands that read the present state of all channels, and commands that take and read the synchronised
-// sample: manuals 2.2, 2.5, 2.7, 2.10 (EX9052D 2.13).
+// All channels at once, and the synchronised sample: manuals 2.2, 2.5, 2.7, 2.10 (EX9052D 2.13).
 #include "firmware/dcon/commands.hpp"
 #include "firmware/dcon/writing.hpp"
 

@@ -9,11 +9,9 @@
 
 namespace ex9000::dcon {
 
-/// Judges a command. Returns the reason of a refusal, or None if the command is not refused. If the command
-/// is not refused, the handler records in the outcome what the module must do, and writes the reply without
-/// checksum and CR. The handlers of `#**` and `~**` write no reply. The arguments are the characters after
-/// the address, or after the key if the command has one (Dispatch::key). The caller has checked that their
-/// number is at least `fewest_args` and at most `most_args`.
+/// Returns the refusal or None. If None, the handler has recorded in the outcome what the module must do, and
+/// written the reply without checksum and CR; `#**` and `~**` get none. The arguments follow the address, or
+/// the key (Dispatch::key). The caller has checked their number: `fewest_args` to `most_args`.
 using Handler = Refusal (*)(Exchange& exchange);
 
 // configuration_commands.cpp
@@ -55,18 +53,16 @@ Refusal set_response_delay(Exchange& exchange);
 constexpr char kNoKey = 0;
 constexpr char kBroadcastKey = '*';
 
-/// The mark (I) of a command in wire.md section 4: when it needs the configuration permission.
+/// The mark (I) in wire.md section 4: when the command needs the configuration permission.
 enum class Init : std::uint8_t {
   NotRequired,
   ToChangeLine,  ///< to change the baud code or the checksum
   Required,
 };
 
-/// The part of a row of kCommands that a firmware image contains.
 struct Dispatch {
   char delimiter = 0;
-  /// The character that follows the address and selects the command. kNoKey: the command has no such
-  /// character. kBroadcastKey: the command has no such character, and its address is `**`.
+  /// The character after the address. kNoKey: none. kBroadcastKey: none, and the address is `**`.
   char key = kNoKey;
   std::uint8_t fewest_args = 0;
   std::uint8_t most_args = 0;
@@ -77,7 +73,7 @@ struct Dispatch {
 
 enum class Access : std::uint8_t { Read, Write, Store };
 
-/// A row with its documentation. The firmware never uses the texts, so an image does not contain them.
+/// The texts are documentation; an image does not contain them.
 struct Command {
   std::string_view id;      ///< never changes, because exports and tests refer to it
   std::string_view syntax;  ///< in the notation of the manuals

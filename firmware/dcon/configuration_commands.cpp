@@ -1,5 +1,4 @@
-// Commands for configuration, reset status, name, protocol and version: manuals 2.1, 2.4, 2.6, 2.8, 2.9, 2.12
-// to 2.14 (EX9052D 2.14 to 2.16).
+// Configuration, version, name and protocol: manuals 2.1, 2.4, 2.6, 2.8, 2.9, 2.12-2.14 (EX9052D 2.14-2.16).
 #include "firmware/dcon/commands.hpp"
 #include "firmware/dcon/writing.hpp"
 #include "firmware/hex.hpp"
@@ -34,7 +33,7 @@ Refusal set_configuration(Exchange& exchange) {
 }
 
 Refusal read_configuration(Exchange& exchange) {
-  // The reply contains the stored address even in INIT mode, so that a user can find a lost address.
+  // The stored address even in INIT mode, so that a user can find a lost one.
   exchange.reply.put('!');
   exchange.reply.put_hex(exchange.state.settings.address);
   exchange.reply.put_hex(kDioType);

@@ -12,13 +12,10 @@ namespace {
 
 constexpr std::size_t kBodyAt = 3;
 
-/// The rows of kCommands that at least one built model has, without the texts, which an image does not
-/// contain.
 constexpr auto kDispatch = rows_of_built_models<kCommands, &Command::dispatch>();
 
 bool is_broadcast(Bytes frame) { return frame[1] == '*'; }
 
-/// Returns the characters after the key, or after the address if the command has no key.
 Bytes arguments(const Dispatch& row, Bytes frame) {
   const bool has_key = row.key != kNoKey && row.key != kBroadcastKey;
   return frame.from(kBodyAt + (has_key ? 1 : 0));
@@ -39,9 +36,8 @@ bool matches(const Dispatch& row, const Model& model, Bytes frame) {
   return args >= row.fewest_args && args <= row.most_args && has(model, row.needs);
 }
 
-/// Returns whether the reply to this refused frame has no address. Only a model with outputs sends such a
-/// reply: for `@AA` with data, and for each `#AA...` except `#AAN` on a model that also has inputs (manuals
-/// 2.3, 2.11; wire.md D12).
+/// Only a model with outputs refuses without an address: `@AA` with data, and each `#AA...` except `#AAN` if
+/// it has inputs too (manuals 2.3, 2.11; wire.md D12).
 bool refused_without_address(const Model& model, Bytes frame) {
   const std::size_t body = frame.size - kBodyAt;
   if (!model.has_outputs()) {
@@ -53,7 +49,7 @@ bool refused_without_address(const Model& model, Bytes frame) {
   return frame[0] == '@';  // a refused `@` frame has data, because `@AA` without data is never refused
 }
 
-/// Returns whether the command needs the configuration permission (wire.md section 2).
+/// The configuration permission, wire.md section 2.
 bool needs_permission(const Dispatch& row, const Exchange& exchange) {
   if (row.init != Init::ToChangeLine) {
     return row.init == Init::Required;
@@ -87,7 +83,6 @@ void refuse(Exchange& exchange, Refusal refusal) {
   }
 }
 
-/// Appends the checksum, if it is in force, and CR. An empty reply stays empty.
 void finish(Exchange& exchange) {
   Reply& reply = exchange.reply;
   if (reply.empty()) {

@@ -11,18 +11,16 @@ namespace ex9000::dcon {
 
 constexpr std::size_t kNoCommand = static_cast<std::size_t>(-1);
 
-/// Finds the row of the command that `frame` contains. Returns the index of the row, or kNoCommand if `model`
-/// has no such command. The index counts only the rows of kCommands that at least one built model has
-/// (model/built.hpp). `frame` begins with delimiter and address, and has no checksum and no CR.
+/// The index of the command among the rows of kCommands that a built model has (model/built.hpp), or
+/// kNoCommand. `frame`: from the delimiter on, without checksum and CR.
 std::size_t find_command(const Model& model, Bytes frame);
 
-/// Judges the frame of `exchange` and writes the outcome and the reply, including the checksum, if it is in
-/// force, and CR. The module must carry out the outcome before it sends the reply. The reply is empty if the
-/// frame is `#**` or `~**`, or is for another address. Changes nothing but `exchange`.
+/// Judges the frame and writes the outcome and the whole reply, with checksum (if in force) and CR; changes
+/// nothing else. The module must carry out the outcome before it sends the reply, which is empty for `#**`,
+/// `~**` and frames for another address.
 void answer(Exchange& exchange);
 
-/// Replaces the reply with `?AA`, the checksum if it is in force, and CR. Call this if the settings could not
-/// be stored.
+/// If the settings could not be stored: the reply becomes `?AA`, with checksum (if in force) and CR.
 void refuse_store(Exchange& exchange);
 
 }  // namespace ex9000::dcon

@@ -12,8 +12,7 @@ using registers::WordRow;
 
 constexpr std::uint8_t kDelayKey = 'D';  // the character after `~AAR`
 
-/// Returns the value of the four digits from `args[at]` on, or -1 if one of them is not an upper-case hex
-/// digit.
+/// Four upper-case hex digits from `args[at]` on; else -1.
 int hex_word(Bytes args, std::size_t at) {
   constexpr int kByte = 0x100;
   const int high = hex_byte(args[at], args[at + 1]);
@@ -21,8 +20,7 @@ int hex_word(Bytes args, std::size_t at) {
   return high < 0 || low < 0 ? -1 : high * kByte + low;
 }
 
-/// Returns the row of the extension register at `address`. Returns null if `address` is negative, or if the
-/// model has no such register.
+/// Null if `address` is negative or the model has no such extension register.
 const WordRow* row_of(const Model& model, int address) {
   return address < 0 ? nullptr : registers::find_extension(model, static_cast<unsigned>(address));
 }
@@ -38,7 +36,7 @@ Refusal read_extension(Exchange& exchange) {
   const unsigned index = static_cast<unsigned>(address) - row->first;
   const bool is_long = row->has(registers::kLong);
   if (is_long && index % 2 != 0) {
-    // `~AAX` never reads the low word alone: two separate reads could return words of two different values.
+    // Never the low word alone: two reads could return words of two different values.
     return Refusal::OutOfRange;
   }
   put_valid(exchange);

@@ -9,8 +9,7 @@ namespace {
 
 constexpr unsigned kNoChannel = kMaxInputs;
 
-/// Returns the input channel that `digit` selects. Returns kNoChannel if `digit` is not an upper-case hex
-/// digit, or if the model does not have this channel.
+/// kNoChannel unless `digit` is an upper-case hex digit of a channel that the model has.
 unsigned channel_of(const Model& model, std::uint8_t digit) {
   const int channel = hex_value(digit);
   return channel >= 0 && channel < model.inputs ? static_cast<unsigned>(channel) : kNoChannel;
@@ -52,7 +51,7 @@ Refusal read_latches(Exchange& exchange) {
   if (exchange.args[0] != '0' && exchange.args[0] != '1') {
     return Refusal::OutOfRange;
   }
-  // On a module with inputs and outputs, First is for outputs. Outputs have no latches, so First is 00.
+  // Outputs have no latches, so on a module with both, First is 00.
   const Inputs& inputs = exchange.state.inputs;
   exchange.reply.put('!');
   put_data(exchange, 0, exchange.args[0] == '1' ? inputs.latched_high() : inputs.latched_low());

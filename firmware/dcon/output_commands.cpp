@@ -10,16 +10,14 @@ namespace {
 constexpr std::uint16_t kLowGroup = 0x00FF;
 constexpr unsigned kHighGroupShift = 8;
 
-/// Records in the outcome which outputs to drive, and writes the reply.
 Refusal drive(Exchange& exchange, BitWrite outputs) {
   exchange.outcome.drive(outputs);
   exchange.reply.put('>');
   return Refusal::None;
 }
 
-/// Returns the outputs that `#AABBDD` selects with BB = 00, 0A or 0B, and their levels. `selector` is the
-/// second character of BB, and `data` is the value of DD. The mask is 0 if BB has another value, if the model
-/// has no such group, or if a bit of `data` is 1 for an output that the model does not have.
+/// The outputs and levels of `#AABBDD` with BB = 00, 0A or 0B. `selector`: second character of BB; `data`:
+/// DD. The mask is 0 for another BB, or if the model lacks the group or an output whose bit in `data` is 1.
 BitWrite group(const Model& model, std::uint8_t selector, int data) {
   const bool high = selector == 'B';
   const unsigned channels = model.output_mask() & (high ? ~unsigned{kLowGroup} : unsigned{kLowGroup});
@@ -30,10 +28,9 @@ BitWrite group(const Model& model, std::uint8_t selector, int data) {
   return {static_cast<std::uint16_t>(channels), static_cast<std::uint16_t>(value)};
 }
 
-/// Returns the output that `#AABBDD` selects with BB = 1c, Ac or Bc (c: 0 to 7), and its level. `selector` is
-/// the first character of BB. `channel` is the value of the second character of BB, or -1 if this character
-/// is not an upper-case hex digit. `data` is the value of DD. The mask is 0 if BB has another value, if the
-/// model has no such output, or if `data` is neither 0 nor 1.
+/// The output and level of `#AABBDD` with BB = 1c, Ac or Bc, c from 0 to 7. `selector`: first character of
+/// BB; `channel`: value of the second, -1 if it is no upper-case hex digit; `data`: DD. The mask is 0 for
+/// another BB, if the model lacks the output, or if `data` is neither 0 nor 1.
 BitWrite single(const Model& model, std::uint8_t selector, int channel, int data) {
   const bool high = selector == 'B';
   if ((selector != '1' && selector != 'A' && !high) || channel < 0 || channel > 7 || data > 1) {
@@ -46,8 +43,8 @@ BitWrite single(const Model& model, std::uint8_t selector, int channel, int data
   return {static_cast<std::uint16_t>(bit), static_cast<std::uint16_t>(data == 1 ? bit : 0U)};
 }
 
-/// The numbers of hex digits that `@AA(Data)` accepts on a model: in the full form, and in the shorter form,
-/// which comes from examples in the manuals (wire.md E4). They are equal if the model has no shorter form.
+/// Hex digits that `@AA(Data)` accepts: the full form, and the shorter one of examples in the manuals
+/// (wire.md E4). Equal if there is no shorter form.
 struct Digits {
   std::size_t full;
   std::size_t shortened;

@@ -20,9 +20,8 @@ unsigned status_of(const State& state) {
 
 }  // namespace
 
-/// Handles `~**` if a caller passes such a frame to `answer`. A module never passes `~**` to `answer`: its
-/// receiver processes `~**` in the interrupt and does not queue the frame, so that no host OK is lost. In
-/// both cases the host watchdog restarts.
+/// Only for a caller that passes `~**` to `answer`. A module never does: its receiver takes `~**` in the
+/// interrupt and does not queue it, so that no host OK is lost. Either way the host watchdog restarts.
 Refusal host_ok(Exchange& exchange) {
   exchange.outcome.request(Effect::RestartHostWatchdog);
   return Refusal::None;

@@ -12,7 +12,7 @@ namespace detail {
 
 using Crc16Table = std::array<std::uint16_t, 256>;
 
-/// Returns the table with the effect of each byte value on the CRC.
+/// The effect of each byte value on the CRC.
 constexpr Crc16Table make_crc16_table() {
   constexpr unsigned kReflectedPolynomial = 0xA001;
   Crc16Table table{};
@@ -30,19 +30,18 @@ inline constexpr Crc16Table kCrc16Table = make_crc16_table();
 
 }  // namespace detail
 
-/// Computes the CRC byte by byte. The CRC of a frame that includes its CRC (low byte first) is 0.
+/// Byte by byte. The CRC of a frame that includes its CRC (low byte first) is 0.
 class Crc16 {
  public:
   constexpr void add(std::uint8_t byte) {
     value_ = (value_ >> 8U) ^ detail::kCrc16Table[(value_ ^ byte) & 0xFFU];
   }
-  /// Returns the CRC, a value of 16 bits.
   [[nodiscard]] constexpr std::uint32_t value() const { return value_; }
   [[nodiscard]] constexpr std::uint8_t low_byte() const { return static_cast<std::uint8_t>(value_); }
   [[nodiscard]] constexpr std::uint8_t high_byte() const { return static_cast<std::uint8_t>(value_ >> 8U); }
 
  private:
-  std::uint32_t value_ = 0xFFFF;  // 32 bits, because the processor calculates with 32-bit words
+  std::uint32_t value_ = 0xFFFF;  // 16 bits in a word, because the processor calculates with 32-bit words
 };
 
 constexpr Crc16 crc16(Bytes bytes) {

@@ -15,7 +15,7 @@ constexpr bool is_delimiter(std::uint8_t byte) {
 
 constexpr bool is_reply_lead(std::uint8_t byte) { return byte == '!' || byte == '>' || byte == '?'; }
 
-/// Returns whether the two characters at `text` are `digits`, in the format of `hex_digits`.
+/// `digits`: in the format of `hex_digits`.
 bool are_digits(const std::uint8_t* text, std::uint32_t digits) {
   return (unsigned{text[0]} | unsigned{text[1]} << 8U) == digits;
 }
@@ -37,8 +37,7 @@ void DconAssembler::byte(FrameQueue& queue, std::uint8_t byte, ByteStatus status
   }
 }
 
-/// Processes a byte with an error: its value is unreliable, or another byte was lost, so it neither ends nor
-/// begins a frame.
+/// A byte with an error is unreliable, or another was lost: it neither ends nor begins a frame.
 void DconAssembler::spoil(ByteStatus status) {
   if (state_ == State::InFrame) {
     state_ = State::Spoiled;
@@ -46,8 +45,7 @@ void DconAssembler::spoil(ByteStatus status) {
   }
 }
 
-/// Appends a character and updates the sum, which excludes the last two characters, because they may be the
-/// checksum.
+/// The sum excludes the last two characters, which may be the checksum.
 void DconAssembler::add(std::uint8_t* text, std::uint8_t byte) {
   const unsigned size = size_;
   text[size] = byte;

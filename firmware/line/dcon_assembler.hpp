@@ -11,30 +11,26 @@
 
 namespace ex9000 {
 
-/// The largest number of characters before CR; longer frames are dropped.
+/// Characters before CR; longer frames are dropped.
 constexpr std::uint8_t kLongestDconFrame = 32;
 
-/// Frame format: delimiter, address, body, [CHK], CR - wire.md section 3. There is no timeout between
-/// characters, so that a person can type commands.
+/// Delimiter, address, body, [CHK], CR - wire.md section 3. No timeout between characters, so that a person
+/// can type commands. Interrupts call all functions from `byte` on.
 class DconAssembler {
  public:
   void use_checksum(bool on) { checksum_ = on; }
-  /// Sets the module's address for all frames that end after this call. For the main loop, which may call
-  /// this while bytes are received.
+  /// For frames that end after this call. For the main loop, also while bytes are received.
   void answer_to(std::uint8_t address) { own_digits_.store_in_main_loop(hex_digits(address)); }
 
   static constexpr std::uint8_t kEnd = '\r';
 
-  /// Processes a received byte that is not kEnd. For the receive interrupt, like `end`.
   void byte(FrameQueue& queue, std::uint8_t byte, ByteStatus status);
-  /// Processes kEnd. Returns the verdict on the frame that it ends, or Open if it ends no frame. An accepted
-  /// frame contains the characters from the delimiter on, without CHK and CR.
+  /// For kEnd: the verdict on the frame that it ends, or Open. An accepted frame has neither CHK nor CR.
   Verdict end(FrameQueue& queue, ByteStatus status, Time now);
 
-  /// Returns whether the last frame with a correct check was a broadcast. Valid only if that frame was not
-  /// Foreign. For interrupts.
+  /// Whether the last frame with a correct check was a broadcast. Valid only if it was not Foreign.
   [[nodiscard]] bool last_was_broadcast() const { return broadcast_; }
-  /// Drops an incomplete frame, and ends the skipping of another module's reply. For interrupts.
+  /// Drops an incomplete frame, and no longer skips another module's reply.
   void forget() { state_ = State::Hunting; }
 
  private:

@@ -8,21 +8,19 @@
 
 namespace ex9000 {
 
-/// Stores the times of the first and the last host OK that the main loop has not taken yet. Host OKs between
-/// these two do not matter, because the host watchdog cannot expire between the first and the last: a host OK
-/// wakes the main loop, and one pass of the main loop is shorter than the shortest timeout, 0.1 s. The time
-/// of a request that counts like a host OK (register 0x0251) is stored in the same way.
+/// The first and the last host OK that the main loop has not taken yet. Those between do not matter: a host
+/// OK wakes the main loop, and a pass is shorter than the shortest timeout, 0.1 s, so the host watchdog
+/// cannot expire between the two. Requests that count like one (register 0x0251) are stored too.
 class HostOks {
  public:
-  /// In ASCII, a host OK counts from its CR. In Modbus, it counts from the end of its silence. Exception: if
-  /// the module's own reply begins and ends before the end of this silence, the host OK counts from the end
-  /// of the reply (wire.md D9, D11).
+  /// A host OK counts from its CR in ASCII, from the end of its silence in Modbus; but from the end of the
+  /// module's own reply if that begins and ends before the end of the silence (wire.md D9, D11).
   struct Times {
     Time first;
     Time last;
   };
 
-  /// Stores the time of a host OK. For interrupts, which must not interrupt each other.
+  /// These interrupts must not interrupt each other.
   void add_in_interrupt(Time received) {
     if (!waiting()) {
       first_.store_in_interrupt(received.microseconds());
@@ -31,12 +29,10 @@ class HostOks {
     received_.store_in_interrupt(received_.load() + 1U);
   }
 
-  /// Returns whether there is a host OK that the main loop has not taken yet.
   [[nodiscard]] bool waiting() const { return received_.load() != taken_.load(); }
 
-  /// Takes all host OKs that are waiting. A host OK that arrives during the call may still be waiting after
-  /// the call. The next call may then return the same first time again. For the main loop; call this only if
-  /// `waiting()`.
+  /// Only if `waiting()`. A host OK that arrives during the call may still be waiting afterwards; the next
+  /// call may then return the same first time again.
   Times take_in_main_loop() {
     const std::uint32_t received = received_.load();
     const Times times{Time(first_.load()), Time(last_.load())};

@@ -1,5 +1,5 @@
-// The counters that interrupts increment for Modbus function 08 (Modbus over Serial Line V1.02, appendix A)
-// and for registers 0x0308 to 0x030F (firmware/extensions.md).
+// The counts of interrupts for Modbus function 08 (Modbus over Serial Line V1.02, appendix A) and for
+// registers 0x0308 to 0x030F (firmware/extensions.md).
 #pragma once
 
 #include <array>
@@ -11,24 +11,21 @@
 
 namespace ex9000 {
 
-/// Counts damaged bytes, and counts frames by verdict. The end of a frame therefore increments at most one
-/// count. To read a counter of frames, the main loop adds up the counts of some verdicts. The counts are
-/// 32-bit words, which take less time in the interrupt than the 16-bit count of an EventTally.
+/// Damaged bytes, and frames by verdict: the end of a frame increments at most one count, and the main loop
+/// adds up verdicts. 32 bits take the interrupt less time than the 16 bits of an EventTally.
 class LineTallies {
  public:
-  /// Counts frames. For interrupts.
   [[gnu::always_inline]] void count_in_interrupt(Verdict verdict, std::uint32_t frames = 1) {
     auto& total = totals_[static_cast<std::size_t>(verdict)];
     total.store_in_interrupt(total.load() + frames);
   }
 
-  /// Counts a byte with a framing or parity error, or a break. For interrupts.
+  /// A byte with a framing or parity error, or a break.
   [[gnu::always_inline]] void count_damaged_byte_in_interrupt() {
     damaged_bytes_.store_in_interrupt(damaged_bytes_.load() + 1U);
   }
 
-  /// Returns the number of frames with a verdict from `first` to `last` since reset or the last `clear`,
-  /// modulo 65536. For the main loop.
+  /// Frames with a verdict from `first` to `last` since reset or `clear`, modulo 65536. For the main loop.
   [[nodiscard, gnu::noinline]] std::uint16_t count(Verdict first, Verdict last) const {
     unsigned sum = 0;
     for (auto each = static_cast<std::size_t>(first); each <= static_cast<std::size_t>(last); ++each) {
@@ -46,7 +43,6 @@ class LineTallies {
     return lost_frames() + count(Verdict::Overrun, Verdict::Overrun);
   }
 
-  /// Sets all counters to 0. For the main loop.
   void clear() {
     for (std::size_t each = 0; each < kVerdicts; ++each) {
       cleared_[each] = static_cast<std::uint16_t>(totals_[each].load());

@@ -23,7 +23,7 @@ Duration Receiver::on_silence(Time now) {
 
 void Receiver::on_own_driver_off(Time now) {
   if (modbus()) {
-    // The module's own reply ends the frame, even if the silence after the frame is not over.
+    // The module's own reply ends the frame, even before its silence is over.
     note(rtu_.cut_off(queue_, now), now);
   } else {
     dcon_.forget();

@@ -17,7 +17,7 @@
 
 namespace ex9000 {
 
-/// The line settings, which do not change between two resets.
+/// Does not change between two resets.
 struct Listening {
   Protocol protocol = Protocol::Ascii;
   bool checksum = false;
@@ -26,49 +26,45 @@ struct Listening {
 
 class Receiver {
  public:
-  /// Sets the line settings. The main loop calls this before the first `on_byte`.
+  /// From the main loop, before the first `on_byte`.
   void listen(const Listening& how);
 
   // --- interrupts, which must not interrupt each other ---
 
-  /// Processes a received byte. `clock.now_in_interrupt()` returns the present time; only a CR in DCON needs
-  /// it. LineTiming takes into account the part of the stop bits that is left when the UART reports a byte.
-  /// `on_silence` must be called when the returned time has passed: restart the silence timer with this time.
-  /// Do not change the timer if the result is 0. In Modbus, the result is never 0. In DCON, it is the
-  /// turn-around time if the byte is the CR of an accepted frame, otherwise 0.
+  /// `clock.now_in_interrupt()`: the present time; only a CR in DCON needs it. LineTiming takes into account
+  /// the part of the stop bits that is left when the UART reports a byte. Restart the silence timer with the
+  /// returned time and call `on_silence` when it has passed; leave the timer alone if it is 0. In Modbus it
+  /// is never 0; in DCON it is the turn-around time after the CR of an accepted frame, else 0.
   template <class Clock>
   Duration on_byte(std::uint8_t byte, ByteStatus status, const Clock& clock);
 
-  /// Call this when the time that `on_byte` or `on_silence` returned has passed. Returns the time after which
-  /// `on_silence` must be called again; 0 if this is not necessary.
+  /// When the time from `on_byte` or `on_silence` has passed. Returns the next such time; 0: none.
   Duration on_silence(Time now);
 
-  /// Call this at `now`, when the module's own driver is off again; `on_byte` must not be called while the
-  /// driver is on. Drops an incomplete frame, except an RTU frame that lacks only its silence (wire.md D9).
+  /// When the module's own driver is off again; no `on_byte` while it is on. Drops an incomplete frame,
+  /// except an RTU frame that lacks only its silence (wire.md D9).
   void on_own_driver_off(Time now);
 
   // --- main loop ---
 
-  /// Sets the module's address for all frames that end after this call. Call this after `listen`.
+  /// For frames that end after this call. After `listen`.
   void answer_to(std::uint8_t address);
-  /// Sets whether each request (wire.md D16) with the module's own address and a correct check restarts the
-  /// host watchdog like a host OK, for all frames that end after this call.
+  /// Whether each request (wire.md D16) with the module's own address and a correct check restarts the host
+  /// watchdog like a host OK. For frames that end after this call.
   void restart_by_requests(bool on) { restarts_by_requests_.store_in_main_loop(on); }
-  /// Returns the timing that was passed to `listen`.
   [[nodiscard]] const LineTiming& timing() const { return rtu_.timing(); }
   FrameQueue& queue() { return queue_; }
   [[nodiscard]] const FrameQueue& queue() const { return queue_; }
   constexpr LineTallies& tallies() { return tallies_; }
   [[nodiscard]] constexpr const LineTallies& tallies() const { return tallies_; }
-  /// Returns the times of the host OKs, and of the requests that count like a host OK.
+  /// Also of requests that count like a host OK.
   HostOks& host_oks() { return host_oks_; }
   [[nodiscard]] const HostOks& host_oks() const { return host_oks_; }
 
  private:
   // not covered: kBuiltModbus is a constant
   [[nodiscard]] bool modbus() const { return kBuiltModbus && protocol_ == Protocol::ModbusRtu; }
-  /// Counts `verdict`, unless it is Open. If the frame restarts the host watchdog, stores `over` as the time
-  /// of the restart.
+  /// `over`: the time of the restart, if the frame restarts the host watchdog.
   void note(Verdict verdict, Time over) {
     if (verdict != Verdict::Open) {
       count(verdict, over);
@@ -86,7 +82,7 @@ class Receiver {
   FrameQueue queue_;
 };
 
-// `on_byte` is inline, because it runs for each byte on the line, including bytes for other modules.
+// Inline, because it runs for each byte on the line, also of other modules.
 template <class Clock>
 inline Duration Receiver::on_byte(std::uint8_t byte, ByteStatus status, const Clock& clock) {
   if (status != ByteStatus::Good && status != ByteStatus::Overrun) {

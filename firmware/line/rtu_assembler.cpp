@@ -11,7 +11,7 @@ constexpr unsigned kCrcBytes = 2;
 
 }  // namespace
 
-/// Opens a frame with its first byte, or continues the open frame after an expiry of the silence timer.
+/// Opens a frame, or continues it after the silence timer has expired.
 void RtuAssembler::go_on(FrameQueue& queue, std::uint8_t byte) {
   if (state_ == State::Idle) {
     open(queue, byte);
@@ -71,11 +71,9 @@ Verdict RtuAssembler::cut_off(FrameQueue& queue, Time now) {
   return verdict;
 }
 
-/// Judges the frame. If the CRC of the whole frame is wrong or the first byte is spoiled, ignores a leading
-/// turn-around byte 00. Returns Open if the CRC or the length of the bytes that are not ignored is wrong, or
-/// if one of these bytes is spoiled. Queues a frame that is a broadcast or has the address of this module,
-/// except a host OK. Returns NoRoom if it cannot queue such a frame because another frame is already waiting.
-/// `received`: when the UART reported the last byte, or a little later.
+/// If the CRC of the whole frame is wrong or its first byte is spoiled, ignores a leading turn-around byte
+/// 00. Open if the rest has a wrong CRC, a wrong length or a spoiled byte. Queues a frame for this module or
+/// for all, but no host OK; NoRoom if another waits. `received`: time of the last byte, or slightly later.
 Verdict RtuAssembler::conclude(FrameQueue& queue, Time received) {
   Frame& frame = *frame_;
   unsigned offset = 0;

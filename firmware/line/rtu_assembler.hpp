@@ -1,4 +1,4 @@
-// Assembles Modbus RTU frames from received bytes and silences in interrupts.
+// Assembles Modbus RTU frames from bytes and silences, in interrupts.
 #pragma once
 
 #include <cstdint>
@@ -12,11 +12,9 @@
 
 namespace ex9000 {
 
-/// Frame format: address, function, data, CRC, then a silence of T3.5 - wire.md section 7.
-///
-/// The silence timer detects the end of a silence, and supplies the time, so that a byte needs no clock. If
-/// the interrupt of this timer and the receive interrupt are both pending, the interrupt of the timer must
-/// run first (hal/one_shot_timer.hpp).
+/// Address, function, data, CRC, then a silence of T3.5 - wire.md section 7. The silence timer detects the
+/// silence and supplies the time, so that a byte needs no clock. If this timer and the receive interrupt are
+/// both pending, the timer must run first (hal/one_shot_timer.hpp).
 class RtuAssembler {
  public:
   void use(const LineTiming& timing) {
@@ -24,30 +22,24 @@ class RtuAssembler {
     first_wait_ = strict() ? timing.rtu_slack : timing.rtu_silence;
   }
   [[nodiscard]] const LineTiming& timing() const { return timing_; }
-  /// Sets the module's address for all frames that end after this call. For the main loop, which may call
-  /// this while bytes are received.
+  /// For frames that end after this call. For the main loop, also while bytes are received.
   void answer_to(std::uint8_t address) { own_address_.store_in_main_loop(address); }
 
-  /// Processes a byte. Restart the silence timer with `first_wait()` after this call. Call this from the
-  /// receive interrupt.
+  /// From the receive interrupt; then restart the silence timer with `first_wait()`.
   void byte(FrameQueue& queue, std::uint8_t byte, ByteStatus status);
   [[nodiscard]] Duration first_wait() const { return first_wait_; }
 
-  /// Call this when the silence timer has expired. After this call, restart the timer with `next_wait()`,
-  /// unless that time is 0. Returns the verdict on the frame that has ended, or Open if none has ended. An
-  /// accepted frame contains address, function and data, but neither the CRC nor a leading turn-around byte
-  /// 00. Call this from the interrupt of the silence timer.
+  /// From the interrupt of the silence timer; then restart it with `next_wait()`, unless that is 0. Returns
+  /// the verdict on the frame that has ended, or Open. An accepted frame is address, function and data,
+  /// without the CRC and a leading turn-around byte 00.
   Verdict silence(FrameQueue& queue, Time now);
-  /// Returns the time after which `silence` must be called again; 0 if this is not necessary.
   [[nodiscard]] Duration next_wait() const;
 
-  /// Call this when the module's own driver is off again. A frame that lacks only its silence is judged; any
-  /// other open frame is dropped (wire.md D9). Returns the verdict, or Open if no frame was open or the frame
-  /// is dropped. For interrupts.
+  /// From an interrupt, when the module's own driver is off again. Judges a frame that lacks only its
+  /// silence; drops any other (wire.md D9). Open if none was open or it is dropped.
   Verdict cut_off(FrameQueue& queue, Time now);
 
-  /// Returns whether the last correct frame for this module or for all modules was a broadcast. For
-  /// interrupts.
+  /// Whether the last correct frame for this module or for all was a broadcast. For interrupts.
   [[nodiscard]] bool last_was_broadcast() const { return broadcast_; }
 
  private:
@@ -60,7 +52,7 @@ class RtuAssembler {
 
   static constexpr std::uint8_t kTurnAround = 0x00;
 
-  /// Whether a gap between two bytes can make a frame invalid.
+  /// A gap between two bytes can make a frame invalid.
   [[nodiscard]] bool strict() const { return timing_.rtu_slack < timing_.rtu_silence; }
   void open(FrameQueue& queue, std::uint8_t first);
   void go_on(FrameQueue& queue, std::uint8_t byte);
@@ -83,8 +75,7 @@ class RtuAssembler {
   bool broadcast_ = false;      ///< the value of `last_was_broadcast`
 };
 
-// `byte` and `spoil` are inline, because `byte` runs for each byte on the line, including bytes for other
-// modules.
+// `byte` and `spoil` are inline, because `byte` runs for each byte on the line, also of other modules.
 
 inline void RtuAssembler::byte(FrameQueue& queue, std::uint8_t byte, ByteStatus status) {
   if (state_ != State::Receiving) {
@@ -104,7 +95,7 @@ inline void RtuAssembler::byte(FrameQueue& queue, std::uint8_t byte, ByteStatus 
   }
 }
 
-/// Marks the last byte, or the gap after it, as faulty.
+/// The last byte, or the gap after it.
 inline void RtuAssembler::spoil() {
   if (received_ == 1) {
     first_spoiled_ = true;

@@ -1,4 +1,4 @@
-// The times between received frames, and the time between a request and its reply.
+// The times between frames, and between a request and its reply.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace ex9000 {
 
-/// The build option EX9000_STRICT_GAPS of an image: a gap of more than T1.5 makes a Modbus frame invalid.
+/// Build option of an image: a gap of more than T1.5 makes a Modbus frame invalid.
 #ifdef EX9000_STRICT_GAPS
 inline constexpr bool kStrictGaps = true;
 #else
@@ -16,31 +16,28 @@ inline constexpr bool kStrictGaps = false;
 #endif
 
 struct LineTiming {
-  /// Duration of a character, rounded up.
+  /// Its duration, rounded up.
   Duration character;
-  /// Shortest time between the report of CR and the reply: the rest of the stop bits of CR plus one
-  /// character, rounded up.
+  /// Least time from the report of CR to the reply: the rest of its stop bits and a character, rounded up.
   Duration dcon_turn_around;
-  /// Time from the report of a byte to the end of the silence that ends a Modbus RTU frame and precedes a
-  /// reply: the rest of the stop bits plus T3.5. It is rounded up, so that a reply is never early.
+  /// From the report of a byte to the end of the silence that ends an RTU frame and precedes a reply: the
+  /// rest of the stop bits plus T3.5, rounded up so that a reply is never early.
   Duration rtu_silence;
-  /// Time after `rtu_silence` within which the UART reports a byte that began before the end of T3.5: the
-  /// time from the beginning of a byte to its report. It is rounded down by the lateness of the silence timer
-  /// too, so that a byte that begins exactly at the end of T3.5 begins a new frame.
+  /// From the beginning of a byte to its report: within this time after `rtu_silence`, the UART reports a
+  /// byte that began during T3.5. Rounded down, also by the lateness of the silence timer, so that a byte
+  /// that begins exactly at the end of T3.5 begins a new frame.
   Duration rtu_grace;
-  /// The largest time between the reports of two successive bytes of a frame; a larger time makes the frame
-  /// invalid. A value of `rtu_silence` or more allows every gap.
+  /// The largest time between the reports of two bytes of a frame; a longer one makes the frame invalid. From
+  /// `rtu_silence` on: every gap is allowed.
   Duration rtu_slack;
-  /// Time from the report of a byte to the end of its last stop bit, rounded up.
+  /// From the report of a byte to the end of its last stop bit, rounded up.
   Duration rest_of_stop_bit;
 
-  /// A value for `rtu_slack` that allows every gap.
   static constexpr Duration kAnyGap{0xFFFF'FFFFU};
 
-  /// Returns the times for a UART that reports a byte at the end of its first stop bit. Up to 19200 baud,
-  /// T3.5 is 3.5 characters of 11 bits in every format. Above 19200 baud, T3.5 is 1.75 ms (Modbus over Serial
-  /// Line V1.02, 2.5.1.1). Gaps within a frame are allowed, because USB adapters and gateways cause them.
-  /// `baud`: 50 to 4000000 bits per second.
+  /// For a UART that reports a byte at the end of its first stop bit. T3.5: 3.5 characters of 11 bits in
+  /// every format up to 19200 baud, 1.75 ms above (Modbus over Serial Line V1.02, 2.5.1.1). Gaps are allowed,
+  /// because USB adapters and gateways cause them. `baud`: 50 to 4000000 bits per second.
   static constexpr LineTiming at(std::uint32_t baud, LineFormat format) {
     const unsigned second_stop_bit = bits_of_character(format) - bits_received(format);
     const std::uint32_t until_report = microseconds(2 * bits_received(format), baud);
@@ -55,8 +52,7 @@ struct LineTiming {
     return timing;
   }
 
-  /// Returns the times for a UART that reports a byte in the middle of its first stop bit. T3.5 and the
-  /// allowed gaps are as in `at`. `baud` must be one of kBaudRates.
+  /// As `at`, but the UART reports a byte in the middle of its first stop bit. `baud`: one of kBaudRates.
   static constexpr LineTiming reported_in_stop_bit(std::uint32_t baud, LineFormat format) {
     LineTiming timing = at(baud, format);
     const Duration half_bit(microseconds(1, baud) + 1U);
@@ -67,8 +63,7 @@ struct LineTiming {
     return timing;
   }
 
-  /// Return the same times as `at` and `reported_in_stop_bit`, except that a gap of more than T1.5 makes the
-  /// frame invalid, as Modbus over Serial Line V1.02, 2.5.1.1, requires.
+  /// As above, but a gap of more than T1.5 makes the frame invalid (Modbus over Serial Line V1.02, 2.5.1.1).
   static constexpr LineTiming strictly_at(std::uint32_t baud, LineFormat format) {
     return strictly(at(baud, format), baud, format);
   }
@@ -83,10 +78,10 @@ struct LineTiming {
     return timing;
   }
 
-  /// In microseconds: 1 for the rounding of the division, 1 for the resolution of the clock.
+  /// In microseconds: 1 for the division, 1 for the resolution of the clock.
   static constexpr std::uint32_t kRoundUp = 2;
-  /// In microseconds: kRoundUp, because rtu_silence is already rounded up by kRoundUp; 1 for the resolution
-  /// of the clock; and twice the lateness of a timer (hal/one_shot_timer.hpp).
+  /// In microseconds: kRoundUp, which rtu_silence includes; 1 for the resolution of the clock; twice the
+  /// lateness of a timer (hal/one_shot_timer.hpp).
   static constexpr std::uint32_t kRoundDown = kRoundUp + 1 + 2 * 5;
 
   static constexpr std::uint32_t microseconds(std::uint32_t half_bits, std::uint32_t baud) {
@@ -100,8 +95,7 @@ struct LineTiming {
   }
 };
 
-/// A function that returns the times at a baud rate and format, for example `LineTiming::at`. A simulated
-/// line on which bytes take almost no time uses a function that is not in LineTiming.
+/// For example `LineTiming::at`. A simulated line whose bytes take almost no time has its own function.
 using TimingAt = LineTiming (*)(std::uint32_t baud, LineFormat format);
 
 }  // namespace ex9000

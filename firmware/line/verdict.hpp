@@ -1,15 +1,14 @@
-// The status of a received byte and the verdict on a received frame.
+// Received bytes and frames: how the UART and the receiver judge them.
 #pragma once
 
 #include <cstdint>
 
 namespace ex9000 {
 
-/// The status of a byte as the UART reports it.
 enum class ByteStatus : std::uint8_t { Good, FramingError, ParityError, Break, Overrun };
 
-/// The verdict on a frame that has ended. Only Accepted frames reach the main loop, so the module replies to
-/// no other frame. LineTallies requires this order of the values, because it counts ranges of them.
+/// On a frame that has ended. Only Accepted frames reach the main loop and can get a reply. The order must
+/// not change: LineTallies counts ranges.
 enum class Verdict : std::uint8_t {
   Open,       ///< no frame has ended, or an incomplete frame is dropped
   Accepted,   ///< correct, and for this module or for all modules; the frame is in the queue

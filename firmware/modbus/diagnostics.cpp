@@ -1,5 +1,4 @@
-// Function 08: Modbus Application Protocol V1.1b3, 6.8. For the meaning of the counters, see Modbus over
-// Serial Line V1.02, appendix A, and wire.md D1.
+// Function 08: Modbus Application Protocol V1.1b3, 6.8; counters: Serial Line V1.02, appendix A, wire.md D1.
 #include "firmware/modbus/functions.hpp"
 #include "firmware/registers/tallies.hpp"
 

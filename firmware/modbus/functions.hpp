@@ -9,10 +9,9 @@
 
 namespace ex9000::modbus {
 
-/// Judges a request and returns the reason of a refusal, or None. The reply already contains address and
-/// function code. If the request is neither refused nor ignored, the handler appends the data to the reply.
-/// It then also records in the outcome what the module must do. The frame of the request contains address,
-/// function code and data, without CRC; it has at least 2 bytes.
+/// Returns the refusal or None. If None and the request is not ignored, the handler has appended the data to
+/// the reply, after address and function code. It has also recorded in the outcome what the module must do.
+/// The frame has at least 2 bytes: address, function code and data, no CRC.
 using Handler = Refusal (*)(Exchange& exchange);
 
 // read_functions.cpp

@@ -1,5 +1,5 @@
-// Identification of the module: functions 11 and 2B/0E (Modbus Application Protocol V1.1b3, 6.13 and 6.21)
-// and the vendor's function 46 (manuals, mapping table), which can also store a new address.
+// Functions 11 and 2B/0E (Modbus Application Protocol V1.1b3, 6.13 and 6.21), and the vendor's function 46
+// (manuals, mapping table), which can also store a new address.
 #include "firmware/modbus/functions.hpp"
 
 namespace ex9000::modbus {

@@ -5,13 +5,11 @@
 
 namespace ex9000::modbus {
 
-/// Judges the frame of `exchange` and writes its outcome and its reply, including the CRC. The module must
-/// carry out the outcome before it sends the reply. The reply is empty if the frame is a broadcast. Changes
-/// nothing but `exchange`.
+/// Judges the frame and writes the outcome and the whole reply with CRC, which is empty for a broadcast;
+/// changes nothing else. The module must carry out the outcome before it sends the reply.
 void answer(Exchange& exchange);
 
-/// Replaces the reply with an exception. Call this if the settings could not be stored. The empty reply to a
-/// broadcast stays empty.
+/// If the settings could not be stored: the reply becomes an exception, unless it is empty (broadcast).
 void refuse_store(Exchange& exchange);
 
 }  // namespace ex9000::modbus

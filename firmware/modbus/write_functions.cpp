@@ -1,6 +1,6 @@
-// Functions 05, 06, 0F, 10: Modbus Application Protocol V1.1b3, 6.5, 6.6, 6.11, 6.12. The order of the checks
-// is: length and quantity, address, value; Exchange::judge_outcome follows. Before the address, function 05
-// also checks that the value is FF00 or 0000. A request that fails a check changes nothing.
+// Functions 05, 06, 0F, 10: Modbus Application Protocol V1.1b3, 6.5, 6.6, 6.11, 6.12. Checks in this order:
+// length and quantity, address, value, Exchange::judge_outcome; function 05 checks FF00 or 0000 before the
+// address. A request that fails a check changes nothing.
 #include "firmware/modbus/functions.hpp"
 #include "firmware/registers/find.hpp"
 
@@ -17,8 +17,7 @@ constexpr unsigned kMostRegisters = 123;
 constexpr std::uint16_t kCoilOn = 0xFF00;
 constexpr std::uint16_t kCoilOff = 0x0000;
 
-/// Appends bytes 2 to 5 of the request to the reply of functions 05, 06, 0F and 10. Bytes 2 and 3 are the
-/// address; bytes 4 and 5 are the value or the quantity.
+/// Bytes 2 to 5 of the request: the address, and the value or the quantity.
 void put_echo(Exchange& exchange) { exchange.reply.put(exchange.frame.first(kSingleSize).from(2)); }
 
 Refusal write_bits(Exchange& exchange, const BitRow& row, BitWrite bits) {
@@ -29,13 +28,11 @@ Refusal write_bits(Exchange& exchange, const BitRow& row, BitWrite bits) {
   return row.write(exchange.state, bits, exchange.outcome);
 }
 
-/// Records in the outcome what a write of `value` to the register `address` of `row` changes.
 Refusal write_word(Exchange& exchange, const WordRow& row, unsigned address, std::uint16_t value) {
   return row.write(exchange.state, address - row.first, value, exchange.outcome);
 }
 
-/// Checks length, quantity and byte count of functions 0F and 10. `most`: largest quantity; `bits`: bits per
-/// value.
+/// For functions 0F and 10. `most`: largest quantity; `bits`: bits per value.
 Refusal check_multiple(Bytes frame, unsigned most, unsigned bits) {
   if (frame.size < kMultipleHeader) {
     return Refusal::WrongLength;

@@ -1,5 +1,5 @@
-// Baud-rate codes CC: bits 5:0 are the rate (manuals 1.10), and bits 7:6 are the line format
-// (firmware/extensions.md).
+// Baud codes CC: bits 5:0 the rate (manuals 1.10), bits 7:6 the line format (firmware/extensions.md).
+// `baud_rate` and `line_format` take only valid codes.
 #pragma once
 
 #include <array>
@@ -14,10 +14,10 @@ constexpr std::uint8_t kLastBaudCode = 0x0A;
 constexpr std::uint8_t kFactoryBaudCode = 0x06;
 constexpr std::uint8_t kRateBits = 0x3F;
 constexpr unsigned kFormatShift = 6;
-/// The largest code: the last rate with the last format.
+/// The last rate with the last format.
 constexpr std::uint8_t kLargestBaudCode = 0xC0 | kLastBaudCode;
 
-/// The baud rates of the codes 03 to 0A, in bits per second.
+/// Codes 03 to 0A, in bits per second.
 constexpr std::array<std::uint32_t, kLastBaudCode - kFirstBaudCode + 1> kBaudRates{
     1200, 2400, 4800, 9600, 19200, 38400, 57600, 115200};
 
@@ -26,15 +26,12 @@ constexpr bool is_baud_code(unsigned code) {
   return code <= kLargestBaudCode && rate >= kFirstBaudCode && rate <= kLastBaudCode;
 }
 
-/// Returns the baud rate of `code` in bits per second. `code` must be a baud-rate code.
 constexpr std::uint32_t baud_rate(std::uint8_t code) {
   return kBaudRates[(code & kRateBits) - kFirstBaudCode];
 }
 
-/// Returns the line format of `code`, which must be a baud-rate code.
 constexpr LineFormat line_format(std::uint8_t code) { return static_cast<LineFormat>(code >> kFormatShift); }
 
-/// Returns `code` with its line format replaced by `format`.
 constexpr std::uint8_t with_line_format(std::uint8_t code, LineFormat format) {
   return static_cast<std::uint8_t>((code & kRateBits) | static_cast<unsigned>(format) << kFormatShift);
 }

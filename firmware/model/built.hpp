@@ -1,5 +1,4 @@
-// The models that are built into a program: exactly one if EX9000_MODEL is defined, as in a firmware image;
-// otherwise all of them, as in the simulator.
+// The models in a program: one, EX9000_MODEL, in a firmware image; else all of them, as in the simulator.
 #pragma once
 
 #include <array>
@@ -11,14 +10,14 @@
 
 namespace ex9000 {
 
-// In both branches, `some_model_meets` returns whether a built model has the property `needs`.
+// `some_model_meets`: whether a built model has the property `needs`.
 
 #ifdef EX9000_MODEL
 
-/// The model of this image. EX9000_MODEL is a designation, for example "EX9042D-M".
+/// EX9000_MODEL: a designation, e.g. "EX9042D-M".
 inline constexpr Model kOnlyModel = *find_model(EX9000_MODEL);
 
-/// The model of a module. This class stores nothing, because the model is a compile-time constant.
+/// Stores nothing, because the model is a compile-time constant.
 class ChosenModel {
  public:
   explicit constexpr ChosenModel(const Model& /*model*/) {}
@@ -29,7 +28,6 @@ constexpr bool some_model_meets(Needs needs) { return meets(kOnlyModel, needs); 
 
 #else
 
-/// The model of a module, a row of kModels.
 class ChosenModel {
  public:
   explicit constexpr ChosenModel(const Model& model) : model_(&model) {}
@@ -43,9 +41,8 @@ constexpr bool some_model_meets(Needs /*needs*/) { return true; }
 
 #endif
 
-/// Returns whether `model` meets the `needs` of a row of a table, for example of a command. If EX9000_MODEL
-/// is defined, the result is always true, because the program contains only the rows whose needs the model
-/// meets.
+/// Whether `model` meets the `needs` of a table row. Always true with EX9000_MODEL, because the program then
+/// contains only the rows whose needs the model meets.
 constexpr bool has(const Model& model, Needs needs) {
 #ifdef EX9000_MODEL
   static_cast<void>(model);
@@ -56,11 +53,10 @@ constexpr bool has(const Model& model, Needs needs) {
 #endif
 }
 
-/// True if a built model can speak Modbus. If false, the compiler removes the code that receives and answers
-/// Modbus RTU frames.
+/// If false, the compiler removes the code for Modbus RTU frames.
 constexpr bool kBuiltModbus = some_model_meets(Needs::Modbus);
 
-/// Returns the member `part` of each row of `table`, but omits the rows whose `needs` no built model meets.
+/// The member `part` of each row of `table`, without the rows whose `needs` no built model meets.
 template <const auto& table, auto part>
 constexpr auto rows_of_built_models() {
   constexpr std::size_t kCount = [] {

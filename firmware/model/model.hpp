@@ -1,5 +1,4 @@
-// The models, one table row each. The protocol code does not depend on designations. .github/CONTRIBUTING.md
-// describes how to add a model.
+// The models, one table row each. To add one: .github/CONTRIBUTING.md. No protocol code uses a designation.
 #pragma once
 
 #include <cstdint>
@@ -7,24 +6,21 @@
 
 namespace ex9000 {
 
-/// The firmware version that `$AAF` and object 02 of Modbus function 2B return, format `Dnn.nn` (manuals
-/// 2.8). Register 0x0300 contains its four digits in BCD.
+/// As `$AAF` and object 02 of function 2B return it, in the form `Dnn.nn` (manuals 2.8). Register 0x0300
+/// contains its four digits in BCD.
 constexpr std::string_view kFirmwareVersion = "D01.00";
 
-/// The values that `~AA0`, which reads the status of the host watchdog, can return (manuals 2.16; 2.18 of the
-/// EX9052D).
+/// What `~AA0`, the host watchdog's status, can return (manuals 2.16; EX9052D 2.18).
 enum class StatusStyle : std::uint8_t {
   TimeoutOnly,       ///< 00, 04
   EnableAndTimeout,  ///< 00, 80, 84
 };
 
-/// The switching elements of the outputs. The protocol code does not use them; the simulator uses them to
-/// label the terminals.
+/// Not for protocol code: the simulator labels the terminals with it.
 enum class OutputKind : std::uint8_t { None, OpenCollector, Relay, PhotoMos };
 
-/// The place at which the user ties INIT* to GND. The protocol code does not use it; the simulator shows it
-/// to users. According to section 1.4 of the manuals, older modules have a terminal, and newer modules have a
-/// slide switch at the rear. The first pages of two manuals name the models that have a switch.
+/// Where the user ties INIT* to GND; the simulator shows it. Older modules have a terminal, newer ones a
+/// slide switch at the rear (manuals 1.4). The first pages of two manuals name the models with a switch.
 enum class InitInput : std::uint8_t { Terminal, RearSwitch };
 
 struct Model {
@@ -42,7 +38,7 @@ struct Model {
   [[nodiscard]] constexpr bool speaks_modbus() const { return modbus_code != 0; }
   [[nodiscard]] constexpr bool has_inputs() const { return inputs != 0; }
   [[nodiscard]] constexpr bool has_outputs() const { return outputs != 0; }
-  /// Return a mask of the outputs or of the inputs: bit n is set for each existing channel n.
+  /// Bit n is set for each existing channel n.
   [[nodiscard]] constexpr std::uint16_t output_mask() const {
     return static_cast<std::uint16_t>((1UL << outputs) - 1U);
   }
@@ -97,7 +93,7 @@ inline constexpr Model kModels[] = {
     {"EX9068D", 0, 8, 0, StatusStyle::TimeoutOnly, "9068", 6, "8 relay outputs", OutputKind::Relay},
 };
 
-/// Returns the row with this designation; null if there is none.
+/// Null if there is none.
 constexpr const Model* find_model(std::string_view designation) {
   for (const Model& model : kModels) {
     if (model.designation == designation) {
@@ -107,8 +103,7 @@ constexpr const Model* find_model(std::string_view designation) {
   return nullptr;
 }
 
-/// The property of a model that a DCON command, a Modbus function, a coil, a discrete input or a register
-/// requires.
+/// What a DCON command, a Modbus function or a register-map row requires of a model.
 enum class Needs : std::uint8_t { Nothing, Outputs, Inputs, Modbus };
 
 constexpr bool meets(const Model& model, Needs needs) {

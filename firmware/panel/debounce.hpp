@@ -5,10 +5,10 @@
 
 namespace ex9000 {
 
-/// Accepts a level when every sample for at least 10 ms has had this level (wire.md D13).
+/// Accepts a level when every sample for at least 10 ms has had it (wire.md D13).
 class Debounce {
  public:
-  /// Processes the present level of the switch. The main loop calls this in every pass.
+  /// In every pass of the main loop.
   void sample(bool level, Time now) {
     if (!sampled_ || level != candidate_) {
       sampled_ = true;
@@ -28,12 +28,10 @@ class Debounce {
     }
   }
 
-  /// Returns whether a level has been accepted since reset.
+  /// Whether a level has been accepted since reset; until then, `level` is false.
   [[nodiscard]] bool known() const { return known_; }
-  /// Returns the last accepted level; false if none has been accepted since reset.
   [[nodiscard]] bool level() const { return level_; }
-  /// When to sample the switch again, at most 1 ms after the last sample; disarmed while no level is waiting
-  /// to be accepted.
+  /// At most 1 ms after the last sample; disarmed while no level is waiting to be accepted.
   [[nodiscard]] const Deadline& next_sample() const { return next_sample_; }
 
  private:

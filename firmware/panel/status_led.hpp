@@ -16,7 +16,7 @@ class StatusLed {
     SettingsUnreadable,  ///< two short flashes every 2 s (wire.md D8)
   };
 
-  /// Selects and advances the pattern. The main loop calls this in every pass.
+  /// In every pass of the main loop.
   void show(Pattern pattern, Time now) {
     if (pattern != pattern_) {
       pattern_ = pattern;
@@ -29,15 +29,14 @@ class StatusLed {
   }
 
   [[nodiscard]] Pattern pattern() const { return pattern_; }
-  /// Returns whether the LED is on: it is on in even phases.
   [[nodiscard]] bool lit() const { return phase_ % 2 == 0; }
-  /// When the LED changes next; disarmed while it is steady.
+  /// Disarmed while it is steady.
   [[nodiscard]] const Deadline& next_change() const { return next_; }
 
  private:
   static constexpr unsigned kPhases = 4;
 
-  /// Returns the duration of the present phase. Call this only for a pattern that flashes.
+  /// Of the present phase. Only for a pattern that flashes.
   [[nodiscard]] Duration length() const {
     if (pattern_ == Pattern::HostTimeout) {
       return milliseconds(250);

@@ -12,7 +12,7 @@ inline Refusal write_outputs(const State& /*state*/, BitWrite bits, Outcome& out
   return Refusal::None;
 }
 
-/// `setting`: the safe value or the power-on value; `change`: the same member of SettingsChange.
+/// `setting`: the safe or the power-on value; `change`: the same member of SettingsChange.
 template <auto setting, auto change>
 Refusal write_preset_value(const State& state, BitWrite bits, Outcome& outcome) {
   outcome.change().*change = bits.applied_to(state.settings.*setting);
@@ -66,8 +66,7 @@ inline std::uint16_t read_counting_edge(const State& state) {
 inline Refusal write_counting_edge(const State& state, BitWrite bits, Outcome& outcome) {
   const unsigned others = state.settings.format & ~unsigned{kFormatRisingEdge};
   outcome.change().format = static_cast<std::uint8_t>(others | (bits.value != 0 ? kFormatRisingEdge : 0U));
-  // A `%` command changes the edge at the next reset. A write of this coil changes the edge immediately, even
-  // if the stored bit stays the same.
+  // At once, even if the stored bit stays the same; a `%` command changes the edge at the next reset.
   outcome.request(Effect::TakeCountingEdge);
   return Refusal::None;
 }

@@ -8,7 +8,6 @@ namespace ex9000::registers {
 
 namespace {
 
-// The tables without their texts. An image does not contain these texts.
 constexpr auto kBitRows = rows_of_built_models<kBitRegisters, &BitRegister::row>();
 constexpr auto kWordRows = rows_of_built_models<kWordRegisters, &WordRegister::row>();
 

@@ -1,4 +1,4 @@
-// The rows of the register map: the coils and discrete inputs are in bits.hpp, the registers in words.hpp.
+// The rows of the register map: bits.hpp has the coils and discrete inputs, words.hpp the registers.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace ex9000::registers {
 
-/// A set of function codes that can access a row; bit n is function n.
+/// The function codes that can access a row; bit n is function n.
 using Functions = std::uint16_t;
 constexpr Functions kReadCoils = 1U << 0x1U;
 constexpr Functions kReadDiscreteInputs = 1U << 0x2U;
@@ -18,12 +18,11 @@ constexpr Functions kReadInputRegisters = 1U << 0x4U;
 constexpr Functions kWriteSingleCoil = 1U << 0x5U;
 constexpr Functions kWriteSingleRegister = 1U << 0x6U;
 constexpr Functions kWriteMultipleCoils = 1U << 0xFU;
-/// Functions 06 and 10 (hex) can always access the same rows, so they share one bit.
+/// Functions 06 and 10 (hex) can always access the same rows.
 constexpr Functions kWriteRegisters = kWriteSingleRegister;
 constexpr Functions kReadRegisters = kReadHoldingRegisters | kReadInputRegisters;
 
-/// The number of coils, discrete inputs or registers of a row: a fixed number, the number of outputs or of
-/// inputs of the model, or twice the number of its inputs.
+/// How many coils, discrete inputs or registers a row has.
 enum class Width : std::uint8_t { One = 1, Two = 2, Eight = 8, PerOutput, PerInput, PairPerInput };
 
 constexpr unsigned kLargestWidth = 32;
@@ -38,7 +37,6 @@ constexpr unsigned width_of(Width width, const Model& model) {
   return width == Width::PairPerInput ? 2U * model.inputs : model.inputs;
 }
 
-/// Additional rules for access to a row.
 using Rules = std::uint8_t;
 constexpr Rules kPlain = 0;
 constexpr Rules kOnlyOn = 1U << 0U;         ///< exception 03 for function 05 with 0000
@@ -46,36 +44,33 @@ constexpr Rules kConfiguration = 1U << 1U;  ///< writes by broadcast are ignored
 constexpr Rules kExtension = 1U << 2U;      ///< `~AAX` accesses the row too (firmware/extensions.md)
 constexpr Rules kLong = 1U << 3U;           ///< pairs of registers with 32-bit values, high word first
 
-/// A row of kBitRegisters without its texts. An image contains only this part of the row.
 struct BitRow {
   std::uint16_t first = 0;
   Width width = Width::One;
   Needs needs = Needs::Nothing;
   Functions functions = 0;
   Rules rules = kPlain;
-  /// Returns all bits of the row. Bit 0 is the value of the row's first coil or discrete input.
+  /// Bit 0 is the first coil or discrete input of the row.
   std::uint16_t (*read)(const State& state) = nullptr;
-  /// Writes the coils of the row whose bit is set in `bits.mask`.
   Refusal (*write)(const State& state, BitWrite bits, Outcome& outcome) = nullptr;
 
   [[nodiscard]] constexpr bool has(Rules rule) const { return (rules & rule) != 0; }
 };
 
-/// A row of kWordRegisters without its texts. An image contains only this part of the row.
 struct WordRow {
   std::uint16_t first = 0;
   Width width = Width::One;
   Needs needs = Needs::Nothing;
   Functions functions = 0;
   Rules rules = kPlain;
-  /// `index`: position of the register in the row, from 0.
+  /// `index`: position in the row, from 0.
   std::uint16_t (*read)(const Exchange& exchange, unsigned index) = nullptr;
   Refusal (*write)(const State& state, unsigned index, std::uint16_t value, Outcome& outcome) = nullptr;
 
   [[nodiscard]] constexpr bool has(Rules rule) const { return (rules & rule) != 0; }
 };
 
-/// A row with its documentation. The firmware never uses the texts, so an image does not contain them.
+/// The texts are documentation; an image does not contain them.
 struct BitRegister {
   std::string_view id;  ///< identifies the row in exports and test coverage; must not change
   std::string_view meaning;

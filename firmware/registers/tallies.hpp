@@ -1,5 +1,4 @@
-// The line tallies: what a module has counted on its line since reset or clearing (firmware/extensions.md,
-// wire.md D1).
+// What a module counts on its line since reset or clearing (firmware/extensions.md, wire.md D1).
 #pragma once
 
 #include <cstdint>
@@ -8,7 +7,7 @@
 
 namespace ex9000::registers {
 
-/// The line tallies in the order of registers 0x0308 to 0x030F. Function 08 reads the first six.
+/// In the order of registers 0x0308 to 0x030F. Function 08 reads the first six.
 enum class Tally : std::uint8_t {
   BusMessages,
   BusErrors,
@@ -20,8 +19,7 @@ enum class Tally : std::uint8_t {
   LostFrames,
 };
 
-/// Returns the count since reset or the last clearing, modulo 65536. The count includes the request of
-/// `exchange` if `tally` counts that request.
+/// Modulo 65536, with the request of `exchange` if `tally` counts it.
 inline std::uint16_t count_of(const Exchange& exchange, Tally tally) {
   const LineTallies& line = exchange.tallies;
   const Diagnostics& own = exchange.state.diagnostics;

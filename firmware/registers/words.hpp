@@ -1,4 +1,4 @@
-// The registers, and the functions that read and write them - wire.md section 7 and extensions.md.
+// The registers, and the functions that read and write them - wire.md section 7, extensions.md.
 #pragma once
 
 #include <limits>
@@ -15,7 +15,7 @@ std::uint16_t read_setting(const Exchange& exchange, unsigned /*index*/) {
   return static_cast<std::uint16_t>(exchange.state.settings.*setting);
 }
 
-/// Leaves every value that the type of the setting can hold to Settings::possible_for.
+/// Settings::possible_for judges every value that the setting's type can hold.
 template <auto setting>
 Refusal write_setting(const State& /*state*/, unsigned /*index*/, std::uint16_t value, Outcome& outcome) {
   using Value = typename std::decay_t<decltype(outcome.change().*setting)>::value_type;
@@ -31,7 +31,7 @@ std::uint16_t read_statistic(const Exchange& exchange, unsigned /*index*/) {
   return static_cast<std::uint16_t>(exchange.state.statistics.*statistic);
 }
 
-/// Returns a word of a 32-bit value; index 0 is the high word.
+/// Index 0 is the high word.
 constexpr std::uint16_t word_of(std::uint32_t value, unsigned index) {
   constexpr unsigned kBitsOfAWord = 16;
   return static_cast<std::uint16_t>(index == 0 ? value >> kBitsOfAWord : value);
@@ -42,13 +42,12 @@ inline std::uint16_t read_counter(const Exchange& exchange, unsigned index) {
 }
 
 inline std::uint16_t read_module_code(const Exchange& exchange, unsigned index) {
-  // Example: the code 0x9042 is read as 0x0090, 0x4200.
   const unsigned code = exchange.model().modbus_code;
   return static_cast<std::uint16_t>(index == 0 ? code >> 8U : code << 8U);
 }
 
 inline Refusal write_address(const State& state, unsigned index, std::uint16_t value, Outcome& outcome) {
-  // The range holds even if the stored protocol is ASCII, which permits more addresses.
+  // Even if the stored protocol is ASCII, which permits more addresses.
   return is_modbus_address(value) ? write_setting<&SettingsChange::address>(state, index, value, outcome)
                                   : Refusal::WrongValue;
 }
@@ -89,7 +88,7 @@ inline Refusal write_timed_output(const State& /*state*/, unsigned index, std::u
   return Refusal::None;
 }
 
-/// Returns the version `Dnn.nn` as four BCD digits.
+/// `Dnn.nn` as four BCD digits.
 inline std::uint16_t read_version(const Exchange& /*exchange*/, unsigned /*index*/) {
   unsigned digits = 0;
   for (const char character : kFirmwareVersion) {
@@ -210,7 +209,7 @@ inline constexpr WordRegister kWordRegisters[] = {
      "they wrap",
      "",
      {0x0308, Width::Eight, Needs::Nothing, kReadRegisters, kExtension, read_tally, nullptr}},
-    // This row is documentation only. The receiver detects a host OK, so no function uses this row.
+    // Documentation only: the receiver detects a host OK.
     {"host-ok",
      "host OK: a request to read this register, with quantity 0 or 1, restarts the host watchdog "
      "and gets no reply; address 0 reaches all modules",

@@ -9,9 +9,9 @@
 
 namespace ex9000 {
 
-/// The argument of a handler. A handler is the C++ function for a DCON command or a Modbus function. It reads
-/// the request, the module's state and the tallies, writes the reply, and records in the outcome what the
-/// module must do. It changes nothing else, and leaves to `judge_outcome` what that function judges.
+/// The argument of a handler, the C++ function for a DCON command or Modbus function. It writes the reply,
+/// records in the outcome what the module must do, and changes nothing else. It leaves the rules of
+/// `judge_outcome` to that function.
 struct Exchange {
   constexpr Exchange(const State& state_of_module, const LineTallies& tallies_of_line)
       : state(state_of_module), tallies(tallies_of_line) {}
@@ -26,8 +26,8 @@ struct Exchange {
   Outcome outcome;
   Reply reply;
 
-  /// Judges what the handler has recorded in the outcome by the rules that hold for every request: the model
-  /// must be able to store the changed settings, and nothing drives outputs while the timeout status is set.
+  /// The rules for every request: the model must be able to store the changed settings, and nothing drives
+  /// outputs while the timeout status is set.
   [[nodiscard]] Refusal judge_outcome() const {
     if (outcome.changes_settings() &&
         !outcome.change().applied_to(state.settings).possible_for(state.model())) {
@@ -36,7 +36,7 @@ struct Exchange {
     return outcome.drives_outputs() && state.outputs_blocked() ? Refusal::OutputsBlocked : Refusal::None;
   }
   [[nodiscard]] constexpr const Model& model() const { return state.model(); }
-  /// Prepares the exchange, whose outcome is clear, for the next request.
+  /// For the next request. The outcome must be clear.
   void begin(Bytes request) {
     frame = request;
     outcome.refusal = Refusal::None;

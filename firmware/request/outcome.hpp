@@ -1,4 +1,4 @@
-// The outcome of a request: whether it is refused, and what the module must do before it sends the reply.
+// The outcome of a request: a refusal, or what the module must do before it sends the reply.
 #pragma once
 
 #include <array>
@@ -9,8 +9,7 @@
 
 namespace ex9000 {
 
-/// The reason why the module refuses a request. The module does not carry out any action of a refused
-/// request.
+/// Why a request is refused. The module carries out no action of it.
 enum class Refusal : std::uint8_t {
   None,
   // ASCII: the reply is `?AA` or `?` (wire.md section 3)
@@ -32,7 +31,7 @@ enum class Refusal : std::uint8_t {
   StoreFailed,     ///< ASCII `?AA`, Modbus 04: the memory did not store the settings
 };
 
-/// Bits to write: each bit that is set in `mask` gets its value in `value`.
+/// Each bit that is set in `mask` gets its value in `value`.
 struct BitWrite {
   std::uint16_t mask = 0;
   std::uint16_t value = 0;
@@ -42,14 +41,13 @@ struct BitWrite {
   }
 };
 
-/// Timed outputs to switch: each channel whose bit is set in `mask` is switched on for `units` x 0.1 s, or
-/// off if its `units` is 0.
+/// Each channel in `mask` is switched on for `units` x 0.1 s, or off if that is 0.
 struct TimedDrive {
   std::uint16_t mask = 0;
   std::array<std::uint16_t, kMaxOutputs> units{};
 };
 
-/// An action that neither changes settings nor drives outputs. The module carries out these actions last.
+/// Neither changes settings nor drives outputs. Carried out last.
 enum class Effect : std::uint8_t {
   RestartHostWatchdog,
   TakeAddress,       ///< use the stored address from now on
@@ -63,8 +61,8 @@ enum class Effect : std::uint8_t {
   ClearTimeoutCount,
 };
 
-/// The reason of a refusal, and everything that the module must do before it sends the reply. The module
-/// first stores a change of settings and then does the rest. It judges no other frame in between.
+/// The module first stores a change of settings, then does the rest, and judges no other frame in between. In
+/// masks, bit n is channel n; 0 means none.
 class Outcome {
  public:
   void request(Effect effect) { effects_ = static_cast<std::uint16_t>(effects_ | bit(effect)); }
@@ -72,19 +70,16 @@ class Outcome {
   [[nodiscard]] bool has_effects() const { return effects_ != 0; }
 
   void drive(BitWrite outputs) { drive_ = outputs; }
-  /// Returns the outputs to drive, bit n for channel n; the mask is 0 if there are none.
   [[nodiscard]] BitWrite outputs_to_drive() const { return drive_; }
 
   void drive_for(unsigned channel, std::uint16_t units) {
     timed_drive_.mask = static_cast<std::uint16_t>(timed_drive_.mask | 1U << channel);
     timed_drive_.units[channel] = units;
   }
-  /// Returns the timed outputs to switch; the mask is 0 if there are none.
   [[nodiscard]] const TimedDrive& timed_outputs_to_drive() const { return timed_drive_; }
   [[nodiscard]] bool drives_outputs() const { return (drive_.mask | timed_drive_.mask) != 0; }
 
-  /// Records that the request changes settings. Returns the change, so that the caller can add settings to
-  /// it.
+  /// Now the request changes settings; the caller adds them to the result.
   SettingsChange& change() {
     changes_settings_ = true;
     return change_;
@@ -92,7 +87,7 @@ class Outcome {
   [[nodiscard]] const SettingsChange& change() const { return change_; }
   [[nodiscard]] bool changes_settings() const { return changes_settings_; }
 
-  /// Removes all actions, but keeps the reason of a refusal.
+  /// Removes all actions, but keeps the refusal.
   void clear() {
     effects_ = 0;
     drive_ = {};

@@ -12,8 +12,8 @@
 
 namespace ex9000 {
 
-/// Holds a frame of up to kLongestFrame bytes, and drops all further bytes. No reply is longer: the longest
-/// Modbus reply is an echo of the longest request, and every DCON reply is shorter than 32 bytes.
+/// Drops bytes beyond kLongestFrame. No reply is longer: the longest Modbus reply echoes the longest request,
+/// and every DCON reply is shorter than 32 bytes.
 class Reply {
  public:
   void clear() { size_ = 0; }
@@ -38,18 +38,17 @@ class Reply {
       put(character);
     }
   }
-  /// Appends the low byte of `value` as two upper-case hex digits.
+  /// The low byte, as two upper-case hex digits.
   void put_hex(unsigned value) {
     put(hex_digit(value >> 4U));
     put(hex_digit(value));
   }
-  /// Appends the low 16 bits of `value`, high byte first.
+  /// The low 16 bits, high byte first.
   void put_word(unsigned value) {
     put(static_cast<std::uint8_t>(value >> 8U));
     put(static_cast<std::uint8_t>(value));
   }
-  /// Overwrites the byte at index `at` with the low byte of `value`. Ignores the call if the byte at `at` has
-  /// not been written yet.
+  /// The low byte of `value` replaces the byte at `at`; ignored if that is not written yet.
   void patch(std::size_t at, std::size_t value) {
     if (at < size_) {
       bytes_[at] = static_cast<std::uint8_t>(value);

@@ -12,7 +12,7 @@
 
 namespace ex9000 {
 
-/// The values that apply from one reset to the next: those of the settings, or those of INIT mode.
+/// From one reset to the next: values of the settings, or of INIT mode.
 struct InForce {
   std::uint8_t address = 0;  ///< exception: outside INIT mode, `%` changes it when NN is stored
   std::uint8_t baud_code = kFactoryBaudCode;
@@ -29,8 +29,7 @@ struct Sample {
   std::uint16_t inputs = 0;
 };
 
-/// What the main loop counts for the line tallies (registers/tallies.hpp). LineTallies contains what the
-/// interrupts count.
+/// What the main loop counts for registers/tallies.hpp; LineTallies has what interrupts count.
 struct Diagnostics {
   std::uint16_t exceptions = 0;  ///< exception replies; in ASCII, replies that begin with `?`
   std::uint16_t no_responses = 0;
@@ -56,9 +55,9 @@ struct State {
     // not covered: kBuiltModbus is a constant
     return kBuiltModbus && in_force.protocol == Protocol::ModbusRtu;
   }
-  /// Returns whether the module has configuration permission (wire.md section 2).
+  /// wire.md section 2.
   [[nodiscard]] bool configuration_permitted() const { return in_force.init_mode || init_asserted; }
-  /// Returns whether output commands are refused (wire.md section 6).
+  /// Output commands are refused, wire.md section 6.
   [[nodiscard]] bool outputs_blocked() const { return settings.timeout_status; }
 };
 

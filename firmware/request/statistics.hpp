@@ -1,4 +1,4 @@
-// What a module reports about its last reset and the time since then - firmware/extensions.md.
+// A module's report on its last reset and the time since then - firmware/extensions.md.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace ex9000 {
 
-/// The values of registers 0x0301 to 0x0306. A reset clears the counts.
+/// Registers 0x0301 to 0x0306. A reset clears the counts.
 struct Statistics {
   ResetReason reset_reason = ResetReason::Unknown;
   SettingsSource settings_source = SettingsSource::NoneGood;

@@ -1,11 +1,10 @@
-// The CRC-32 of the stored settings.
+// The CRC-32 of the stored settings: IEEE 802.3, 3.2.9.
 #pragma once
 
 #include <cstdint>
 
 namespace ex9000 {
 
-/// Computes the CRC-32 of IEEE 802.3, 3.2.9.
 class Crc32 {
  public:
   constexpr void add(std::uint8_t byte) {

@@ -1,4 +1,4 @@
-// What the module requests from its memory, and what the memory reports. See hal/memory.hpp.
+// What the module asks of its memory, and what that reports. See hal/memory.hpp.
 #pragma once
 
 #include <cstdint>
@@ -8,16 +8,14 @@
 
 namespace ex9000 {
 
-/// A job for the memory.
+/// Load: copies the newest good record of `model` to `record` (kRecordRoom bytes). If there is none, `record`
+/// stays the same; the load fails if also a part of the memory does not answer.
 ///
-///     Load      Copies the newest good record of `model` to `record`, which has kRecordRoom bytes. If there
-///               is none, `record` stays the same. The load fails if there is none and a part of the memory
-///               does not answer.
-///     Save      Writes `record` and reads it back, up to `attempts` times. The sequence of the record must
-///               follow that of the newest record. If the power fails, a reset loads either the previous
-///               record or this one. If the save fails, the memory withdraws the record: it makes sure that
-///               a reset loads the previous one. Only after a load that has succeeded.
-///     Withdraw  Tries again to withdraw the record of a failed save. Only if MemoryResult::refused.
+/// Save: only after a load that succeeded. Writes `record`, whose sequence must follow that of the newest
+/// one, and reads it back, up to `attempts` times. If the power fails, a reset loads the previous record or
+/// this one. A failed save withdraws the record: a reset then loads the previous one.
+///
+/// Withdraw: tries again to withdraw the record of a failed save. Only if MemoryResult::refused.
 struct MemoryJob {
   enum class Kind : std::uint8_t { Load, Save, Withdraw };
 
@@ -27,7 +25,7 @@ struct MemoryJob {
   std::uint8_t attempts = 0;  ///< for Save, at least 1
 };
 
-/// The origin of the settings that were loaded at reset: register 0x0306 (firmware/extensions.md).
+/// Of the settings that were loaded at reset: register 0x0306 (firmware/extensions.md).
 enum class SettingsSource : std::uint8_t {
   Good = 0,        ///< a good record; no other record is bad
   OneCopyBad = 1,  ///< a good record; another one, which may be newer, is bad
@@ -35,7 +33,7 @@ enum class SettingsSource : std::uint8_t {
   Blank = 4,       ///< nothing was ever stored: factory settings; 3 is for a record of an older layout
 };
 
-/// The state of the memory when a job has ended.
+/// When a job has ended.
 struct MemoryResult {
   bool succeeded = false;
   SettingsSource source = SettingsSource::NoneGood;  ///< of the last load; Good after a successful save

@@ -20,15 +20,13 @@ constexpr std::size_t known_settings_size() {
   return size;
 }
 constexpr std::size_t kKnownSettings = known_settings_size();
-/// The size in bytes of the settings from `address` to `safe_value`. This firmware writes these settings into
-/// every record.
+/// From `address` to `safe_value`, in bytes: this firmware writes these settings into every record.
 constexpr std::size_t kFirstSettings = 19;
 static_assert(sizeof(bool) == 1 && sizeof(Protocol) == 1 && sizeof(Name) == kMaxNameLength + 1 &&
                   sizeof(InputFilters) == std::size_t{2} * kMaxInputs,
               "the size of a type differs from its size in a record");
 static_assert(kKnownSettings <= kRoomForSettings, "the settings do not fit in a record");
 
-/// Writes values into a record, one after the other.
 class Encoder {
  public:
   explicit Encoder(std::uint8_t* to) : to_(to) {}
@@ -63,8 +61,7 @@ class Encoder {
   std::uint8_t* to_;
 };
 
-/// Reads settings from a record, one after the other. If the record ends before the end of a setting, this
-/// setting and all later ones keep their values.
+/// Reads settings one after the other. Those that the record lacks or cuts off keep their values.
 class Decoder {
  public:
   explicit Decoder(Bytes from) : from_(from) {}
@@ -79,7 +76,7 @@ class Decoder {
     from_.data += sizeof value;
     from_.size -= sizeof value;
   }
-  /// Returns false if a flag or the protocol had a value that its type does not allow.
+  /// False if a flag or the protocol had a value that its type does not allow.
   [[nodiscard]] bool valid() const { return valid_; }
 
  private:
@@ -99,7 +96,7 @@ class Decoder {
     }
   }
   void decode(Name& value) {
-    // A name that is too long becomes an empty name, which no model could have stored.
+    // A name that is too long becomes empty, which no model could have stored.
     const std::size_t length = from_.data[kMaxNameLength];
     value = Name(Bytes{from_.data, length <= kMaxNameLength ? length : 0});
   }
@@ -113,9 +110,8 @@ class Decoder {
   bool valid_ = true;
 };
 
-/// Returns how many bytes of settings a record requires: up to the last setting that differs from its factory
-/// value, but at least kFirstSettings. If all settings after `safe_value` have their factory values, a record
-/// therefore takes one page.
+/// Bytes of settings up to the last one that differs from its factory value, at least kFirstSettings: with
+/// factory values after `safe_value`, a record takes one page.
 std::size_t required_size(const Model& model, const Settings& settings) {
   const Settings factory = Settings::factory(model);
   std::size_t size = 0;
@@ -130,7 +126,6 @@ std::size_t required_size(const Model& model, const Settings& settings) {
   return required;
 }
 
-/// Returns the CRC-32 over the model's designation and `bytes`.
 std::uint32_t check_of(const Model& model, Bytes bytes) {
   Crc32 crc;
   for (const char character : model.designation) {

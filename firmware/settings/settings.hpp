@@ -1,4 +1,4 @@
-// The settings, and a change of some of them. A module keeps its settings without power - wire.md section 8.
+// The settings, which a module keeps without power, and a change of some of them - wire.md section 8.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@ namespace ex9000 {
 
 enum class Protocol : std::uint8_t { Ascii = 0, ModbusRtu = 1 };
 
-/// The bits of the data format, field FF of `%AANNTTCCFF` (manuals 1.10). All other bits are 0.
+/// Of the data format, field FF of `%AANNTTCCFF` (manuals 1.10). All other bits are 0.
 constexpr std::uint8_t kFormatRisingEdge = 0x80;
 constexpr std::uint8_t kFormatChecksum = 0x40;
 constexpr std::uint8_t kFormatMask = kFormatRisingEdge | kFormatChecksum;
@@ -25,8 +25,7 @@ constexpr bool is_modbus_address(unsigned address) {
   return address >= kFirstModbusAddress && address <= kLastModbusAddress;
 }
 
-/// Text of at most 7 characters for the module's name. The constructors ignore all further characters. Not
-/// every text is a possible name; see `is_possible`.
+/// The first 7 characters of a text. Not every one is a possible name.
 class Name {
  public:
   constexpr Name() = default;
@@ -44,7 +43,7 @@ class Name {
   static constexpr bool is_name_character(std::uint8_t byte) { return byte >= 0x20 && byte <= 0x7E; }
 
   [[nodiscard]] constexpr Bytes bytes() const { return {characters_.data(), length_}; }
-  /// Returns whether the name has 1 to `longest` characters and each of them is from 0x20 to 0x7E.
+  /// 1 to `longest` characters from 0x20 to 0x7E.
   [[nodiscard]] bool is_possible(unsigned longest) const;
 
   friend constexpr bool operator==(const Name& a, const Name& b) {
@@ -67,16 +66,15 @@ class Name {
   std::uint8_t length_ = 0;
 };
 
-/// The filter time of each input channel in ms; 0: no filter.
+/// In ms per input channel; 0: no filter.
 class InputFilters {
  public:
   static constexpr std::uint16_t kLongest = 2000;
 
   [[nodiscard]] constexpr std::uint16_t of(unsigned channel) const { return milliseconds_[channel]; }
   constexpr void set(unsigned channel, std::uint16_t milliseconds) { milliseconds_[channel] = milliseconds; }
-  /// Returns whether any channel has a filter.
   [[nodiscard]] bool any() const;
-  /// Returns whether no filter time exceeds kLongest, and only channels below `channels` have a filter.
+  /// None above kLongest, none from `channels` on.
   [[nodiscard]] bool are_possible(unsigned channels) const;
 
   friend constexpr bool operator==(const InputFilters& a, const InputFilters& b) {
@@ -96,7 +94,7 @@ constexpr std::uint8_t kLongestResponseDelay = 30;  // in ms
 constexpr std::uint8_t kFactoryAddress = 1;
 constexpr std::uint8_t kFactoryWatchdogTimeout = 0xFF;
 
-/// One member for each stored setting; `As` is the type of a member. See Settings and SettingsChange.
+/// Each stored setting as an `As`: see Settings and SettingsChange.
 template <template <class> class As>
 struct SettingsOf {
   As<std::uint8_t> address{};
@@ -115,10 +113,9 @@ struct SettingsOf {
   As<std::uint8_t> response_delay{};    ///< register 0x0252, in ms
 };
 
-/// Calls `f` once for each setting, with this setting of all `settings`, in the order of a record
-/// (record.hpp). Append new settings. Never remove or move a setting or change its type, because the memories
-/// of existing modules contain records in this layout. Never change the factory value of a setting after
-/// `safe_value`, because a record may omit such a setting if it has its factory value.
+/// Calls `f` for each setting, with it of all `settings`, in the order of a record (record.hpp). Append new
+/// ones. Never remove or move a setting or change its type: existing modules have records in this layout.
+/// Never change a factory value after `safe_value`: a record may omit such a setting.
 template <class F, class... Some>
 [[gnu::always_inline]] constexpr void visit(F f, Some&... settings) {
   f(settings.address...);
@@ -141,20 +138,18 @@ template <class Value>
 using Itself = Value;
 
 struct Settings : SettingsOf<Itself> {
-  /// Returns the settings of a new module (wire.md section 2).
+  /// Of a new module (wire.md section 2).
   static Settings factory(const Model& model);
 
-  /// Returns whether `model` could have stored these settings: each value is possible, and no value
-  /// contradicts another one.
+  /// `model` could have stored these: each value is possible, and none contradicts another.
   [[nodiscard]] bool possible_for(const Model& model) const;
 
   friend bool operator==(const Settings& a, const Settings& b);
   friend bool operator!=(const Settings& a, const Settings& b) { return !(a == b); }
 };
 
-/// New values for some of the settings. A command stores all of these values or none.
+/// New values for some settings; a command stores all of them or none.
 struct SettingsChange : SettingsOf<std::optional> {
-  /// Returns `settings` with this change. Settings without a new value stay the same.
   [[nodiscard]] Settings applied_to(const Settings& settings) const;
 };
 

@@ -10,7 +10,7 @@ namespace {
 // wire.md D15
 constexpr Duration kRetry = milliseconds(1000);
 constexpr std::uint8_t kAttemptsOfACommand = 3;
-/// A save without a command does not repeat a failed attempt at once, because a command may wait for its end.
+/// A save without a command tries only once, because a command may wait for its end.
 constexpr std::uint8_t kOwnAttempts = 1;
 
 Bytes bytes_of(const RecordBytes& record) { return {record.data(), record.size()}; }
@@ -76,8 +76,8 @@ void SettingsKeeper::save(const Settings& settings, Time now) {
   may_differ_ = true;  // even if the save succeeds, because the host watchdog may expire during it
 }
 
-/// If the memory has no good record but is not blank, the keeper first loads again. If the memory does not
-/// answer, the save fails. If a record is readable now, the new one gets a later sequence number.
+/// If the memory has no good record but is not blank, loads again first. The save fails if the memory does
+/// not answer. If a record is readable now, the new one gets a later sequence number.
 void SettingsKeeper::begin_saving(const Settings& settings, std::uint8_t attempts) {
   saving_ = settings;
   attempts_ = attempts;

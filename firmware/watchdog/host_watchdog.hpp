@@ -6,23 +6,20 @@
 
 namespace ex9000 {
 
-/// Keeps only the time of the last restart. The enable flag and the timeout are settings.
+/// Only the time of the last restart. Enable flag and timeout are settings.
 class HostWatchdog {
  public:
-  /// Restarts the watchdog at `now`. Call this when the settings have been loaded after a reset, when a
-  /// request enables the watchdog (even if it was already enabled) or writes the timeout of the enabled
-  /// watchdog, for a host OK, and for a request that counts like a host OK (register 0x0251).
+  /// When the settings have been loaded; when a request enables the watchdog, even if it was enabled, or
+  /// writes its timeout while enabled; for a host OK or a request that counts like one (register 0x0251).
   constexpr void restart(Time now) { started_ = now; }
 
-  /// Returns whether the watchdog is enabled and its timeout, VV x 0.1 s, has certainly passed since the last
-  /// restart.
+  /// Enabled, and VV x 0.1 s have certainly passed since the last restart.
   [[nodiscard]] constexpr bool expired(const Settings& settings, Time now) const {
-    // A deadline is necessary because the restart may be newer than `now`; `now.since()` would then wrap.
+    // As a deadline, because the restart may be newer than `now`, and `now.since()` would wrap.
     return expiry(settings).reached(now);
   }
 
-  /// Returns the time at which the watchdog expires if it is not restarted. The result is disarmed if the
-  /// watchdog is not enabled.
+  /// Disarmed if the watchdog is not enabled.
   [[nodiscard]] constexpr Deadline expiry(const Settings& settings) const {
     return settings.watchdog_enabled ? Deadline(started_ + timeout(settings)) : Deadline();
   }
@@ -30,7 +27,7 @@ class HostWatchdog {
  private:
   static constexpr Duration timeout(const Settings& settings) {
     constexpr std::uint32_t kUnitMilliseconds = 100;
-    // The restart may have happened up to 1 us later than the recorded time.
+    // The restart may have happened up to 1 us later than recorded.
     constexpr Duration kRoundUp(1);
     return milliseconds(settings.watchdog_timeout * kUnitMilliseconds) + kRoundUp;
   }

@@ -7,15 +7,13 @@
 
 namespace ex9000 {
 
-/// Allows a feed only if both the main loop and the tick interrupt have run since the last feed. If either
-/// one stops, the hardware watchdog resets the MCU.
+/// No feed unless both main loop and tick have run since the last one: if either stops, the MCU is reset.
 class ModuleWatchdog {
  public:
-  /// Records that the tick interrupt runs. The tick interrupt calls this.
+  /// From the tick interrupt.
   void tick_alive() { ticks_.store_in_interrupt(ticks_.load() + 1U); }
 
-  /// Returns whether the hardware watchdog must be fed now. The main loop calls this at least once a tick;
-  /// the call itself shows that the main loop runs.
+  /// Whether to feed now. The main loop calls this at least once a tick, which shows that it runs.
   bool main_loop_alive() {
     const std::uint32_t ticks = ticks_.load();
     const bool both = ticks != ticks_at_feed_;
