@@ -1,9 +1,4 @@
-// A free-running clock. Its time wraps; see Time.
-//
-//     Time now() const
-//         Returns the time. It never goes back, except when it wraps. For interrupts and the main loop; does
-//         not block.
-//     Time now_in_interrupt() const
-//         Returns the same time as `now`. The call may take less time than a call of `now`. Only for
-//         interrupts that the clock's own interrupt cannot interrupt.
+// A free-running clock. Its time wraps (see Time), but never goes back otherwise. Nothing blocks.
+//     Time now() const                 For interrupts and the main loop.
+//     Time now_in_interrupt() const    Maybe faster. Only where the clock's own interrupt cannot occur.
 #pragma once

@@ -7,16 +7,13 @@
 
 namespace ex9000::hal {
 
-/// If the transfer of a byte is interrupted, for example by a reset of the MCU, a device may hold the data
-/// line low. This class sends clock pulses until the device releases the data line, but at most nine. Then it
-/// sends START and STOP. When the recovery has ended, the caller must connect the lines to the master again.
-/// All functions are for the main loop and do not block.
-///
-/// `Wires` controls the two lines directly, as open-drain outputs with pull-ups:
-///
+/// A device may hold the data line low after an interrupted transfer, for example by a reset of the MCU. This
+/// sends clock pulses until it releases the line, at most nine, then START and STOP. The caller must then
+/// connect the lines to the master again. For the main loop; nothing blocks. `Wires` drives the lines
+/// directly, as open-drain outputs with pull-ups:
 ///     void take()                         Disconnects the lines from the master and lets them float.
 ///     void pull(bool clock, bool data)    Drives a line low if its argument is true; else lets it float.
-///     bool data_is_high()                 Returns whether the data line is high.
+///     bool data_is_high()
 template <class Wires>
 class I2cBusRecovery {
  public:
@@ -26,8 +23,7 @@ class I2cBusRecovery {
     deadline_.disarm();
   }
 
-  /// Continues the recovery. Returns whether the recovery has ended. If it has not ended, call this again
-  /// immediately.
+  /// True: the recovery has ended. Else call it again at once.
   bool poll(Time now) {
     if (deadline_.armed() && !deadline_.reached(now)) {
       return false;

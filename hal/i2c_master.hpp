@@ -1,4 +1,4 @@
-// An I2C transfer, its result, and the functions that a driver of an I2C master must have.
+// An I2C transfer, and the functions of a driver of an I2C master.
 #pragma once
 
 #include <cstddef>
@@ -9,25 +9,18 @@
 
 namespace ex9000::hal {
 
-/// A transfer to or from a device: START, address, bytes in one direction, STOP. A driver of a master has the
-/// following functions. Except `on_interrupt`, they are for the main loop only and do not block.
-///
+/// START, address, bytes in one direction, STOP. A master has these functions, for the main loop except
+/// `on_interrupt`; nothing blocks.
+///     void start()                    Once, first: recovers the bus (hal/i2c_bus_recovery.hpp). Transfers
+///                                     wait for the end of this.
 ///     void begin(const I2cTransfer&, Time now)
-///         Begins a transfer. Call this only while not `busy()`. The transfer must stay valid while `busy()`.
-///     bool poll(Time now)
-///         Continues the transfer or the recovery of the bus. Call this in every pass of the main loop and,
-///         while `busy()`, after each interrupt of the master and at least every `kMemoryPollPeriod`
-///         (hal/memory.hpp). If this returns true, call it again immediately, because no interrupt will
-///         occur.
+///                                     Only while not `busy()`. The transfer stays valid while `busy()`.
+///     bool poll(Time now)             Continues the transfer or the recovery: in every pass; while `busy()`
+///                                     also after each interrupt of the master and every `kMemoryPollPeriod`
+///                                     (hal/memory.hpp). If true, again at once: no interrupt will occur.
 ///     bool busy() const
-///         Returns whether a transfer is running.
-///     I2cResult result() const
-///         Returns the result of the last transfer. Call this only while not `busy()`.
-///     void start()
-///         Begins the recovery of the bus (hal/i2c_bus_recovery.hpp). Once, before the other functions.
-///         Transfers wait until the recovery has ended.
-///     void on_interrupt()
-///         For the interrupt of the master, which then calls `Device::on_memory`.
+///     I2cResult result() const        Of the last transfer. Only while not `busy()`.
+///     void on_interrupt()             From the master's interrupt, which then calls `Device::on_memory`.
 struct I2cTransfer {
   std::uint8_t device = 0;   ///< address of the device, 7 bits
   Bytes header;              ///< bytes to write first; if empty, the transfer reads
@@ -38,7 +31,7 @@ struct I2cTransfer {
   [[nodiscard]] constexpr std::size_t size() const {
     return writes() ? header.size + source.size : destination.size;
   }
-  /// Returns the byte to write at position `index`.
+  /// The byte to write at `index`.
   [[nodiscard]] constexpr std::uint8_t byte(std::size_t index) const {
     return index < header.size ? header[index] : source[index - header.size];
   }

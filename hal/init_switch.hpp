@@ -1,12 +1,5 @@
-// INIT*, active low. On some models, a jumper connects one terminal to INIT* or to another signal. If the
-// jumper does not select INIT*, INIT* reads as released.
-//
-//     bool asserted() const
-//         Returns whether INIT* is connected to GND now. The value is not debounced. For the main loop; does
-//         not block.
-//
-// On a board, also:
-//
-//     void start()
-//         Makes the pin an input. Once, before `asserted`.
+// INIT*, active low. On some models a jumper connects a terminal to INIT* or to another signal; if not to
+// INIT*, it reads as released. For the main loop; nothing blocks.
+//     bool asserted() const    Connected to GND now, not debounced.
+//     void start()             On a board: makes the pin an input. Once, before `asserted`.
 #pragma once

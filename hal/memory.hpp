@@ -1,19 +1,14 @@
-// A nonvolatile memory for the record of the settings (firmware/settings/record.hpp), for example two places
-// in an EEPROM or a log in a flash. It carries out one job at a time while the main loop continues. If the
-// driver has an interrupt that occurs when the job can continue, this interrupt must call
-// `Device::on_memory`. All functions are for the main loop and do not block.
-//
+// A nonvolatile memory for the settings' record (firmware/settings/record.hpp), for example two places in an
+// EEPROM or a log in a flash. One job at a time, while the main loop continues. For the main loop; nothing
+// blocks. A driver with an interrupt that says that the job can continue calls `Device::on_memory` from it.
 //     void start(const MemoryJob& job, Time now)
-//         Accepts a job. Call this only while not `busy()`, and then call `poll` immediately.
+//         Only while not `busy()`. Then call `poll` at once.
 //     bool poll(Time now)
-//         Continues the job. Call this in every pass of the main loop, even if no job is running, because a
-//         memory may prepare for the next job. During a job, also call this after each interrupt of the
-//         memory and at least every `kMemoryPollPeriod`. If this returns true, call it again immediately,
-//         because no interrupt will occur.
-//     bool busy() const
-//         Returns whether a job is running.
-//     MemoryResult result() const
-//         Call this only while not `busy()`.
+//         In every pass, even without a job, because a memory may prepare for the next one. During a job also
+//         after each interrupt of the memory and at least every `kMemoryPollPeriod`. If true, call it again
+//         at once, because no interrupt will occur.
+//     bool busy() const              A job is running.
+//     MemoryResult result() const    Only while not `busy()`.
 #pragma once
 
 #include <array>
@@ -25,11 +20,10 @@
 
 namespace ex9000::hal {
 
-/// The longest time between two calls of `poll` during a job. It limits the delay of events without an
-/// interrupt, for example the expiry of a timeout.
+/// Limits the delay of events without an interrupt during a job, such as the expiry of a timeout.
 inline constexpr Duration kMemoryPollPeriod = milliseconds(1);
 
-/// Zeros in the first bytes of a record, which include its layout, withdraw it.
+/// Over the first bytes of a record, which include its layout, these withdraw it.
 inline constexpr std::array<std::uint8_t, 8> kNoRecord{};
 
 }  // namespace ex9000::hal

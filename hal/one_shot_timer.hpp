@@ -1,25 +1,17 @@
-// A timer that expires once after each start, and then causes an interrupt. `Device` requires two timers:
-//
-//   - The silence timer. Its interrupt calls `Device::on_silence`. At the baud rates of a module, the timer
-//     is set to a time between 78 us and 34 ms. Its interrupt and the receive interrupt must not interrupt
-//     each other. If both are pending, the interrupt of the silence timer must run first, because a byte
-//     after the silence does not belong to the frame before the silence.
-//   - The wake timer. Its interrupt calls `Device::on_wake_timer`. The timer is set to the time until the
-//     next deadline, 1 us to 30 s. On a board, the main loop sets it again after each tick, every 10 ms. A
-//     timer of 16 bits at 1 MHz (65.535 ms) therefore suffices: if it is set to more than 65 ms, it may
-//     expire after 65 ms. If this timer failed, the main loop would act after the next tick.
+// A timer that expires once after each start, with an interrupt. `Device` needs two:
+//   - The silence timer; its interrupt calls `Device::on_silence`. A module sets it to 78 us to 34 ms. It
+//     and the receive interrupt must not interrupt each other. If both are pending, it runs first: a byte
+//     after the silence does not belong to the frame before.
+//   - The wake timer; its interrupt calls `Device::on_wake_timer`. Set to the next deadline, 1 us to 30 s;
+//     on a board again after each tick, every 10 ms. So 16 bits at 1 MHz suffice: set to more than 65 ms, it
+//     may expire after 65 ms. If it failed, the main loop would act after the next tick.
 //
 //     void restart(Duration after)
-//         Makes the timer expire once, when the duration `after` has passed: never early, and at most 5 us
-//         late. Cancels an earlier start, even if its interrupt is already pending. For interrupts and the
-//         main loop; does not block.
-//
-// On a board, also:
-//
+//         Never early, at most 5 us late. Cancels an earlier start, even if its interrupt is pending. For
+//         interrupts and the main loop; does not block.
 //     static void start()
-//         Enables the interrupt of the timer. Once, before `restart`.
+//         On a board: enables the interrupt. Once, before `restart`.
 //     static bool take_expiry()
-//         Returns whether the timer has expired since the last `restart`, and clears the flag of the expiry.
-//         The handler of the timer calls this first and does nothing if the result is false, because another
-//         interrupt may have restarted the timer while this one was pending.
+//         On a board: whether it has expired since the last `restart`; clears the flag. The handler calls
+//         this first and does nothing if false: another interrupt may have restarted the timer meanwhile.
 #pragma once

@@ -1,15 +1,9 @@
-// The output channels: open-collector transistors, relays or PhotoMOS relays. All are de-energised from reset
-// until the first `drive`.
-//
+// The outputs: open-collector transistors, relays or PhotoMOS relays; de-energised from reset to `drive`.
 //     void drive(std::uint16_t channels)
-//         Drives all channels: bit n is channel n, 1 = energised (the transistor or PhotoMOS relay conducts,
-//         or the coil of the relay carries current). The board defines the polarity. If no interrupt occurs
-//         during the call, all changes occur within a few tens of clock cycles of the processor. The channels
-//         that do not change have no glitch. The main loop calls this at each change and at least at every
-//         tick. This does not block.
-//
-// On a board, also:
-//
+//         Bit n is channel n, 1 = energised (the transistor or PhotoMOS conducts, the coil carries current);
+//         the board defines the polarity. Unless an interrupt occurs, all channels change within a few tens
+//         of clock cycles; the others have no glitch. From the main loop, at each change and at least at
+//         every tick; does not block.
 //     void start()
-//         Makes the pins outputs, with all channels de-energised and without a glitch. Once, before `drive`.
+//         On a board: makes the pins outputs, de-energised and without a glitch. Once, before `drive`.
 #pragma once

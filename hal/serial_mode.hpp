@@ -7,7 +7,7 @@
 
 namespace ex9000::hal {
 
-/// The baud rate in bits per second, and the line format. A baud rate of 0 means that the UART is off.
+/// A baud rate of 0, in bits per second: the UART is off.
 struct SerialMode {
   std::uint32_t baud = 0;
   LineFormat format = LineFormat::k8N1;

@@ -1,10 +1,4 @@
 // The status LED.
-//
-//     void light(bool on)
-//         Turns the LED on or off. The main loop calls this at least at every tick. This does not block.
-//
-// On a board, also:
-//
-//     void start()
-//         Makes the pin an output, with the LED off. Once, before `light`.
+//     void light(bool on)    From the main loop, at least at every tick. Does not block.
+//     void start()           On a board: makes the pin an output, with the LED off. Once, before `light`.
 #pragma once

@@ -1,21 +1,13 @@
-// The MCU's own watchdog. It starts at the first `feed` or earlier, and the firmware never stops it.
-//
-//     void feed()
-//         Restarts the watchdog's countdown, which takes at most `kWatchdogPeriod`. For the main loop; does
-//         not block.
-//
-// On a board, also:
-//
-//     void start()
-//         Starts the countdown. Once after reset, before the other drivers start.
+// The MCU's own watchdog. It starts at the first `feed` or earlier; the firmware never stops it.
+//     void feed()     Restarts the countdown, at most `kWatchdogPeriod`. From the main loop; does not block.
+//     void start()    On a board: starts the countdown. Once after reset, before the other drivers start.
 #pragma once
 
 #include "firmware/time.hpp"
 
 namespace ex9000::hal {
 
-/// If the hardware watchdog is not fed, it resets the MCU within this time (wire.md section 6). While a board
-/// starts its clocks, this may take longer.
+/// Without a feed, the MCU is reset within this time (wire.md section 6), or later while its clocks start.
 inline constexpr Duration kWatchdogPeriod = milliseconds(1600);
 
 }  // namespace ex9000::hal

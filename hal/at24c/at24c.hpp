@@ -1,5 +1,4 @@
-// Driver of an AT24C64 on an I2C bus. Source: Atmel AT24C64 data sheet (doc. 0336), "write operations" and
-// "read operations".
+// AT24C64 on an I2C bus. Source: Atmel AT24C64 data sheet (doc. 0336), "write operations", "read operations".
 #pragma once
 
 #include <array>
@@ -12,13 +11,10 @@
 
 namespace ex9000::hal {
 
-/// An EEPROM of 8 KiB in pages of 32 bytes. For its functions, see hal/eeprom.hpp; for `Master`, see
-/// I2cTransfer.
-///
-/// The EEPROM acknowledges nothing while it programs a page, so the driver repeats the device address until
-/// the EEPROM acknowledges it or the timeout expires. For a read, the driver sends STOP between the memory
-/// address and the data, because not every master supports a repeated START. The EEPROM's address counter
-/// keeps the memory address.
+/// 8 KiB in pages of 32 bytes. Functions: hal/eeprom.hpp; `Master`: see I2cTransfer. While it programs a
+/// page, the EEPROM acknowledges nothing: the driver repeats the device address until it does, or until the
+/// timeout. A read has a STOP between memory address and data, because not every master supports a repeated
+/// START; the EEPROM keeps the address.
 template <class Master>
 class At24c {
  public:
@@ -56,8 +52,7 @@ class At24c {
 
   static constexpr std::uint8_t kDevice = 0x50;  // A2, A1 and A0 are connected to GND
   static constexpr std::size_t kPage = 32;
-  /// How long the driver waits for an acknowledgement. Programming a page takes at most 10 ms. The first read
-  /// after a reset may also have to wait until a page has been programmed.
+  /// For an acknowledgement. A page takes at most 10 ms; the first read after a reset may wait for one too.
   static constexpr Duration kAnswerTimeout = milliseconds(12);
 
   void begin(Step step, std::uint16_t address, Time now) {
@@ -67,16 +62,15 @@ class At24c {
     transfer(now);
   }
 
-  /// Returns the number of bytes to write to the current page.
+  /// Bytes to write to the current page.
   [[nodiscard]] std::size_t chunk() const {
     const std::size_t room = kPage - header_[1] % kPage;
     return rest_.size < room ? rest_.size : room;
   }
 
   [[gnu::noinline]] void transfer(Time now) {  // the driver of the bus is large, and there are five callers
-    // After the transfer of the bytes for a page, the driver polls: it sends the device address and the first
-    // byte of the memory address. This writes nothing. When the EEPROM acknowledges these two bytes, it has
-    // programmed the page.
+    // This polls after the bytes of a page: the device address and the first byte of the memory address write
+    // nothing. Once the EEPROM acknowledges both, the page is programmed.
     transfer_.device = kDevice;
     transfer_.header = {header_.data(), step_ == Step::Programming ? 1U : step_ == Step::Reading ? 0U : 2U};
     transfer_.source = step_ == Step::Writing ? rest_.first(chunk()) : Bytes();

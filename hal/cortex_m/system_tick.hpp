@@ -1,5 +1,4 @@
-// SysTick as a periodic interrupt. Source: ARMv7-M Architecture Reference Manual, B3.3. ARMv6-M has the same
-// registers.
+// SysTick as a periodic interrupt. Source: ARMv7-M Architecture Reference Manual, B3.3; ARMv6-M is the same.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +11,7 @@ namespace ex9000::hal::cortex_m {
 template <std::uint32_t cycles_per_microsecond>
 class SystemTick {
  public:
-  /// The period in clock cycles of the processor.
+  /// In clock cycles of the processor.
   static constexpr std::uint32_t kPeriod = kTickPeriod.microseconds() * cycles_per_microsecond;
   static_assert(kPeriod <= 1U << 24U, "the counter has 24 bits");
 

@@ -1,4 +1,4 @@
-// SysTick as the clock and the tick. Source: ARMv7-M Architecture Reference Manual, B3.3, and B3.2.4 (ICSR).
+// SysTick as clock and tick. Source: ARMv7-M Architecture Reference Manual, B3.3 and B3.2.4 (ICSR).
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace ex9000::hal::cortex_m {
 
-/// Counts ticks in the interrupt and reads the microseconds since the last tick from the counter.
+/// The interrupt counts ticks; the counter gives the microseconds since the last one.
 template <std::uint32_t cycles_per_microsecond>
 class SystemTimer {
  public:
@@ -31,15 +31,14 @@ class SystemTimer {
     std::uint32_t counted = counted_.load();
     std::uint32_t left = kCurrent.read().value();
     if (kInterruptControl.read().has(kPending)) {
-      // The counter has restarted, but the tick interrupt has not run yet. `left` may be a value from before
-      // the restart, so the counter is read again.
+      // The counter has restarted, but its interrupt has not run. `left` may be from before: read again.
       left = kCurrent.read().value();
       counted += kTickMicroseconds;
     }
     return Time(counted + kLastMicrosecond - left / cycles_per_microsecond);
   }
 
-  /// Counts a tick. Call this from the SysTick interrupt.
+  /// From the SysTick interrupt.
   void count_in_interrupt() { counted_.store_in_interrupt(counted_.load() + kTickMicroseconds); }
 
  private:

@@ -10,8 +10,7 @@ class Inputs {
   [[nodiscard]] std::uint16_t levels() const { return levels_; }
   [[nodiscard]] bool level(unsigned channel) const { return (levels_ >> channel & 1U) != 0; }
 
-  /// Sets the level of a channel. Returns whether the level changes. If the level changes while the module is
-  /// powered, the caller must report the edge to the device (`Device::on_edge`).
+  /// Whether the level changes. If the module is powered, the caller must then call `Device::on_edge`.
   bool set(unsigned channel, bool level) {
     const auto bit = static_cast<std::uint16_t>(1U << channel);
     const std::uint16_t before = levels_;

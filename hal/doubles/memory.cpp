@@ -10,9 +10,8 @@ void Memory::begin(bool writing, std::uint16_t address, std::size_t size) {
   EX9000_EXPECT(!busy());
   EX9000_EXPECT(address + size <= kSize);
   EX9000_EXPECT(!writing || address / kPage == (address + size - 1) / kPage);
-  // Besides the data, a read transfers four bytes: the device address twice, and a memory address of two
-  // bytes. A write transfers the device address only once. This double nevertheless adds the time of four
-  // bytes to each job.
+  // A read transfers the device address twice and a memory address of two bytes; a write, the device address
+  // only once, but it takes the same time here.
   constexpr std::int64_t kAddressing = 4;
   writing_ = writing;
   address_ = address;

@@ -13,8 +13,7 @@ class OneShotTimer {
   void restart_at(VirtualTime fires) { fires_ = fires; }
 
   [[nodiscard]] VirtualTime next() const { return fires_; }
-  /// Returns whether the timer fires now. If it does, the caller must call the function of `Device` that
-  /// belongs to the timer: `on_silence` or `on_wake_timer`.
+  /// If true, the caller must call `Device::on_silence` or `on_wake_timer`.
   bool fire() {
     if (fires_ > clock_.virtual_now()) {
       return false;

@@ -18,7 +18,6 @@ class Outputs {
   }
 
   [[nodiscard]] std::uint16_t channels() const { return channels_; }
-  /// Sets a function that is called with each new value.
   void on_change(std::function<void(std::uint16_t)> observer) { on_change_ = std::move(observer); }
 
  private:

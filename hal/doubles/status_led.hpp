@@ -17,7 +17,6 @@ class StatusLed {
   }
 
   [[nodiscard]] bool lit() const { return lit_; }
-  /// Sets a function that is called at each change.
   void on_change(std::function<void(bool)> observer) { on_change_ = std::move(observer); }
 
  private:

@@ -13,7 +13,7 @@ class Tick {
   void start() { next_ = clock_.virtual_now() + period_; }
 
   [[nodiscard]] VirtualTime next() const { return next_; }
-  /// Returns whether the tick fires now. If it does, the caller must call `Device::on_tick`.
+  /// If true, the caller must call `Device::on_tick`.
   bool fire() {
     if (next_ > clock_.virtual_now()) {
       return false;
@@ -21,7 +21,7 @@ class Tick {
     next_ += period_;
     return true;
   }
-  /// Stops the tick, as if its timer had failed.
+  /// As if its timer had failed.
   void stop() { next_ = kNever; }
 
  private:

@@ -8,8 +8,7 @@
 
 namespace ex9000::hal::doubles {
 
-/// The time since the start of the simulation, or a duration, in nanoseconds. 64 bits are sufficient for 292
-/// years.
+/// Since the start of the simulation, or a duration. 64 bits suffice for 292 years.
 using VirtualTime = std::chrono::nanoseconds;
 
 constexpr VirtualTime kNever = VirtualTime::max();
@@ -24,7 +23,7 @@ class VirtualClock {
     microseconds_ = std::chrono::duration_cast<std::chrono::microseconds>(now);
   }
 
-  /// Returns the first virtual time at which `now()` returns its current value plus `after`.
+  /// The first virtual time at which `now()` is its current value plus `after`.
   [[nodiscard]] VirtualTime when(Duration after) const {
     return microseconds_ + std::chrono::microseconds(after.microseconds());
   }

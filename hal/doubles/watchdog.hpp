@@ -5,7 +5,7 @@
 
 namespace ex9000::hal::doubles {
 
-/// The owner of this object must reset the module when `has_expired()` returns true.
+/// When `has_expired()`, the owner must reset the module.
 class Watchdog {
  public:
   explicit Watchdog(const VirtualClock& clock) : clock_(clock) {}

@@ -14,11 +14,11 @@
 
 namespace ex9000::hal {
 
-/// The addresses of the two places for a record. Each begins at the start of a page.
+/// Each place begins at the start of a page.
 inline constexpr std::array<std::uint16_t, 2> kPlaces{0x0000, 0x0080};
 static_assert(kPlaces[0] + kRecordRoom <= kPlaces[1], "a record does not fit in its place");
 
-/// Whether all `bytes` are FF, as in a memory that was never written.
+/// All FF, as if never written.
 constexpr bool is_blank(Bytes bytes) {
   for (const std::uint8_t byte : bytes) {
     if (byte != 0xFF) {
@@ -28,13 +28,13 @@ constexpr bool is_blank(Bytes bytes) {
   return true;
 }
 
-/// Keeps up to two records, each in its own place. A save writes to the place that does not hold the newest
-/// record, page by page, and reads back each page. The new record becomes good only when the check at its end
-/// is written. For the functions, see hal/memory.hpp; for `Eeprom`, see hal/eeprom.hpp.
+/// Up to two records, each in its place; functions: hal/memory.hpp, hal/eeprom.hpp (`Eeprom`). A save goes to
+/// the place without the newest record, page by page, and reads each page back. The new record becomes good
+/// only with the check at its end.
 ///
-/// A load reads each place up to three times until its record is good. If the last read at the first place
-/// gets no answer, and a read at the second one gets none either, the load does not repeat the latter: a
-/// module must be ready 100 ms after a reset. A place is blank if its first page is.
+/// A load reads each place up to three times, until its record is good or its first page, and so the place,
+/// is blank. If the last read at the first place and one at the second get no answer, the latter is not
+/// repeated: a module must be ready 100 ms after a reset.
 template <class Eeprom>
 class TwoPlaces {
  public:
@@ -106,7 +106,7 @@ class TwoPlaces {
     size_ = size;
   }
 
-  /// The size of the read or write at `done_`: up to the end of the page or of the record.
+  /// Of the access at `done_`: to the end of the page or of the record.
   [[nodiscard]] std::size_t page() const {
     const std::size_t left = size_ - done_;
     return left < kEepromPage ? left : kEepromPage;
@@ -121,8 +121,7 @@ class TwoPlaces {
     }
   }
 
-  /// Selects the step after an access. `ok`: the access succeeded. If this were part of `poll`, the compiler
-  /// would repeat the driver of the EEPROM for each step.
+  /// After an access; `ok`: it succeeded. In `poll`, the compiler would repeat the EEPROM's driver each time.
   [[gnu::noinline]] void next(bool ok) {
     switch (step_) {
       case Step::Start:
@@ -142,7 +141,7 @@ class TwoPlaces {
         verify(ok);
         break;
       case Step::Withdraw:
-        // This reads back because the memory may acknowledge a write without effect.
+        // Read back, because the memory may acknowledge a write without effect.
         step_ = ok ? Step::CheckWithdrawn : Step::Idle;
         succeeded_ = false;
         break;
@@ -160,7 +159,7 @@ class TwoPlaces {
     succeeded_ = succeeded;
   }
 
-  /// Returns whether a record with the header in `buffer_` could be newer than the newest one.
+  /// A record with the header in `buffer_` could be newer than the newest one.
   [[nodiscard]] bool counts() const {
     const Bytes header{buffer_.data(), buffer_.size()};
     return record_size(header) != 0 && (newest_ == kNoPlace || is_later(sequence_of(header), sequence_));
@@ -229,7 +228,6 @@ class TwoPlaces {
     finish(true);
   }
 
-  /// Ends an attempt to write a page.
   void fail() {
     if (--job_.attempts != 0) {
       step_ = Step::Write;

@@ -15,61 +15,52 @@
 
 namespace ex9000::hal::flash {
 
-/// The number of sectors of a log. They form a ring: sector 0 follows the last one. The log uses them in this
-/// order, so that they wear out evenly.
+/// They form a ring and are used in this order, so that they wear evenly.
 inline constexpr unsigned kSectors = 14;
-/// The places in a sector. Each has room for a record, and none crosses the end of a page of the flash. The
-/// first place of a sector is for its mark.
+/// Each has room for a record and crosses no end of a page. The first place of a sector is for its mark.
 inline constexpr unsigned kPlacesOfASector = kFlashSector / kRecordRoom;
 inline constexpr unsigned kPlaces = kSectors * kPlacesOfASector;
 static_assert(kFlashPage % kRecordRoom == 0);
 
-/// The first bytes of a sector that is erased and unused. The log programs them when an erase has ended. An
-/// interrupted erase may leave bytes that read as FF but do not keep what is programmed into them. The log
-/// therefore erases a sector without this mark before it uses the sector. The value is arbitrary.
+/// Begins an erased, unused sector; programmed when the erase has ended. An interrupted erase may leave bytes
+/// that read as FF but do not keep what is programmed into them, so a sector without this mark is erased
+/// before use. The value is arbitrary.
 inline constexpr std::array<std::uint8_t, 8> kMark{0x45, 0x58, 0x39, 0xC6, 0xA7, 0x9B, 0x53, 0x1D};
-/// The log programs these bytes over the mark before it uses the sector. The mark is therefore gone before
-/// the next erase begins, and an interrupted erase does not restore it.
+/// Programmed over the mark before the sector is used: the mark is gone before the next erase begins, and an
+/// interrupted erase does not restore it.
 inline constexpr std::array<std::uint8_t, 8> kNoMark{};
 
-/// A log of records in the sectors from address `kBegin` on. For its functions, see hal/memory.hpp; for
-/// `Flash`, see hal/flash.hpp.
+/// Records in the sectors from address `kBegin` on. Functions: hal/memory.hpp; `Flash`: hal/flash.hpp.
 ///
-/// A save appends a record and reads it back. The newest good record is in force, so a power failure during a
-/// save leaves the previous record or the new one. The log begins to write to a sector only if the sector has
-/// a mark. It begins a new sector for the first save after a reset, because a power failure may have
-/// interrupted the programming of a place whose bytes nevertheless read as FF, and for the save after a
-/// failed attempt.
+/// A save appends a record and reads it back. The newest good record is in force, so a power failure leaves
+/// the previous record or the new one. The log begins to write only in a sector with a mark. It takes a new
+/// one after a failed attempt and for the first save after a reset: the power may have failed while a place
+/// was programmed whose bytes still read as FF.
 ///
-/// While no job is running, `poll` erases all free sectors in advance: those that have no mark, do not hold
-/// the record in force, are not being written and have not failed. A job suspends the erase. As long as no
-/// record is in force but the flash holds bad ones, for example those of another model, `poll` erases
-/// nothing. A save waits for the end of an erase in these cases:
+/// Between jobs, `poll` erases ahead all free sectors: no mark, no record in force, not being written, not
+/// failed. A job suspends the erase. Nothing is erased while no record is in force but the flash holds bad
+/// ones, for example of another model. A save waits for the end of an erase:
+/// - If the log has not erased a sector of this flash yet: typically 45 ms, at most 400 ms.
+/// - If it uses sectors faster than it erases them. With the longest times of the data sheet and no reset or
+///   failure, saves at least 18 ms apart never wait. Closer ones have 31 places per sector erased ahead.
 ///
-/// - If the log has not erased a sector of this flash yet. An erase takes 45 ms typically and 400 ms at most.
-/// - If the log uses sectors faster than it erases them. With the longest times of the data sheet, and if no
-///   reset and no failure occurs, saves that are at least 18 ms apart never wait. If saves are closer
-///   together, each sector that has been erased in advance has room for 31.
-///
-/// With the longest times of the data sheet and a poll every millisecond, a save takes at most 8 ms if it
-/// does not wait and no attempt fails; typically, it takes 1 ms. A load reads at most 58 kB and checks at
-/// most 434 records. If a reset has interrupted an erase, the load suspends it and reads this sector too,
-/// because it cannot know which one it is. What it finds there does not matter: a sector that is erased holds
-/// neither a mark nor the record in force. A load fails if the flash does not answer within kLongestLoad, and
-/// a save fails if it has not ended after kLongestSave.
-///
-/// The tests in tests/hal measure these times, cut the power at each operation, and count erases.
+/// With those times and a poll every millisecond, a save that does not wait or fail takes at most 8 ms,
+/// typically 1 ms. A load reads at most 58 kB and checks at most 434 records. It suspends an erase that a
+/// reset has interrupted and reads that sector too, because it cannot know which one it is; that holds
+/// neither a mark nor the record in force. A load fails if the flash does not answer within kLongestLoad, a
+/// save if it has not ended after kLongestSave. The tests in tests/hal measure these times, cut the power at
+/// each operation, and count erases.
 template <class Flash, std::uint32_t kBegin>
 class RecordLog {
   static_assert(kBegin % kFlashSector == 0, "kBegin: not the start of a sector");
 
  public:
-  /// A module must be ready to receive requests within 100 ms of a reset. It must refuse a command within
-  /// 200 ms, also if a save without a command and a load come first.
+  /// A module must be ready within 100 ms of a reset, and refuse a command within 200 ms, even if a save
+  /// without a command and a load come first.
   static constexpr Duration kLongestLoad = milliseconds(40);
   static constexpr Duration kLongestSave = milliseconds(60);
-  /// An erase runs at least this long before it is suspended, so that it always makes progress. A W25Q16JV
-  /// requires 20 us; chips of other manufacturers require up to 1 ms.
+  /// An erase runs at least this long before it is suspended, so that it makes progress: a W25Q16JV requires
+  /// 20 us, other chips up to 1 ms.
   static constexpr Duration kShortestErase = milliseconds(1);
 
   Flash& flash() { return flash_; }
@@ -112,7 +103,7 @@ class RecordLog {
 
   enum class Erase : std::uint8_t { None, Running, Suspended };
 
-  /// A flash that is still busy after this time is erasing, because no program operation takes longer.
+  /// If still busy after this, the flash is erasing: no program operation takes longer.
   static constexpr Duration kLongestProgram = milliseconds(4);
   static constexpr unsigned kNoPlace = kPlaces;
   static constexpr unsigned kNoSector = kSectors;
@@ -127,7 +118,7 @@ class RecordLog {
     busy_ = false;
     deadline_.disarm();
   }
-  /// Ends a job whose time is over. The flash may still complete its operation.
+  /// The time of the job is over. The flash may still complete its operation.
   void give_up() {
     if (step_ == Step::Writing && next_ != kNoPlace) {
       refused_ = next_;
@@ -137,9 +128,8 @@ class RecordLog {
   }
 
   // --- the steps ---
-  // `wait` and `proceed` return true if `poll` must be called again immediately.
 
-  /// Runs a step while the flash is busy.
+  /// True: call `poll` again at once. `wait` is for a flash that is busy, `proceed` for one that is not.
   bool wait(Time now) {
     if (step_ == Step::Starting) {
       return end_earlier_operation(now);
@@ -154,7 +144,6 @@ class RecordLog {
     return erase_ == Erase::Suspended;
   }
 
-  /// Runs a step while the flash is not busy.
   bool proceed(Time now) {
     const Step step = step_;
     step_ = step == Step::Scanning ? step : Step::Free;
@@ -195,9 +184,7 @@ class RecordLog {
     return false;
   }
 
-  /// Waits for the end of an operation that was in progress when the MCU was reset without loss of power. If
-  /// the flash is still busy after kLongestProgram, it is erasing. This function then suspends the erase and
-  /// returns true.
+  /// After a reset without loss of power. A flash still busy after kLongestProgram is erasing: suspend it.
   bool end_earlier_operation(Time now) {
     if (!program_end_.armed()) {
       program_end_.set(now + kLongestProgram);
@@ -210,8 +197,7 @@ class RecordLog {
     return true;
   }
 
-  /// Returns whether a job is running and its next operation can begin. A save must wait for an erase if it
-  /// needs another sector and no erased sector is left.
+  /// A save must wait for an erase if it needs another sector and no erased one is left.
   [[nodiscard]] bool can_begin_job() const {
     return busy_ && (job_.kind != Kind::Save || refused_ != kNoPlace || next_ != kNoPlace ||
                      next_erased() != kNoSector);
@@ -240,7 +226,6 @@ class RecordLog {
     flash_.start_program(address_of(place), bytes);
     step_ = step;
   }
-  /// Reads the first `size` bytes of a place into `buffer_`.
   Bytes read(unsigned place, std::size_t size) {
     flash_.read(address_of(place), {buffer_.data(), size});
     return {buffer_.data(), size};
@@ -259,7 +244,7 @@ class RecordLog {
     step_ = Step::Scanning;
   }
 
-  /// Scans a place, or records that a sector has its mark and skips the sector.
+  /// A place; or a sector with its mark, which is skipped.
   void scan() {
     if (!is_for_mark(scanned_)) {
       scan_record(scanned_);
@@ -301,7 +286,7 @@ class RecordLog {
     finish(true);
   }
 
-  /// Returns whether `record` is the beginning of a record that could be newer than the newest one.
+  /// `record` begins a record that could be newer than the newest one.
   [[nodiscard]] bool counts(Bytes record) const {
     return record_size(record) != 0 && (newest_ == kNoPlace || is_later(sequence_of(record), sequence_));
   }
@@ -352,8 +337,7 @@ class RecordLog {
 
   // --- erasing in advance ---
 
-  /// Searches the ring, beginning after the sector that was opened last. Returns the first sector for which
-  /// `is_suitable` returns true; kNoSector if there is none.
+  /// In the ring, from the sector after the one opened last; kNoSector if none is suitable.
   template <class IsSuitable>
   [[nodiscard]] unsigned first_sector(IsSuitable is_suitable) const {
     for (unsigned i = 1; i <= kSectors; ++i) {
@@ -368,7 +352,7 @@ class RecordLog {
     return first_sector([this](unsigned sector) { return (erased_ & bit(sector)) != 0; });
   }
 
-  /// Makes `poll` look for free sectors, unless the flash holds bad records and none in force.
+  /// `poll` looks for free sectors, unless the flash holds bad records and none in force.
   void may_erase() { erases_ahead_ = result_.source != SettingsSource::NoneGood; }
 
   void erase_ahead(Time now) {
@@ -393,8 +377,7 @@ class RecordLog {
     }
   }
 
-  /// Suspends an erase, so that the flash is available within 20 us. Has no effect on the flash if it has
-  /// just ended the erase, or was not erasing at the reset.
+  /// Available within 20 us. No effect if the erase has just ended or there was none at the reset.
   void suspend_erase() {
     erase_ = Erase::Suspended;
     flash_.suspend();

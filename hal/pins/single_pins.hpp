@@ -1,21 +1,15 @@
-// INIT*, the status LED, and the driver enable of the RS-485 transceiver: one pin each. The `Pin` of a family
-// of microcontrollers has these functions. Interrupts and the main loop may call them.
-//
-//     void make_input(bool pull_up) const
-//         Makes the pin a digital input, with its weak pull-up if `pull_up` is true, else with its weak
-//         pull-down.
-//     void make_output(bool level) const
-//         Makes the pin an output with this level. Once after reset; the pin has no other level in between.
-//     void drive(bool level) const
-//         Sets the level of an output with one write to a register, so an interrupt and the main loop may
-//         both drive a pin, or drive two pins of one port.
+// INIT*, the status LED and the driver enable of the RS-485 transceiver: one pin each. A family's `Pin` has
+// these functions, for interrupts and the main loop:
+//     void make_input(bool pull_up) const    Digital, with its weak pull-up or pull-down.
+//     void make_output(bool level) const     With this level and no other before. Once after reset.
+//     void drive(bool level) const           One write to a register: an interrupt and the main loop may both
+//                                            drive a pin, or drive two pins of a port.
 //     bool read() const
-//         Returns the level.
 #pragma once
 
 namespace ex9000::hal {
 
-/// INIT*, active low. See hal/init_switch.hpp.
+/// See hal/init_switch.hpp.
 template <const auto& pin>
 class InitPin {
  public:
@@ -23,7 +17,7 @@ class InitPin {
   [[nodiscard]] static bool asserted() { return !pin.read(); }
 };
 
-/// A status LED that is on while its pin is high. See hal/status_led.hpp.
+/// On while its pin is high. See hal/status_led.hpp.
 template <const auto& pin>
 class LedPin {
  public:
@@ -31,8 +25,7 @@ class LedPin {
   static void light(bool on) { pin.drive(on); }
 };
 
-/// An RS-485 driver that is on while its pin is high. The main loop turns it on, and an interrupt turns it
-/// off.
+/// On while its pin is high. The main loop turns it on, an interrupt off.
 template <const auto& pin>
 class DriverEnablePin {
  public:

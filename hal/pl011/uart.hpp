@@ -15,23 +15,18 @@
 
 namespace ex9000::hal::pl011 {
 
-/// `base`: address of the registers; `clock`: frequency of the clock of the UART in Hz; `DriverEnable`: the
-/// driver enable, with the functions `start()`, which turns the RS-485 driver off, and `drive(bool on)`,
-/// which turns it on or off; `EndTimer`: a one-shot timer for this UART only. The interrupt of this timer
-/// calls `on_end_timer`.
+/// `base`: of the registers; `clock`: of the UART, in Hz; `DriverEnable`: `start()` turns the RS-485 driver
+/// off, `drive(bool on)` on or off; `EndTimer`: its own one-shot timer, whose interrupt calls `on_end_timer`.
 ///
-/// The FIFOs stay off, so that each byte causes an interrupt when it arrives and the silence after it can be
-/// measured. The disadvantage is an overrun if an interrupt is delayed by more than a character time.
-///
-/// The main loop writes `begun_` and the interrupts write `ended_`. The driver is on only while `begun_` and
-/// `ended_` differ.
+/// The FIFOs stay off: each byte causes an interrupt when it arrives, so the silence after it can be
+/// measured. The price is an overrun if an interrupt is late by more than a character time. The main loop
+/// writes `begun_`, the interrupts `ended_`; the driver is on only while these differ.
 template <std::uint32_t base, std::uint32_t clock, class DriverEnable, class EndTimer>
 class Uart {
   static_assert(largest_baud_error(clock) < kTolerableBaudError,
                 "clock: the error of at least one baud rate is 1 % or more; it must be less than 1 %");
 
  public:
-  /// Turns the driver off. Call this once, before `open`.
   static void start() { DriverEnable::start(); }
 
   // --- the functions of hal/serial_line.hpp ---
@@ -67,14 +62,11 @@ class Uart {
 
   // --- interrupts ---
 
-  /// Calls `deliver(byte, status)` for a received byte, or continues to send. Call this from the interrupt of
-  /// the UART.
   template <class Deliver>
   void on_interrupt(Deliver deliver) {
     const Bits<MaskedInterrupts> why = kMaskedInterrupts.read();
     if (why.has(kWasReceived)) {
-      // The receiver contains only one byte. The read of this byte clears the receive flag. If the transmit
-      // flag is also set, it causes another interrupt.
+      // The receiver has only one byte; its read clears the flag. A transmit flag causes another interrupt.
       const Bits<Data> data = kData.read();
       deliver(static_cast<std::uint8_t>(data.value()), status_of(data));
     } else if (why.has(kWasTransmitted)) {
@@ -84,10 +76,8 @@ class Uart {
     }
   }
 
-  /// If the last byte has been sent, turns the driver off and returns true. Else restarts the end timer and
-  /// returns false. A PL011 has no interrupt for the end of a transmission, so this function checks the busy
-  /// flag. Call this from the interrupt of the end timer. This timer first expires about one character time
-  /// after the beginning of the last byte.
+  /// A PL011 has no interrupt for the end of a transmission, so this checks the busy flag, first about a
+  /// character time after the beginning of the last byte.
   bool on_end_timer() {
     if (kFlags.read().has(kBusy)) {
       EndTimer::restart(bit_);
@@ -140,7 +130,7 @@ class Uart {
   static constexpr Bits<MaskedInterrupts> kWasReceived{1U << 4U};
   static constexpr Bits<MaskedInterrupts> kWasTransmitted{1U << 5U};
 
-  /// Returns the value of the line-control register for `format`: 8 data bits, and the FIFOs off.
+  /// 8 data bits, and the FIFOs off.
   static Bits<LineControl> line_control(LineFormat format) {
     switch (format) {  // not covered: the enumeration has no other value
       case LineFormat::k8N1:
@@ -168,16 +158,14 @@ class Uart {
     return data.has(kFramingError) ? ByteStatus::FramingError : ByteStatus::ParityError;
   }
 
-  /// Discards the echo of a sent byte, if the UART has received it, so that the receiver is empty for the
-  /// next byte.
+  /// Empties the receiver for the next byte.
   static void take_echo() {
     if (!kFlags.read().has(kReceiverEmpty)) {
       static_cast<void>(kData.read());
     }
   }
 
-  /// Sends the next byte, or starts the end timer if all bytes have been written. Call this when the previous
-  /// byte has moved from the transmit holding register to the shift register.
+  /// When the previous byte has moved from the transmit holding register to the shift register.
   void send_next() {
     Rest& rest = rest_.in_interrupt();
     if (rest.next != rest.end) {
@@ -194,8 +182,7 @@ class Uart {
 
   Duration bit_;        ///< duration of a bit, rounded up
   Duration character_;  ///< duration of a character, rounded up
-  /// The bytes that have not been written to the UART. A store to `begun_` hands this value to the
-  /// interrupts. A store to `ended_` returns it to the main loop.
+  /// Not yet written to the UART. A store to `begun_` hands it to the interrupts, one to `ended_` back.
   HandedToInterrupt<Rest> rest_;
   WrittenByMainLoop<std::uint32_t> begun_;
   WrittenByInterrupt<std::uint32_t> ended_;

@@ -5,9 +5,8 @@
 
 namespace ex9000::hal::bus {
 
-/// Reads or writes the 32-bit register at `address`, which must be a multiple of 4. Each call is exactly one
-/// access. The compiler does not remove or repeat this access, and does not move it across another such
-/// access. For interrupts and the main loop; does not block.
+/// `address`: a multiple of 4. Each call is exactly one access, which the compiler does not remove, repeat or
+/// move across another. For interrupts and the main loop; does not block.
 // NOLINTBEGIN(performance-no-int-to-ptr): the address of a register is a number
 inline std::uint32_t read(std::uint32_t address) {
   return *reinterpret_cast<volatile std::uint32_t*>(address);

@@ -1,5 +1,4 @@
-// Types for registers and their bits. A register accepts only bits of its own type, so the compiler rejects
-// code that writes the bits of an unrelated register to it.
+// Registers and their bits. A register takes only bits of its own type; the compiler rejects others.
 #pragma once
 
 #include <cstdint>
@@ -8,8 +7,7 @@
 
 namespace ex9000::hal {
 
-/// The contents of a register. `Name` is a type that identifies the register. Registers with the same bits
-/// may share a `Name`.
+/// `Name` identifies the register. Registers with the same bits may share it.
 template <class Name>
 class Bits {
  public:
@@ -17,7 +15,7 @@ class Bits {
   constexpr explicit Bits(std::uint32_t value) : value_(value) {}
 
   [[nodiscard]] constexpr std::uint32_t value() const { return value_; }
-  /// Returns whether any of `bits` is set.
+  /// Any of `bits`.
   [[nodiscard]] constexpr bool has(Bits bits) const { return (value_ & bits.value_) != 0; }
   [[nodiscard]] constexpr Bits without(Bits bits) const { return Bits(value_ & ~bits.value_); }
   friend constexpr Bits operator|(Bits a, Bits b) { return Bits(a.value_ | b.value_); }
@@ -26,8 +24,7 @@ class Bits {
   std::uint32_t value_ = 0;
 };
 
-/// A 32-bit register. `set` and `clear` read the register and then write it. Use them only if no interrupt
-/// can write the same register between the read and the write.
+/// 32 bits. `set` and `clear` read, then write: only if no interrupt can write the register in between.
 template <class Name>
 class Register {
  public:

@@ -1,6 +1,5 @@
-// Starts an image: copies it from the flash to RAM and jumps to it. Sources: RP2040 data sheet, 2.8.1 (boot
-// sequence), 4.10 (SSI); W25Q16JV data sheet, 8.2 (Read Data); ARMv6-M Architecture Reference Manual, B3.2.5
-// (VTOR).
+// Copies an image from the flash to RAM and jumps to it. Sources: RP2040 data sheet, 2.8.1 (boot sequence),
+// 4.10 (SSI); W25Q16JV data sheet, 8.2 (Read Data); ARMv6-M Architecture Reference Manual, B3.2.5 (VTOR).
 #pragma once
 
 #include <cstdint>
@@ -10,14 +9,12 @@
 
 namespace ex9000::hal::rp2040 {
 
-/// For the second stage of the boot sequence only. All functions of this class are inlined. A function that
-/// is not inlined would be in the image, and the image is not in RAM yet.
+/// For the second stage of the boot sequence only: all is inlined, because the image is not in RAM yet.
 class Boot {
  public:
-  /// Switches the reference clock to the crystal, because the ring oscillator may run at less than 2 MHz.
-  /// Blocks for at most about 5 ms if the crystal starts. If the crystal is not stable after `kMostReads`
-  /// reads, this function does not switch the clock. The image then starts the watchdog and waits for the
-  /// crystal.
+  /// For the reference clock: the ring oscillator may run at less than 2 MHz. Blocks about 5 ms at most if
+  /// the crystal starts. If it is not stable after `kMostReads` reads, the clock stays as it is: the image
+  /// then starts the watchdog and waits for the crystal.
   [[gnu::always_inline]] static void use_crystal() {
     constexpr unsigned kMostReads = 20'000;  // a read takes at least 0.5 us
     Crystal::start();
@@ -29,9 +26,8 @@ class Boot {
     }
   }
 
-  /// Copies `words` words, 1 to 65,536, from `address` of the flash to `destination`. A word takes 64 clocks
-  /// of the processor: 5.3 us with a crystal of 12 MHz. Uses the command Read Data (03h). The boot ROM reads
-  /// the second stage with the same command, so the command works without a configuration of the flash.
+  /// `words`: 1 to 65,536, in 64 clocks of the processor each: 5.3 us with a crystal of 12 MHz. The command
+  /// Read Data (03h) needs no configuration of the flash: the boot ROM reads the second stage with it.
   [[gnu::always_inline]] static void copy(std::uint32_t address, std::uint32_t* destination,
                                           std::uint32_t words) {
     constexpr std::uint32_t kReadData = 0x03;
@@ -52,7 +48,6 @@ class Boot {
     }
   }
 
-  /// Makes `vectors` the vector table, loads the stack pointer from it, and jumps to its reset handler.
   [[noreturn, gnu::always_inline]] static void jump(const std::uint32_t* vectors) {
     kVectors.write(Bits<Vectors>(static_cast<std::uint32_t>(reinterpret_cast<std::uintptr_t>(vectors))));
     // NOLINTNEXTLINE(performance-no-int-to-ptr): the table contains the address of the reset handler

@@ -1,5 +1,4 @@
-// Clock tree: the system PLL, and the clocks of the processor and the peripherals. Source: RP2040 data sheet,
-// 2.15 (clocks) and 2.18 (PLL).
+// The system PLL and the clock tree. Source: RP2040 data sheet, 2.15 (clocks) and 2.18 (PLL).
 #pragma once
 
 #include <cstdint>
@@ -10,8 +9,7 @@
 
 namespace ex9000::hal::rp2040 {
 
-/// The clocks of a board: a crystal, and a PLL that multiplies the frequency of the crystal and divides the
-/// product by two values.
+/// A crystal, whose frequency the PLL multiplies and then divides by two values.
 struct ClockTree {
   std::uint32_t crystal;     ///< Hz, a whole number of MHz, 5 MHz to 15 MHz
   std::uint32_t multiplier;  ///< 16 to 320
@@ -19,25 +17,23 @@ struct ClockTree {
   std::uint32_t divider_2;   ///< 1 to 7
 
   [[nodiscard]] constexpr std::uint32_t oscillator() const { return crystal * multiplier; }
-  /// Returns the frequency of the processor and the peripherals in Hz.
+  /// Of the processor and the peripherals, in Hz.
   [[nodiscard]] constexpr std::uint32_t frequency() const { return oscillator() / divider_1 / divider_2; }
 };
 
 class Clocks {
  public:
-  /// Switches the processor and the flash interface to the reference clock, because Boot::copy requires a
-  /// slower clock than the PLL. They still run on the PLL after a reset of only the processor, for example by
-  /// a debug probe. For the second stage of the boot sequence, so this function is inlined; see Boot.
+  /// Boot::copy requires a slower clock than the PLL, on which processor and flash interface still run after
+  /// a reset of only the processor, for example by a debug probe. Inlined for the second stage; see Boot.
   [[gnu::always_inline]] static void use_reference() {
     kSystemControl.clear(kFromPll);
     while (!kSystemSelected.read().has(kReferenceSelected)) {
     }
   }
 
-  /// Switches the reference clock to the crystal, and the processor and the peripherals to the PLL. The
-  /// second stage has already started the crystal. Call this once after reset, when the watchdog is running.
-  /// If the crystal is already stable, this blocks for less than 1 ms. If the crystal never becomes stable or
-  /// the PLL never locks, the watchdog resets the MCU.
+  /// The crystal, which the second stage has started, feeds the reference clock; the PLL feeds processor and
+  /// peripherals. Once after reset, when the watchdog is running: it resets the MCU if the crystal never
+  /// becomes stable or the PLL never locks. Blocks less than 1 ms if the crystal is stable.
   template <const ClockTree& clock>
   static void use() {
     static_assert(clock.oscillator() >= 750'000'000 && clock.oscillator() <= 1'600'000'000,

@@ -1,17 +1,14 @@
-// The crystal oscillator and the reference clock. Source: RP2040 data sheet, 2.15 (clocks) and 2.16 (crystal
-// oscillator).
+// The crystal oscillator and the reference clock. Source: RP2040 data sheet, 2.15 and 2.16.
 #pragma once
 
 #include "hal/rp2040/shared_register.hpp"
 
 namespace ex9000::hal::rp2040 {
 
-/// All functions are inlined, because the second stage of the boot sequence uses this class before the image
-/// is in RAM. None of them blocks.
+/// All is inlined, for the second stage of the boot sequence: the image is not in RAM yet. Nothing blocks.
 class Crystal {
  public:
-  /// Starts the oscillator if it is not running. After its start, it becomes `stable` when a start-up delay
-  /// of 50,176 periods is over: 4.2 ms at 12 MHz. This is the delay that a power-on reset sets.
+  /// If it is not running. `stable` 50,176 periods later, as a power-on reset sets it: 4.2 ms at 12 MHz.
   [[gnu::always_inline]] static void start() {
     constexpr Bits<Control> kRange(0xAA0);
     constexpr Bits<Control> kEnable(0xFABU << 12U);
@@ -22,9 +19,8 @@ class Crystal {
     return kStatus.read().has(kStable);
   }
 
-  /// Makes the crystal the source of the reference clock, in place of the ring oscillator. The processor and
-  /// the flash interface run on the reference clock until `Clocks::use` switches them to the PLL. Call this
-  /// only while the crystal is `stable`.
+  /// As source of the reference clock, in place of the ring oscillator. Only while `stable`. Processor and
+  /// flash interface run on it until `Clocks::use` switches them to the PLL.
   [[gnu::always_inline]] static void make_reference() {
     constexpr Bits<ReferenceControl> kFromCrystal(0x2);
     kReferenceControl.write(kFromCrystal);

@@ -1,5 +1,5 @@
-// The driver of the flash chip on the board. It uses the synchronous serial interface (SSI). Sources: RP2040
-// data sheet, 4.10 (SSI) and 2.19.6.2 (pins of the flash); W25Q16JV data sheet, 8.1 and 8.2 (instructions).
+// The flash chip, over the synchronous serial interface (SSI). Sources: RP2040 data sheet, 4.10 (SSI),
+// 2.19.6.2 (pins of the flash); W25Q16JV data sheet, 8.1 and 8.2 (instructions).
 #pragma once
 
 #include <cstddef>
@@ -12,18 +12,13 @@
 
 namespace ex9000::hal::rp2040 {
 
-/// Erases, programs and reads the flash with standard SPI commands (one data line in each direction) while
-/// the image runs from RAM. For the functions without a description, see hal/flash.hpp. Interrupts stay
-/// enabled: the driver controls chip select itself, so a delay between two bytes is harmless. The flash is
-/// not mapped into memory after `start`.
-///
-/// All functions are for the main loop. A byte that `read` returns takes 0.3 us. Any other byte takes up to
-/// 0.6 us. A command and its address together have four bytes.
+/// Uses standard SPI commands, one data line per direction, while the image runs from RAM. Contract:
+/// hal/flash.hpp. Interrupts stay enabled: the driver controls chip select itself, so a delay between two
+/// bytes is harmless. After `start`, the flash is not mapped into memory. A byte that `read` returns takes
+/// 0.3 us, any other up to 0.6 us; a command with its address has four bytes.
 class Flash {
  public:
-  /// Starts the SSI. Call this once, before the other functions. A reset of the MCU does not end an operation
-  /// of the flash, and this function resumes a suspended operation. The flash may therefore be busy after
-  /// this call.
+  /// Once, first. Resumes a suspended operation; a reset of the MCU ends none, so the flash may be busy.
   static void start() {
     constexpr std::uint32_t kDivider = 4;  // must be even; 125 MHz / 4 = 31.25 MHz; Read Data allows 50 MHz
     constexpr Bits<Control> kBytesBothWays(7U << 16U);
@@ -101,7 +96,7 @@ class Flash {
   static constexpr std::uint8_t kResume = 0x7A;
   static constexpr std::uint8_t kBusyBit = 0x01;
 
-  /// Drives chip select directly. The SSI would release chip select whenever its queue is empty.
+  /// The SSI itself would release chip select whenever its queue is empty.
   static void select(bool on) {
     constexpr Bits<SelectControl> kLow(0x2U << 8U);
     constexpr Bits<SelectControl> kHigh(0x3U << 8U);
@@ -109,13 +104,11 @@ class Flash {
     (void)kSelectControl.read();  // completes the write before the next access to the SSI
   }
 
-  /// Sends a byte and returns the byte that is received at the same time.
   static std::uint8_t exchange(std::uint8_t byte) {
     kData.write(Bits<Data>(byte));
     return take();
   }
 
-  /// Waits for a received byte, takes it from the queue and returns it.
   static std::uint8_t take() {
     constexpr Bits<Status> kReceived(1U << 3U);
     while (!kStatus.read().has(kReceived)) {
@@ -129,7 +122,7 @@ class Flash {
     select(false);
   }
 
-  /// Sends a command and an address, and leaves the chip selected.
+  /// Leaves the chip selected.
   static void address_command(std::uint8_t code, std::uint32_t address) {
     select(true);
     exchange(code);

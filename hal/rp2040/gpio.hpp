@@ -1,4 +1,4 @@
-// General-purpose pins. Source: RP2040 data sheet, 2.3.1 (SIO), 2.19 (GPIO, functions, interrupts and pads).
+// Pins. Source: RP2040 data sheet, 2.3.1 (SIO), 2.19 (GPIO, functions, interrupts and pads).
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,6 @@
 
 namespace ex9000::hal::rp2040 {
 
-/// Adjacent pins: `count` pins from `first_pin` on.
 struct PinGroup {
   std::uint8_t first_pin;
   std::uint8_t count;
@@ -18,43 +17,39 @@ struct PinGroup {
 
 enum class Function : std::uint8_t { Uart = 2, I2c = 3, Software = 5 };
 
-/// `pins` is a mask; bit n is GPIOn. Each function changes only these pins. All functions are for interrupts
-/// and the main loop. `write` reads the output levels before it changes them, so no interrupt may change the
-/// output levels of the same pins during a `write`.
+/// In `pins`, bit n is GPIOn; other pins do not change. For interrupts and the main loop. `write` reads the
+/// output levels first, so meanwhile no interrupt may change the levels of the same pins.
 class Gpio {
  public:
   [[nodiscard]] static std::uint32_t read(std::uint32_t pins) { return kLevels.read().value() & pins; }
 
-  /// Sets the output levels of all `pins` at the same time. A pin whose level does not change has no glitch.
+  /// All change at the same time; a pin that does not change has no glitch.
   static void write(std::uint32_t pins, std::uint32_t levels) {
     kOutInvert.write(Bits<Out>((kOut.read().value() ^ levels) & pins));
   }
   static void set(std::uint32_t pins) { kOutSet.write(Bits<Out>(pins)); }
   static void clear(std::uint32_t pins) { kOutClear.write(Bits<Out>(pins)); }
 
-  /// Makes `pins` inputs. Enables the weak pull-up if `pull_up` is true, else the weak pull-down. Choose
-  /// `pull_up` so that an open pin has its inactive level.
+  /// With the weak pull-up or pull-down. Choose the inactive level for an open pin.
   static void make_input(std::uint32_t pins, bool pull_up) {
     kDriveClear.write(Bits<Drive>(pins));
     make(pins, Function::Software, pull_up ? kInputPulledUp : kInputPulledDown);
   }
 
-  /// Makes `pins` outputs of 8 mA with the initial `levels`. After a reset, call this only once for each pin.
-  /// There is no glitch, because a pin drives nothing until its function is software control (SIO). Until
-  /// then, the weak pull-down holds the pin low, unless the connected circuit pulls it high.
+  /// 8 mA, initially `levels`; once per pin after a reset. No glitch: until its function is software control
+  /// (SIO), a pin drives nothing, and its weak pull-down holds it low unless the circuit pulls it high.
   static void make_output(std::uint32_t pins, std::uint32_t levels) {
     write(pins, levels);
     kDriveSet.write(Bits<Drive>(pins));
     make(pins, Function::Software, kOutput8Ma);
   }
 
-  /// Connects `pins` to a peripheral, with the weak pull-up, so that an open line is idle.
+  /// With the weak pull-up, so that an open line is idle.
   static void make_peripheral(std::uint32_t pins, Function function) {
     make(pins, function, kPeripheralPulledUp);
   }
 
-  /// The pins in `outputs` become outputs and drive their output levels. The other pins in `pins` become
-  /// inputs. The pulls do not change. `outputs` must be a subset of `pins`.
+  /// `outputs`, a subset of `pins`, drive their output levels; the rest become inputs. The pulls stay.
   static void choose_outputs(std::uint32_t pins, std::uint32_t outputs) {
     kDriveClear.write(Bits<Drive>(pins & ~outputs));
     kDriveSet.write(Bits<Drive>(outputs));
@@ -62,13 +57,13 @@ class Gpio {
 
   // --- edges of GPIO0 to GPIO23; a register has four bits for each of eight pins ---
 
-  /// Enables interrupts for both edges of `pins`. Edges that are already flagged cause an interrupt too.
+  /// Both edges. One that is already flagged causes an interrupt too.
   static void watch_edges(std::uint32_t pins) {
     for (std::uint32_t word = 0; word < kEdgeWords; ++word) {
       edge_enable(word).set(Bits<EdgeEnable>(spread(pins >> (kPinsAWord * word))));
     }
   }
-  /// Returns the watched pins that have had an edge since their last `clear_edges`.
+  /// The watched pins with an edge since their last `clear_edges`.
   [[nodiscard]] static std::uint32_t edges() {
     std::uint32_t pins = 0;
     for (std::uint32_t word = 0; word < kEdgeWords; ++word) {
@@ -127,8 +122,7 @@ class Gpio {
   static constexpr Bits<Pad> kInputPulledDown = kInputEnable | kPullDown | kSchmittTrigger | kDrive8Ma;
   static constexpr Bits<Pad> kOutput8Ma = kInputEnable | kPullDown | kSchmittTrigger | kDrive8Ma;
 
-  /// Sets the pad and the function of each pin. Sets the pad first, so that the new function never uses the
-  /// pull-up or pull-down of the old pad setting.
+  /// The pad first, so that the new function never uses the pull of the old setting.
   [[gnu::noinline]] static void make(std::uint32_t pins, Function function, Bits<Pad> bits) {
     for (std::uint32_t pin = 0; pins != 0; ++pin, pins >>= 1U) {
       if ((pins & 1U) != 0) {
@@ -142,7 +136,7 @@ class Gpio {
   static constexpr std::uint32_t kPinsAWord = 8;
   static constexpr std::uint32_t kBothEdges = 0xC;
 
-  /// Returns both edge bits of each pin whose bit is set in the lowest eight bits of `pins`.
+  /// Both edge bits of each pin in the lowest eight bits of `pins`.
   static std::uint32_t spread(std::uint32_t pins) {
     std::uint32_t bits = pins & 0xFFU;
     bits = (bits | bits << 12U) & 0x000F'000FU;
@@ -150,7 +144,7 @@ class Gpio {
     bits = (bits | bits << 3U) & 0x1111'1111U;
     return bits * kBothEdges;
   }
-  /// Returns, in the lowest eight bits, the pins that have an edge bit in `bits`.
+  /// In the lowest eight bits, the pins with an edge bit in `bits`.
   static std::uint32_t gather(std::uint32_t bits) {
     bits = (bits >> 2U | bits >> 3U) & 0x1111'1111U;
     bits = (bits | bits >> 3U) & 0x0303'0303U;
@@ -159,7 +153,7 @@ class Gpio {
   }
 };
 
-/// For its functions, see hal/pins/single_pins.hpp.
+/// See hal/pins/single_pins.hpp.
 struct Pin {
   std::uint8_t number;  ///< in the name of the pin, GPIO0 to GPIO29
 

@@ -12,9 +12,9 @@
 
 namespace ex9000::hal::rp2040 {
 
-/// The only master of a bus, at 100 kHz. `lines`: the pins of data and clock, in this order; `clock`: system
-/// clock in Hz. The main loop fills the queue of commands and empties the queue of received bytes. An
-/// interrupt only disables itself and wakes the main loop. For the functions of a master, see I2cTransfer.
+/// The only master of a bus, at 100 kHz; functions: see I2cTransfer. `lines`: data, then clock; `clock`:
+/// system clock in Hz. The main loop fills the queue of commands and empties that of received bytes. An
+/// interrupt only disables itself and wakes the main loop.
 template <const PinGroup& lines, std::uint32_t clock>
 class I2c {
  public:
@@ -47,8 +47,7 @@ class I2c {
   [[nodiscard]] bool busy() const { return busy_; }
   [[nodiscard]] I2cResult result() const { return result_; }
 
-  /// Disables the interrupt, because the interrupt request stays asserted until the main loop has removed the
-  /// cause. Call this from the I2C interrupt.
+  /// From the I2C interrupt, which stays asserted until the main loop has removed its cause.
   static void on_interrupt() { kInterruptMask.write({}); }
 
  private:
@@ -94,10 +93,9 @@ class I2c {
   static constexpr Bits<Enable> kOn{1U << 0U};
   static constexpr Bits<AbortSource> kNoAcknowledge{1U << 0U | 1U << 3U};  // of the address; of a data byte
 
-  /// The number of entries of each queue.
+  /// Entries of each queue.
   static constexpr std::size_t kQueue = 16;
-  /// The timeout of a transfer. It restarts when the main loop queues a command or takes a received byte. The
-  /// bytes of a full queue take 1.5 ms. The rest of the timeout is a reserve for delays of the main loop.
+  /// From the last command queued or byte taken. A full queue takes 1.5 ms; the main loop may add delays.
   static constexpr Duration kTimeout = milliseconds(5);
 
   // --- freeing the bus ---
@@ -122,7 +120,7 @@ class I2c {
     freeing_ = true;
   }
 
-  /// Sets up the master, and connects the pins to it. If a transfer is waiting, begins this transfer.
+  /// Sets up the master and connects the pins. Begins a transfer that waits.
   void hand_over(Time now) {
     constexpr std::uint32_t kBitRate = 100'000;
     constexpr std::uint32_t kPeriod = clock / kBitRate;
@@ -149,7 +147,7 @@ class I2c {
   // --- a transfer ---
 
   void begin_queue(Time now) {
-    // The target can be changed only while the master is off. Turning the master off also empties the queues.
+    // The target can be changed only while the master is off, which also empties the queues.
     kEnable.write({});
     kTarget.write(Bits<Target>(transfer_->device));
     kEnable.write(kOn);
@@ -184,8 +182,7 @@ class I2c {
     }
   }
 
-  /// Queues the remaining commands of the transfer while the queues have room. Then enables the interrupts
-  /// for the next event. Queues nothing after an abort.
+  /// Commands while the queues have room, none after an abort. Enables the interrupts for the next event.
   void fill(Time now) {
     const std::size_t size = transfer_->size();
     while (!aborted_ && queued_ < size && has_room()) {
@@ -198,8 +195,7 @@ class I2c {
     kInterruptMask.write(kStopped | kAborted | (more ? kQueueLow : Bits<Interrupts>()));
   }
 
-  /// Returns whether the queue of commands has room for another command. For a read, the queue of received
-  /// bytes must also have room for the byte that this command reads.
+  /// For a command and, in a read, also for the byte that it reads.
   [[nodiscard]] bool has_room() const {
     return kStatus.read().has(kRoom) && (transfer_->writes() || queued_ - received_ < kQueue);
   }

@@ -9,8 +9,7 @@
 
 namespace ex9000::hal::rp2040 {
 
-/// `groups` is an array of PinGroup that contains the pins of the channels in order, from channel 0 on.
-/// `active_high`: whether a high pin is logic 1.
+/// `groups`: an array of PinGroup with the channels' pins from channel 0 on. `active_high`: high is logic 1.
 template <const auto& groups, unsigned channels, bool active_high>
 class InputPins {
  public:
@@ -35,8 +34,7 @@ class InputPins {
 
   static constexpr bool any() { return channels != 0; }
 
-  /// Calls `deliver(channel, level)` for each channel that has had an edge. Call this from the interrupt of
-  /// the pins.
+  /// From the pins' interrupt: calls `deliver(channel, level)` for each channel that has had an edge.
   template <class Deliver>
   static void take_edges(Deliver deliver) {
     const Settled settled = settle(Gpio(), kPins, Gpio::edges());
@@ -49,7 +47,6 @@ class InputPins {
   }
 
  private:
-  /// Returns the pin of each channel.
   static constexpr std::array<std::uint8_t, channels> pins_of_channels() {
     std::array<std::uint8_t, channels> result{};
     unsigned channel = 0;

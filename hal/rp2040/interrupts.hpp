@@ -5,9 +5,8 @@
 
 namespace ex9000::hal::rp2040 {
 
-/// The processor serves pending interrupts of equal priority in the order of their numbers, the lowest number
-/// first. The timers have lower numbers than the UART, so the end of a silence is processed before the byte
-/// that follows the silence.
+/// At equal priority, the lowest pending number runs first. The timers come before the UART, so that the end
+/// of a silence is processed before the byte that follows it.
 enum class Interrupt : std::uint8_t {
   Timer0 = 0,
   Timer1 = 1,

@@ -7,21 +7,19 @@
 
 namespace ex9000::hal::rp2040 {
 
-/// `groups` is an array of PinGroup that contains the pins of the channels in order, from channel 0 on. The
-/// channels of a model must have adjacent pins. `active_high`: whether a high pin energises its channel.
+/// `groups`: an array of PinGroup with the channels' pins from channel 0 on. `active_high`: high energises.
 template <const auto& groups, unsigned channels, bool active_high>
 class OutputPins {
  public:
   static void start() { Gpio::make_output(kPins, levels(0)); }
 
-  /// Writes one register, so that all channels change at the same time.
+  /// One register, so that all channels change at the same time.
   static void drive(std::uint16_t energised) { Gpio::write(kPins, levels(energised)); }
 
  private:
   static constexpr unsigned kFirst = groups[0].first_pin;
   static constexpr std::uint32_t kPins = ((1U << channels) - 1U) << kFirst;
 
-  /// Returns whether the channels have adjacent pins.
   static constexpr bool adjacent() {
     unsigned channel = 0;
     for (const PinGroup& group : groups) {

@@ -1,5 +1,4 @@
-// The reset controller of the peripherals, and the power-on state machine, which can reset the second core.
-// Source: RP2040 data sheet, 2.13 and 2.14.
+// Resets of the peripherals and (power-on state machine) of the second core. RP2040 data sheet, 2.13, 2.14.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +7,7 @@
 
 namespace ex9000::hal::rp2040 {
 
-/// The peripherals that images must reset or release from reset before their use. Each has one bit.
+/// What images must reset, or release from reset, before use.
 enum class Block : std::uint32_t {
   I2c0 = 1U << 3U,
   Pins = 1U << 5U,
@@ -24,10 +23,9 @@ constexpr std::uint32_t operator|(std::uint32_t a, Block b) { return a | static_
 
 class Resets {
  public:
-  /// Resets `blocks` and waits until they can be used. This takes a few clock cycles. If the clock of a block
-  /// does not run, this function waits until the watchdog resets the MCU. Most blocks are already in reset
-  /// before this call: the exceptions are the timer, which the boot ROM releases, and all blocks after a
-  /// reset of only the processor, for example by a debug probe.
+  /// Waits a few clock cycles until `blocks` can be used; without a block's clock, until the watchdog resets
+  /// the MCU. Most are in reset already, except the timer, which the boot ROM releases, and all of them after
+  /// a reset of only the processor, for example by a debug probe.
   static void restart(std::uint32_t blocks) {
     kReset.set(Bits<Reset>(blocks));
     kReset.clear(Bits<Reset>(blocks));
@@ -35,9 +33,8 @@ class Resets {
     }
   }
 
-  /// Resets the second core, which may still run after a reset of only the first core. After this call, the
-  /// second core sleeps in the boot ROM. This function does not keep the second core in reset, because a
-  /// debug probe cannot connect to a core in reset.
+  /// It may still run after a reset of only the first core; then it sleeps in the boot ROM. It is not kept in
+  /// reset, because a debug probe could not connect to it.
   static void restart_second_core() {
     constexpr Bits<ForceOff> kSecondCore(1U << 16U);
     kForceOff.set(kSecondCore);

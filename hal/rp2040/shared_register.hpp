@@ -1,5 +1,4 @@
-// Registers in which one write can set or clear single bits. Source: RP2040 data sheet, 2.1.2 (atomic
-// register access).
+// Registers in which one write sets or clears single bits. Source: RP2040 data sheet, 2.1.2.
 #pragma once
 
 #include <cstdint>
@@ -9,10 +8,8 @@
 
 namespace ex9000::hal::rp2040 {
 
-/// A register of a peripheral on the APB or AHB-Lite bus. Such a register has several addresses. At one of
-/// them, a write sets only the given bits. At another one, a write clears only the given bits. `set` and
-/// `clear` therefore do not read the register first, so no interrupt can change it between a read and a
-/// write. The registers of SIO and of the SSI do not have these addresses.
+/// On the APB or AHB-Lite bus. A write to further addresses sets or clears only the given bits, so no
+/// interrupt can come between a read and a write. SIO and the SSI do not have this.
 template <class Name>
 class SharedRegister {
  public:

@@ -1,5 +1,4 @@
-// The microsecond timer as the clock of a board, and the alarms of this timer as one-shot timers. Source:
-// RP2040 data sheet, 4.6 (timer) and 4.7.2 (the tick that drives the timer).
+// The microsecond timer as clock, its alarms as one-shot timers. Source: RP2040 data sheet, 4.6 and 4.7.2.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +9,7 @@
 
 namespace ex9000::hal::rp2040 {
 
-/// The timer counts microseconds while the watchdog's tick runs; see HardwareWatchdog::start.
+/// Counts microseconds while the watchdog's tick runs; see HardwareWatchdog::start.
 class Clock {
  public:
   [[nodiscard]] static Time now() { return Time(kTime.read().value()); }
@@ -21,7 +20,7 @@ class Clock {
   static constexpr Register<Microseconds> kTime{0x4005'4028};
 };
 
-/// `number`: the number of the alarm, 0 to 3.
+/// `number`: of the alarm, 0 to 3.
 template <unsigned number>
 class OneShotTimer {
  public:
@@ -31,12 +30,11 @@ class OneShotTimer {
     kArmed.write(Bits<Armed>(kThis));  // a write disarms
     kForce.clear(Bits<Force>(kThis));
     kRaw.write(Bits<Raw>(kThis));  // a write clears
-    // A part of the current microsecond has passed, so the alarm would be early without one more microsecond.
+    // One microsecond more, because a part of the current one has passed: never early.
     const Time begin = Clock::now();
     const Duration to_alarm = after + Duration(1);
     kAlarm.write(Bits<Alarm>((begin + to_alarm).microseconds()));
-    // The alarm fires only when the time equals the value of the alarm. If another interrupt delayed the
-    // write of the value until after this time, the following lines force the interrupt of the timer.
+    // An alarm fires only when the time equals it: the interrupt is forced if another one delayed the write.
     if (!(Clock::now().since(begin) < to_alarm) && kArmed.read().has(Bits<Armed>(kThis))) {
       kArmed.write(Bits<Armed>(kThis));
       kForce.set(Bits<Force>(kThis));

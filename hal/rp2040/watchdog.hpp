@@ -12,8 +12,7 @@ namespace ex9000::hal::rp2040 {
 
 class WatchdogRegisters {
  public:
-  /// Resets the MCU, except its oscillators, immediately and does not return. Interrupts, faults and the main
-  /// loop may call this.
+  /// All but the oscillators. For interrupts, faults and the main loop.
   [[noreturn]] static void reset_chip() {
     kResetBy.write(kAllButOscillators);
     kControl.set(kTrigger);
@@ -21,7 +20,7 @@ class WatchdogRegisters {
     }
   }
 
-  /// Returns the reason of the last reset. Call this before the watchdog starts.
+  /// Of the last reset. Before the watchdog starts.
   [[nodiscard]] static ResetReason reset_reason() {
     constexpr Bits<Reason> kTimeout(1U << 0U);
     constexpr Bits<Reason> kRequest(1U << 1U);
@@ -29,14 +28,13 @@ class WatchdogRegisters {
     constexpr Bits<ChipReset> kRunPin(1U << 16U);
     const Bits<Reason> reason = kReason.read();
     if (reason.has(kRequest | kTimeout)) {
-      // Only images write the mark. The boot ROM also resets the chip with the watchdog, after it has copied
+      // Only images write the mark: the boot ROM, too, resets the chip with the watchdog, after it has copied
       // an image to the flash. In an image, only `fault_handler` requests a reset.
       return kMark.read().value() != kOfAnImage.value() ? ResetReason::Software
              : reason.has(kRequest)                     ? ResetReason::Fault
                                                         : ResetReason::ModuleWatchdog;
     }
-    // A reset by the watchdog does not change the bits of the last chip-level reset, so these bits are valid
-    // only if the watchdog has not reset the chip.
+    // Not after a reset by the watchdog, which does not change the bits of the last chip-level reset.
     const Bits<ChipReset> chip_reset = kChipReset.read();
     return chip_reset.has(kSupply)   ? ResetReason::PowerOn
            : chip_reset.has(kRunPin) ? ResetReason::ResetPin
@@ -54,8 +52,8 @@ class WatchdogRegisters {
   static constexpr SharedRegister<Control> kControl{0x4005'8000};
   static constexpr SharedRegister<Load> kLoad{0x4005'8004};
   static constexpr SharedRegister<Reason> kReason{0x4005'8008};
-  /// The first of eight scratch registers. A chip-level reset clears it, and a reset by the watchdog does
-  /// not. The boot sequence (2.8.1) uses only the last four scratch registers.
+  /// The first of eight scratch registers. A chip-level reset clears it, one by the watchdog does not. The
+  /// boot sequence (2.8.1) uses only the last four.
   static constexpr SharedRegister<Mark> kMark{0x4005'800C};
   static constexpr SharedRegister<Tick> kTick{0x4005'802C};
   static constexpr SharedRegister<ResetBy> kResetBy{0x4001'0008};
@@ -64,18 +62,16 @@ class WatchdogRegisters {
   static constexpr Bits<Control> kTrigger{1U << 31U};
   static constexpr Bits<Tick> kTickEnable{1U << 9U};
   static constexpr Bits<Mark> kOfAnImage{0x4558'9000};  ///< any value that other software does not write
-  /// Without these bits, a reset by the watchdog would leave the peripherals as they are. The oscillators
-  /// need no reset.
+  /// Without these, a reset by the watchdog leaves the peripherals as they are. The oscillators need none.
   static constexpr Bits<ResetBy> kAllButOscillators{0x1'FFFC};
 };
 
-/// `reference`: frequency of the reference clock in MHz while the crystal is the source of this clock.
+/// `reference`: the reference clock in MHz while the crystal is its source.
 template <std::uint32_t reference>
 class HardwareWatchdog : public WatchdogRegisters {
  public:
-  /// Starts the tick, which drives the watchdog and the timer, and then starts the watchdog. The watchdog
-  /// runs until the next reset. While the ring oscillator is the source of the reference clock, each tick and
-  /// the countdown can take up to twelve times as long as with a crystal of 12 MHz.
+  /// Starts the tick for the watchdog and the timer, then the watchdog, until the next reset. On the ring
+  /// oscillator instead of a crystal of 12 MHz, ticks and countdown can take up to twelve times as long.
   static void start() {
     kMark.write(kOfAnImage);
     kTick.write(Bits<Tick>(reference) | kTickEnable);
@@ -90,7 +86,7 @@ class HardwareWatchdog : public WatchdogRegisters {
  private:
   static constexpr Duration kPeriod = milliseconds(1500);
   static_assert(kPeriod.microseconds() < kWatchdogPeriod.microseconds(), "the period is too long");
-  /// Erratum RP2040-E1: the counter counts down by 2 at each tick.
+  /// Erratum RP2040-E1: each tick counts down by 2.
   static constexpr std::uint32_t kCountdown = 2U * kPeriod.microseconds();
   static_assert(kCountdown < 1U << 24U, "the counter has 24 bits");
 };

@@ -1,5 +1,5 @@
-// General-purpose pins. Sources: LM3S6965 data sheet, 8.3 to 8.5; TM4C123GH6PM data sheet, 10.3 to 10.5. The
-// APB aperture of the TM4C has the registers of the LM3S6965 and more registers, for example GPIOPCTL.
+// Pins. Sources: LM3S6965 data sheet, 8.3 to 8.5; TM4C123GH6PM data sheet, 10.3 to 10.5. The APB aperture of
+// the TM4C has the registers of the LM3S6965 and more, for example GPIOPCTL.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,6 @@ enum class Family : std::uint8_t {
 
 enum class Port : std::uint8_t { A, B, C, D, E, F, G };
 
-/// Adjacent pins of one port, for example the pins of consecutive channels.
 struct PinGroup {
   Port port;
   std::uint8_t first_pin;
@@ -24,21 +23,19 @@ struct PinGroup {
   [[nodiscard]] constexpr std::uint32_t mask() const { return ((1U << count) - 1U) << first_pin; }
 };
 
-/// The registers of one port. `pins`, `levels` and `outputs` are masks; bit n is pin n.
+/// One port. In masks, bit n is pin n.
 class Gpio {
  public:
   constexpr explicit Gpio(Port port)
       : base_(port < Port::E ? 0x4000'4000U + static_cast<std::uint32_t>(port) * 0x1000U
                              : 0x4002'4000U + (static_cast<std::uint32_t>(port) - 4U) * 0x1000U) {}
 
-  /// Reads or writes the levels of `pins` in the data register. It has 256 addresses, whose bits 2 to 9
-  /// select the pins. A write therefore preserves the other pins without a read, so no interrupt can change
-  /// them between a read and a write.
+  /// Bits 2 to 9 of the data register's 256 addresses select the pins: a write needs no read to preserve the
+  /// others, so no interrupt can change them in between.
   [[nodiscard]] std::uint32_t read(std::uint32_t pins) const { return data(pins).read().value(); }
   void write(std::uint32_t pins, std::uint32_t levels) const { data(pins).write(Bits<Data>(levels)); }
 
-  /// Makes `pins` digital inputs. Enables the weak pull-up if `pull_up` is true, else the weak pull-down.
-  /// Select the one that pulls to the inactive level, so that an open pin reads as inactive.
+  /// With the weak pull-up or pull-down. Choose the inactive level for an open pin.
   void make_input(std::uint32_t pins, bool pull_up) const { make_input_of(*this, pins, pull_up); }
   [[gnu::noinline]] static void make_input_of(Gpio port, std::uint32_t pins, bool pull_up) {
     (pull_up ? port.pull_up_register() : port.pull_down_register()).set(Bits<Pull>(pins));
@@ -46,9 +43,8 @@ class Gpio {
     port.digital_enable().set(Bits<DigitalEnable>(pins));
   }
 
-  /// Makes `pins` digital outputs of 8 mA with the initial `levels`. There is no glitch if these are the
-  /// inactive levels: until a pin is enabled, it drives nothing, and the connected circuit pulls it to its
-  /// inactive level.
+  /// 8 mA, with the initial `levels`. No glitch if these are inactive: until it is enabled, a pin drives
+  /// nothing, and the circuit pulls it to its inactive level.
   void make_output(std::uint32_t pins, std::uint32_t levels) const { make_output_of(*this, pins, levels); }
   [[gnu::noinline]] static void make_output_of(Gpio port, std::uint32_t pins, std::uint32_t levels) {
     port.direction().set(Bits<Direction>(pins));
@@ -57,8 +53,7 @@ class Gpio {
     port.digital_enable().set(Bits<DigitalEnable>(pins));
   }
 
-  /// Connects `pins` to their peripheral. `function`: number of the peripheral function in GPIOPCTL; used
-  /// only if `family` is Tm4c.
+  /// `function`: number in GPIOPCTL, only for Tm4c.
   template <Family family, std::uint32_t pins, std::uint32_t function>
   void make_peripheral() const {
     if constexpr (family == Family::Tm4c) {
@@ -73,24 +68,24 @@ class Gpio {
     alternate_function().clear(Bits<AlternateFunction>(pins));
   }
   void set_open_drain(std::uint32_t pins) const { open_drain().set(Bits<OpenDrain>(pins)); }
-  /// Makes the pins in `outputs` outputs, and the other pins in `pins` inputs.
+  /// The other `pins` become inputs.
   void choose_outputs(std::uint32_t pins, std::uint32_t outputs) const {
     direction().write(direction().read().without(Bits<Direction>(pins)) | Bits<Direction>(outputs));
   }
 
   // --- edges ---
 
-  /// Enables interrupts for both edges of `pins`. If an edge is already flagged, it causes an interrupt too.
+  /// Both edges. One that is already flagged causes an interrupt too.
   void watch_edges(std::uint32_t pins) const {
     both_edges().set(Bits<BothEdges>(pins));
     interrupt_mask().set(Bits<InterruptMask>(pins));
   }
-  /// Returns the watched pins whose edge flag is set. `clear_edges` clears these flags.
+  /// The watched pins whose edge flag is set.
   [[nodiscard]] std::uint32_t edges() const { return masked_interrupt_status().read().value(); }
   void clear_edges(std::uint32_t pins) const { interrupt_clear().write(Bits<InterruptClear>(pins)); }
 
  private:
-  /// Returns a mask in which bit 4n is bit n of `pins`, because GPIOPCTL has four bits for each pin.
+  /// Bit 4n is bit n of `pins`: GPIOPCTL has four bits for each pin.
   static constexpr std::uint32_t one_a_nibble(std::uint32_t pins) {
     std::uint32_t nibbles = 0;
     for (std::uint32_t pin = 0; pin < 8; ++pin) {
@@ -147,7 +142,7 @@ class Gpio {
   std::uint32_t base_;
 };
 
-/// For its functions, see hal/pins/single_pins.hpp.
+/// See hal/pins/single_pins.hpp.
 struct Pin {
   Port port;
   std::uint8_t number;  ///< 0 to 7

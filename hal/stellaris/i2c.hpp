@@ -13,8 +13,8 @@
 
 namespace ex9000::hal::stellaris {
 
-/// The only master of its bus, at 100 kHz at most. The I2C interrupt counts each byte and wakes the main
-/// loop, which continues the transfer. For the functions of a master, see I2cTransfer.
+/// The only master of its bus, at 100 kHz at most; functions: see I2cTransfer. The interrupt counts each byte
+/// and wakes the main loop, which continues the transfer.
 template <Family family, std::uint32_t clock>
 class I2c {
  public:
@@ -43,7 +43,7 @@ class I2c {
     }
     const bool byte_completed = completed_.load() != completed_seen_;
     const Bits<ControlStatus> status = kControlStatus.read();
-    // If the master is busy although the interrupt has run, the interrupt belongs to an aborted transfer.
+    // Busy after the interrupt: that was for an aborted transfer.
     if (byte_completed && !status.has(kBusy)) {
       next(status, now);
     } else if (deadline_.reached(now)) {
@@ -55,7 +55,7 @@ class I2c {
   [[nodiscard]] bool busy() const { return busy_; }
   [[nodiscard]] I2cResult result() const { return result_; }
 
-  /// Counts a byte whose transfer has ended, with or without an error. Call this from the I2C interrupt.
+  /// From the I2C interrupt: a byte has ended, with or without an error.
   void on_interrupt() {
     kInterruptClear.write(Bits<InterruptClear>(1));
     completed_.store_in_interrupt(completed_.load() + 1U);
@@ -104,8 +104,7 @@ class I2c {
   static constexpr std::uint32_t kBoth = kClock | kDataPin;
   static constexpr std::uint32_t kPortControlFunction = 3;
 
-  /// A byte takes about 90 us, and the address before the first byte also takes about 90 us. The rest of the
-  /// timeout is a reserve.
+  /// A byte takes about 90 us, the address before the first as long. The rest is a reserve.
   static constexpr Duration kByteTimeout = milliseconds(3);
 
   // --- freeing the bus ---
@@ -122,8 +121,7 @@ class I2c {
     static bool data_is_high() { return kPort.read(kDataPin) != 0; }
   };
 
-  /// Resets the peripheral and begins to free the bus. Without this reset, the peripheral would continue an
-  /// unfinished byte and report the end of this byte as the end of the next byte.
+  /// Resets the peripheral, which would else report the end of an unfinished byte as that of the next.
   void begin_freeing() {
     constexpr Bits<SoftwareReset> kI2c0(1U << 12U);
     kSoftwareReset.write(kI2c0);
@@ -132,7 +130,7 @@ class I2c {
     step_ = Step::Freeing;
   }
 
-  /// Connects the pins to the peripheral and starts it. If a transfer is waiting, begins it.
+  /// Connects the pins and starts the peripheral. Begins a transfer that waits.
   void hand_over(Time now) {
     constexpr std::uint32_t kBitRate = 100'000;
     constexpr std::uint32_t kClocksAStep = 2U * (6U + 4U);  // low and high time of SCL
@@ -163,7 +161,6 @@ class I2c {
     move(kStart, now);
   }
 
-  /// Begins the transfer of byte `done_`, followed by STOP if it is the last byte.
   void move(Bits<ControlStatus> start, Time now) {
     const bool last = done_ + 1U == transfer_->size();
     if (transfer_->writes()) {
@@ -179,9 +176,9 @@ class I2c {
   }
 
   void next(Bits<ControlStatus> status, Time now) {
-    // The data sheet of the TM4C123 does not say that lost arbitration sets the error bit too.
+    // Both bits: the TM4C123 data sheet does not say that lost arbitration sets the error bit.
     if (status.has(kError | kArbitrationLost)) {
-      // There is no other master, so lost arbitration means that a line is stuck.
+      // There is no other master: lost arbitration means that a line is stuck.
       give_up(status.has(kArbitrationLost) ? I2cResult::Failed : I2cResult::NoAcknowledge);
       return;
     }
@@ -195,8 +192,7 @@ class I2c {
     }
   }
 
-  /// Aborts the transfer and begins the recovery of the bus. The recovery also ends the transfer in the
-  /// device.
+  /// Aborts the transfer. The recovery of the bus also ends it in the device.
   void give_up(I2cResult result) {
     finish(result);
     begin_freeing();

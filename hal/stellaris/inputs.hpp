@@ -9,8 +9,7 @@
 
 namespace ex9000::hal::stellaris {
 
-/// `groups` is an array of PinGroup that contains the pins of the channels in order, from channel 0 on.
-/// `active_high`: whether a high pin is logic 1.
+/// `groups`: an array of PinGroup with the channels' pins from channel 0 on. `active_high`: high is logic 1.
 template <const auto& groups, unsigned channels, bool active_high>
 class InputPins {
  public:
@@ -43,7 +42,6 @@ class InputPins {
 
   // --- for the composition ---
 
-  /// Returns whether `port` has a channel.
   static constexpr bool on(Port port) {
     unsigned first = 0;
     for (const PinGroup& group : groups) {
@@ -55,9 +53,8 @@ class InputPins {
     return false;
   }
 
-  /// Calls `deliver(channel, level)` for each channel on `port` that has had an edge. The group of the last
-  /// channel may also contain pins without a channel. For an edge of such a pin, `channel` is `channels` or
-  /// greater. Call this from the interrupt of the port.
+  /// From the port's interrupt: calls `deliver(channel, level)` for each channel on `port` that has had an
+  /// edge. Pins of the last group without a channel deliver a `channel` from `channels` on.
   template <Port port, class Deliver>
   static void take_edges(Deliver deliver) {
     static constexpr std::array<std::uint8_t, 8> kChannels = channels_of(port);
@@ -81,8 +78,7 @@ class InputPins {
 
   static std::uint32_t logic(std::uint32_t levels) { return active_high ? levels : ~levels; }
 
-  /// Returns the channel of each pin of a port. Pins that are in no group are not watched, so their elements
-  /// are not used.
+  /// Of each pin of a port; unused for pins in no group, which are not watched.
   static constexpr std::array<std::uint8_t, 8> channels_of(Port port) {
     std::array<std::uint8_t, 8> result{};
     unsigned channel = 0;

@@ -5,7 +5,7 @@
 
 namespace ex9000::hal::stellaris {
 
-/// These numbers are the same on the LM3S6965 and on the TM4C123GH6PM, which has no port G.
+/// The same on the LM3S6965 and on the TM4C123GH6PM, which has no port G.
 enum class Interrupt : std::uint8_t {
   GpioA = 0,
   GpioB = 1,

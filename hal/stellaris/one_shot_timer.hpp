@@ -1,5 +1,4 @@
-// A general-purpose timer as a 32-bit one-shot timer. Sources: LM3S6965 data sheet, 9.3 to 9.5; TM4C123GH6PM
-// data sheet, 11.3 to 11.5.
+// A general-purpose timer, one-shot, 32 bits. Sources: LM3S6965 data sheet, 9.3-9.5; TM4C123GH6PM, 11.3-11.5.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +8,7 @@
 
 namespace ex9000::hal::stellaris {
 
-/// `number`: 0 to 3 for GPTM0 to GPTM3. `cycles_per_microsecond`: frequency of the system clock in MHz.
+/// `number`: 0 to 3 for GPTM0 to GPTM3. `cycles_per_microsecond`: system clock in MHz.
 template <unsigned number, std::uint32_t cycles_per_microsecond>
 class OneShotTimer {
  public:

@@ -9,8 +9,7 @@
 
 namespace ex9000::hal::stellaris {
 
-/// `groups` is an array of PinGroup that contains the pins of the channels in order, from channel 0 on.
-/// `active_high`: whether a high pin energises its channel.
+/// `groups`: an array of PinGroup with the channels' pins from channel 0 on. `active_high`: high energises.
 template <const auto& groups, unsigned channels, bool active_high>
 class OutputPins {
  public:
@@ -20,15 +19,14 @@ class OutputPins {
     });
   }
 
-  /// Writes one register for each group that has a channel. The writes are a few processor clocks apart,
-  /// unless an interrupt occurs in between.
+  /// One register per group with a channel: a few processor clocks apart, unless an interrupt occurs.
   static void drive(std::uint16_t energised) {
     each_group(energised,
                [](const Gpio& gpio, std::uint32_t pins, std::uint32_t levels) { gpio.write(pins, levels); });
   }
 
  private:
-  /// Returns the number of pins in the groups before `groups[group]`.
+  /// Pins in the groups before `groups[group]`.
   static constexpr unsigned before(std::size_t group) {
     unsigned sum = 0;
     for (std::size_t i = 0; i < group; ++i) {

@@ -1,7 +1,6 @@
 // Clock tree, clock gates and the reason of a reset. Sources: LM3S6965 data sheet, 5.3 and 5.5 (system
-// control); TM4C123GH6PM data sheet, 5.3, 5.5 and 5.6. RCC and the legacy RCGCn registers of the TM4C have
-// the same addresses as on the LM3S6965. The bits that this file uses have the same meaning, unless a comment
-// says otherwise.
+// control); TM4C123GH6PM data sheet, 5.3, 5.5 and 5.6. RCC and the legacy RCGCn registers of the TM4C are the
+// same, also in the bits used here, unless a comment says otherwise.
 #pragma once
 
 #include <cstdint>
@@ -11,17 +10,15 @@
 
 namespace ex9000::hal::stellaris {
 
-/// The system clock of a board: a crystal on the main oscillator, the PLL's 400 MHz divided by 2, and a
-/// divider.
+/// A crystal on the main oscillator, the PLL's 400 MHz divided by 2, and a divider.
 struct ClockTree {
   std::uint32_t crystal_code;  ///< RCC field XTAL
   std::uint32_t divider;       ///< divides 200 MHz; 4 to 16
 
-  /// Returns the frequency in Hz.
-  [[nodiscard]] constexpr std::uint32_t frequency() const { return 200'000'000U / divider; }
+  [[nodiscard]] constexpr std::uint32_t frequency() const { return 200'000'000U / divider; }  // in Hz
 };
 
-/// The peripherals that need a clock. Each has one bit.
+/// The peripherals that need a clock, one bit each.
 struct ClockGates {
   std::uint32_t rcgc0;
   std::uint32_t rcgc1;
@@ -40,11 +37,9 @@ constexpr std::uint32_t kTimer2 = 1U << 18U;
 
 class SystemControl {
  public:
-  /// Switches the processor to `clock`. Call this once after reset, when the watchdog is running.
-  /// Blocks until the crystal has started and the PLL has locked. The start of the crystal can take some
-  /// milliseconds. The PLL then takes a few hundred microseconds more. If the PLL never locks, the watchdog
-  /// resets the MCU. If the crystal never starts, the processor and the watchdog have no clock, and the
-  /// outputs stay off.
+  /// Once after reset, when the watchdog is running. Blocks until the crystal has started, some milliseconds,
+  /// and the PLL has locked, some hundred microseconds more. If the PLL never locks, the watchdog resets the
+  /// MCU. If the crystal never starts, processor and watchdog have no clock, and the outputs stay off.
   static void use(const ClockTree& clock) {
     constexpr Bits<Rcc> kBypass(1U << 11U);
     constexpr Bits<Rcc> kPowerDown(1U << 13U);
@@ -56,7 +51,7 @@ class SystemControl {
     constexpr Bits<Rcc> kMainOscillatorOff(1U << 0U);
     constexpr Bits<InterruptStatus> kPllLocked(1U << 6U);
 
-    // Both data sheets require that the PLL is bypassed while it is configured.
+    // Both data sheets require a bypass of the PLL while it is configured.
     Bits<Rcc> rcc = (kRcc.read() | kBypass).without(kUseDivider);
     kRcc.write(rcc);
     rcc = rcc.without(kCrystal | kOscillatorSource | kMainOscillatorOff | kPowerDown | kOutputDisable) |
@@ -69,22 +64,19 @@ class SystemControl {
     kRcc.write(rcc.without(kBypass));
   }
 
-  /// Enables the clocks of the peripherals in `gates`, and waits until the registers of these peripherals can
-  /// be accessed.
+  /// Waits until the registers of the peripherals can be accessed.
   static void open(const ClockGates& gates) {
     kRcgc0.set(Bits<Rcgc0>(gates.rcgc0));
     kRcgc1.write(Bits<Rcgc1>(gates.rcgc1));  // after reset, these clocks are off
     kRcgc2.write(Bits<Rcgc2>(gates.rcgc2));
-    // A peripheral must not be accessed for 3 clocks (LM3S) or 5 clocks (TM4C) after its clock has been
-    // enabled. Each of the following reads takes at least 2 clocks.
+    // No access for 3 clocks (LM3S) or 5 (TM4C) after a clock is enabled; each read takes at least 2.
     for (int i = 0; i < 3; ++i) {
       (void)kRcgc2.read();
     }
   }
 
-  /// Returns the reason of the last reset, and clears RESC. Call this once after each reset, as early as
-  /// possible. Most resets do not clear the bits of RESC (data sheets, "Reset Cause"), so if another reset
-  /// occurs before this call, RESC may contain the bits of both resets.
+  /// Of the last reset. Once after each, as early as possible: most resets do not clear RESC (data sheets,
+  /// "Reset Cause"), so after another reset before this call it may have the bits of both. This clears it.
   static ResetReason take_reset_reason() {
     constexpr Bits<ResetCause> kPin(1U << 0U);
     constexpr Bits<ResetCause> kPowerOn(1U << 1U);
@@ -93,8 +85,8 @@ class SystemControl {
     constexpr Bits<ResetCause> kSoftware(1U << 4U);
     const Bits<ResetCause> causes = kResetCause.read();
     kResetCause.write({});
-    // The supply is checked first, because the pin may be low for longer than the power-on reset. An image
-    // requests a software reset only after a fault or an unexpected interrupt.
+    // The supply first, because the pin may be low for longer than the power-on reset. An image requests a
+    // software reset only after a fault or an unexpected interrupt.
     return causes.has(kPowerOn | kBrownOut) ? ResetReason::PowerOn
            : causes.has(kPin)               ? ResetReason::ResetPin
            : causes.has(kWatchdog)          ? ResetReason::ModuleWatchdog

@@ -1,5 +1,4 @@
-// The UARTs of the LM3S6965 and the TM4C123GH6PM, with an RS-485 driver. Sources: LM3S6965 data sheet, 12.4;
-// TM4C123GH6PM data sheet, 14.4.
+// UARTs of LM3S6965 (data sheet, 12.4) and TM4C123GH6PM (data sheet, 14.4), with an RS-485 driver.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +8,7 @@
 
 namespace ex9000::hal::stellaris {
 
-/// `number`: 0 or 1; `clock`: system clock in Hz; `driver_enable`: pin that is high while the module sends;
-/// for `EndTimer`, see pl011::Uart.
+/// `number`: 0 or 1; `clock`: system clock in Hz; `driver_enable`: high while sending. See pl011::Uart.
 template <unsigned number, std::uint32_t clock, const auto& driver_enable, class EndTimer>
 using Uart = pl011::Uart<0x4000'C000U + number * 0x1000U, clock, DriverEnablePin<driver_enable>, EndTimer>;
 

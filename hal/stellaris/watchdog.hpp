@@ -8,14 +8,12 @@
 
 namespace ex9000::hal::stellaris {
 
-/// The watchdog counts down twice before it resets the MCU. The end of the first countdown only sets a flag.
-/// The interrupt of the watchdog is not used.
+/// Counts down twice before it resets the MCU. The first end only sets a flag; its interrupt is not used.
 template <std::uint32_t cycles_per_microsecond>
 class HardwareWatchdog {
  public:
-  /// Starts the watchdog, which then runs until the next reset. Its registers must be unlocked, as they are
-  /// after a reset. Until `SystemControl::use` has switched the processor to the PLL, a countdown takes
-  /// longer than `kCountdown`.
+  /// Runs until the next reset. The registers must be unlocked, as after a reset. Until `SystemControl::use`
+  /// has switched to the PLL, a countdown takes longer than `kCountdown`.
   static void start() {
     constexpr Bits<Control> kRunAndReset(0x3);
     kLoad.write(Bits<Load>(kCountdown.microseconds() * cycles_per_microsecond));
