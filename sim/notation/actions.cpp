@@ -17,7 +17,6 @@ namespace ex9000::sim {
 
 namespace {
 
-/// A call of an action.
 struct Call {
   const LineInUse& in_use;
   std::size_t index;         ///< of the module on the line, from 0
@@ -40,7 +39,6 @@ struct Call {
     return in_use.line.master();
   }
   [[nodiscard]] unsigned input() const { return parse_input(args[0], module().model()); }
-  /// Appends a number to the result.
   void add(unsigned number) { result += (result.empty() ? "" : " ") + std::to_string(number); }
 };
 
@@ -198,7 +196,7 @@ const Action* action_called(const std::string& name, Of of) {
   fail("'" + text + "' is not a command; expected one of " + action_shapes());
 }
 
-/// `call.args` begin with the name. `said`: the command for the log.
+/// `call.args` begin with the action's name. `said`: for the log.
 std::string carry_out(Call call, Of of, const std::string& said) {
   const Action* const action = action_called(call.args[0], of);
   if (action == nullptr) {

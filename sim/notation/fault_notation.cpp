@@ -55,7 +55,7 @@ const FaultKind& read_kind(WordReader& reader) {
   fail("'" + name + "' is not a fault; expected one of " + names_of(fault_kinds()));
 }
 
-/// Returns the number of an ordinal, for example 10 for `10th`; 0 for any other word.
+/// 10 for `10th`; 0 for any other word.
 std::uint64_t ordinal(const std::string& word) {
   constexpr std::size_t kSuffix = 2;
   const std::size_t digits = std::max(word.size(), kSuffix) - kSuffix;
@@ -65,7 +65,6 @@ std::uint64_t ordinal(const std::string& word) {
   return is_suffix ? value.value_or(0) : 0;
 }
 
-/// Reads what follows `every`.
 void read_period(WordReader& reader, Schedule& schedule) {
   const std::string word = reader.next("'reply', '10th reply' or a duration after 'every'");
   schedule.count = word == "reply" ? 1 : ordinal(word);
@@ -122,8 +121,7 @@ Schedule read_schedule(WordReader& reader) {
   return schedule;
 }
 
-/// Rejects a schedule that the kind of fault does not have, a schedule that requires a duration and has none,
-/// and a duration that has no effect or is not shorter than the period.
+/// Rejects an impossible schedule, and a duration that is missing, without effect, or not below the period.
 void check(const FaultKind& kind, const Schedule& schedule) {
   const bool is_periodic = schedule.when == When::EveryTime;
   if (kind.is_of_the_line() && schedule.of_replies()) {

@@ -16,15 +16,12 @@
 
 namespace ex9000::sim {
 
-/// Parses `KIND [VALUE] [SCHEDULE]`, a fault of the line and all its modules, or of the module at the
-/// position `module`. Throws std::invalid_argument with a one-line message that says what is wrong and what
-/// would be right.
+/// Of the line and all its modules, or of the module at the position `module`.
 Fault parse_fault(const std::string& text, std::optional<std::size_t> module = std::nullopt);
 
-/// Returns a typical fault of each kind, in the notation of the user.
+/// A typical fault of each kind.
 std::vector<std::string> usual_faults();
 
-/// Returns one line for each kind of fault, with its name, its value and its effect, for --help.
 std::string fault_help();
 
 }  // namespace ex9000::sim

@@ -16,7 +16,7 @@ constexpr VirtualTime kShortest = std::chrono::microseconds(10);
 
 using Times = std::map<std::string, VirtualTime>;
 
-/// Reads a duration after its keyword. `forms`: those that may appear.
+/// `forms`: the keywords that may appear.
 void read_time(WordReader& words, const std::string& forms, Times& times) {
   const std::string keyword = words.next(forms);
   if (forms.find("'" + keyword + " TIME'") == std::string::npos) {
@@ -27,7 +27,6 @@ void read_time(WordReader& words, const std::string& forms, Times& times) {
   }
 }
 
-/// Reads the rest.
 Times read_times(WordReader& words, const std::string& forms) {
   Times times;
   while (!words.done()) {

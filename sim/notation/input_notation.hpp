@@ -12,11 +12,9 @@
 
 namespace ex9000::sim {
 
-/// Parses a program. `model` defines which channels exist. Throws std::invalid_argument with a one-line
-/// message that says what is wrong and what would be right.
+/// `model` says which channels exist.
 InputProgram parse_input_program(const std::string& text, const Model& model);
 
-/// Parses the number of an input channel of this model. Throws std::invalid_argument with a one-line message.
 unsigned parse_input(const std::string& text, const Model& model);
 
 }  // namespace ex9000::sim

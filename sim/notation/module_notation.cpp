@@ -16,7 +16,7 @@ namespace ex9000::sim {
 
 namespace {
 
-/// Returns the designation that `name` abbreviates: in upper case, with EX.
+/// In upper case, with EX.
 std::string full_name(std::string name) {
   std::transform(name.begin(), name.end(), name.begin(),
                  [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
@@ -30,7 +30,7 @@ std::string digits_of(std::string_view text) {
   return digits;
 }
 
-/// Returns the number of characters to insert, delete or replace that turns `a` into `b`.
+/// How many characters to insert, delete or replace.
 std::size_t edits_between(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});
@@ -45,8 +45,7 @@ std::size_t edits_between(std::string_view a, std::string_view b) {
   return row.back();
 }
 
-/// Returns the models with the number in `name`, or else those whose names differ least from `name`, by one
-/// or two characters. The result is empty if there are none.
+/// Those with the number in `name`, else those that differ least from `name`, by at most two characters.
 Words nearest_models(const std::string& name) {
   constexpr std::size_t kFarthest = 2;
   constexpr std::size_t kLongest = 16;

@@ -42,7 +42,7 @@ void set_format(Settings& settings, std::uint8_t bit, bool on) {
   settings.format = static_cast<std::uint8_t>(on ? settings.format | bit : settings.format & ~bit);
 }
 
-/// The settings, which the user gives.
+/// Marks the settings as given by the user.
 Settings& given(ModuleSpec& spec) {
   spec.settings_given = true;
   return spec.settings;

@@ -1,5 +1,4 @@
-// A setting of the simulator. The command line, bus files, their schema, --help and the documents come from
-// tables of settings.
+// Settings of the simulator, in tables for the command line, bus files, their schema, --help and documents.
 #pragma once
 
 #include <cstdint>
@@ -27,11 +26,10 @@ struct Setting {
   std::string_view
       value;  ///< stands for the value in help: a word in capitals, or the choices, separated by |
   std::string_view does;  ///< for help and documents: a verb phrase, then the default
-  /// Parses and stores a value. Throws std::invalid_argument with a one-line message.
   void (*take)(Object& object, const std::string& value) = nullptr;
 };
 
-/// Stores a value. An error begins with `place`.
+/// An error begins with `place`.
 template <class Object>
 void take_setting(const Setting<Object>& setting, Object& object, const std::string& place,
                   const std::string& value) {

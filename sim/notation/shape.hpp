@@ -10,13 +10,12 @@
 
 namespace ex9000::sim {
 
-/// Whether a shape, for example `pulse C [xCOUNT]` or `fault FAULT...`, is that of the command `name`.
+/// `shape`: for example `pulse C [xCOUNT]` or `fault FAULT...`.
 inline bool is_shape_of(std::string_view shape, std::string_view name) {
   return shape.substr(0, shape.find(' ')) == name;
 }
 
-/// Throws std::invalid_argument if `args` are too few or too many. An argument of the shape is one word; in
-/// brackets if it may be missing; the rest of the command if it ends with `...`.
+/// A word of the shape is one argument, in brackets if it may be missing; with `...`, all the rest.
 inline void check_shape(std::string_view shape, const Words& args, const std::string& lead = "expected ") {
   const Words known = words_of(std::string(shape));
   const auto may_be_missing = [](const std::string& word) { return word[0] == '['; };

@@ -10,14 +10,13 @@
 
 namespace ex9000::sim {
 
-/// The functions throw std::invalid_argument with a one-line message.
 class WordReader {
  public:
   explicit WordReader(Words words) : words_(std::move(words)) {}
 
   [[nodiscard]] bool done() const { return at_ == words_.size(); }
 
-  /// `wanted`: for the message if there are no more words.
+  /// `wanted`: for the message if no word is left.
   std::string next(const std::string& wanted) {
     if (done()) {
       fail("ends too early; expected " + wanted);

@@ -29,8 +29,7 @@ constexpr std::array<Unit, 5> kUnits{{{"us", 1'000},
                                       {"h", 3600 * kNanosecondsPerSecond}}};
 constexpr long double kYear = 365.0L * 24 * 3600e9L;
 
-/// Returns `time` divided by `unit` nanoseconds, as an exact decimal number. `time` must not be negative.
-/// `unit` is a power of ten.
+/// In units of `unit` ns, a power of ten, exactly. `time` must not be negative.
 std::string decimal_text(VirtualTime time, std::int64_t unit) {
   std::string fraction = std::to_string(unit + time.count() % unit).substr(1);
   fraction.resize(fraction.find_last_not_of('0') + 1);

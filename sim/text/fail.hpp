@@ -1,5 +1,6 @@
-// Errors in user input, and resources that are not available. A message has one line: where the error is,
-// what is wrong and, in most cases, what would be right.
+// How sim/ reports errors: std::invalid_argument for wrong input of the user, std::runtime_error for what is
+// not available or breaks. The message is one line: where, what is wrong and, mostly, what would be right.
+// Functions that parse or open something throw like this; comments name only what differs.
 #pragma once
 
 #include <stdexcept>
@@ -14,12 +15,11 @@ struct NotNow : std::invalid_argument {
   using std::invalid_argument::invalid_argument;
 };
 
-/// Throws an error that may be over at the next start of the program, although nothing in its configuration
-/// has changed: a port or a file that another program uses, an address or a device that is not there yet.
+/// An error that may be over at the next start with the same configuration: a port or file that another
+/// program uses, an address or a device that is not there yet.
 [[noreturn]] inline void unavailable(const std::string& what) { throw std::runtime_error(what); }
 
-/// Runs `action` and returns its result. Adds the prefix `where` to the message of a std::invalid_argument or
-/// std::runtime_error that `action` throws. The prefix is, for example, `--pty: `.
+/// Puts `where`, for example `--pty: `, before the message of an error in `action`.
 template <class Action>
 decltype(auto) with_place(const std::string& where, Action action) {
   try {

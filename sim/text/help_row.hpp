@@ -10,8 +10,7 @@
 
 namespace ex9000::sim {
 
-/// Returns `shape`, and from `column` on the lines of `does`. If the shape is too long, `does` begins on the
-/// next line.
+/// `does` begins at `column`, on the next line if the shape is too long.
 inline std::string help_row(const std::string& shape, std::string_view does, std::size_t column) {
   const std::string indent(column + 2, ' ');
   std::string lead = "  " + shape;

@@ -8,18 +8,16 @@
 
 namespace ex9000::sim {
 
-/// The place of each setting that the user has given, as the prefix of a message: `--baud: ` or
-/// `bus.yaml:2: baud: `.
+/// The place of each given setting, as the start of a message: `--baud: ` or `bus.yaml:2: baud: `.
 using Places = std::map<std::string, std::string, std::less<>>;
 
-/// Puts `where` before each place.
 inline void prefix_places(Places& places, const std::string& where) {
   for (auto& [name, place] : places) {
     place.insert(0, where);
   }
 }
 
-/// The place of a setting; if it is not given, the option that would give it.
+/// Of a setting that is not given: the option that would give it.
 inline std::string place_of(const Places& places, std::string_view name) {
   const auto place = places.find(name);
   return place == places.end() ? "--" + std::string(name) + ": " : place->second;

@@ -1,4 +1,4 @@
-// The system's text for the reason why a system call has failed.
+// Why a system call has failed.
 #pragma once
 
 #include <cerrno>
@@ -7,8 +7,7 @@
 
 namespace ex9000::sim {
 
-/// Returns the text for errno. Call this directly after the system call, because another call may change
-/// errno.
+/// Reads errno, so call it directly after the system call.
 inline std::string reason() { return std::strerror(errno); }
 
 }  // namespace ex9000::sim

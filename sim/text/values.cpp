@@ -17,8 +17,7 @@ constexpr const char* kHexDigits = "0123456789ABCDEFabcdef";
 /// In the order of LineFormat.
 constexpr std::array<std::string_view, 4> kLineFormats{"8N1", "8N2", "8E1", "8O1"};
 
-/// Parses the whole text as a number of the type `Number`. Returns nullopt if the text has another form, or
-/// if the number is outside the range of the type.
+/// nullopt: not the whole text is a number, or it does not fit the type.
 template <class Number, class... Format>
 std::optional<Number> number(const std::string& text, Format... format) {
   Number value{};
@@ -31,8 +30,7 @@ std::optional<Number> number(const std::string& text, Format... format) {
   fail("'" + text + "': expected " + expected);
 }
 
-/// Parses 1 to `most` hex digits. For any other text, throws std::invalid_argument with a message that
-/// contains `expected`.
+/// 1 to `most` hex digits. `expected`: for the message.
 unsigned parse_hex(const std::string& text, std::size_t most, const std::string& expected) {
   constexpr int kHex = 16;
   const bool digits = text.find_first_not_of(kHexDigits) == std::string::npos && text.size() <= most;

@@ -10,7 +10,7 @@ namespace ex9000::sim {
 
 using Words = std::vector<std::string>;
 
-/// Returns the words of `text`, which are separated by white space.
+/// Words are separated by white space.
 inline Words words_of(const std::string& text) {
   std::istringstream stream(text);
   Words words;
@@ -20,7 +20,7 @@ inline Words words_of(const std::string& text) {
   return words;
 }
 
-/// The parts of `text` between separators, at least one; they may be empty.
+/// At least one part; parts may be empty.
 inline Words parts_of(const std::string& text, char separator) {
   Words parts(1);
   for (const char character : text) {
@@ -33,7 +33,6 @@ inline Words parts_of(const std::string& text, char separator) {
   return parts;
 }
 
-/// Returns the words with `separator` between them.
 inline std::string joined(const Words& words, std::string_view separator = " ") {
   std::string text;
   for (const std::string& word : words) {
@@ -43,7 +42,7 @@ inline std::string joined(const Words& words, std::string_view separator = " ") 
   return text;
 }
 
-/// The path as one word for the shell, in quotes if it needs them.
+/// In quotes for the shell, if it needs them.
 inline std::string shell_word(const std::string& path) {
   const std::string plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./-+:@%";
   if (path.find_first_not_of(plain) == std::string::npos) {
@@ -56,7 +55,6 @@ inline std::string shell_word(const std::string& path) {
   return text + "'";
 }
 
-/// Returns the names of the rows of a table, with `separator` between them.
 template <class Rows>
 std::string names_of(const Rows& rows, std::string_view separator = ", ") {
   Words names;

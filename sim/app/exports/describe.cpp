@@ -57,7 +57,7 @@ std::uint8_t parse_modbus_address(const std::string& text) {
   return address;
 }
 
-/// A port of the simulator as a master names it. HOST can be a name, unlike in --port of the simulator.
+/// As a master names it: HOST can be a name, unlike in --port of the simulator.
 struct MasterPort {
   TcpAddress tcp;
   bool modbus_tcp = false;  ///< Modbus TCP frames; false: RTU frames
@@ -79,14 +79,13 @@ MasterPort parse_master_port(const std::string& text) {
   return port;
 }
 
-/// Rejects an option that the format does not have.
 void refuse(const char* option, const std::optional<std::string>& text, const DescribeTexts& texts) {
   if (text) {
     fail(std::string(option) + ": --format " + texts.format + " has no such option; leave it out");
   }
 }
 
-/// Returns what a tool requires to reach a module of this model.
+/// What a tool requires to reach it.
 Json module_of(const Json& model, const Format& format, const DescribeTexts& texts) {
   const std::uint8_t address = parse_modbus_address(texts.address.value_or("01"));
   Json module{{"name", model["model"].get<std::string>() + " " + hex_byte_text(address)},

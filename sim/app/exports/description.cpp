@@ -21,7 +21,7 @@ using Json = nlohmann::ordered_json;
 
 Json text_or_null(std::string_view text) { return text.empty() ? Json() : Json(text); }
 
-/// Returns an id that consists of lower-case letters, digits and `_`.
+/// Lower-case letters, digits and `_`.
 std::string key_of(std::string_view name) {
   std::string key;
   for (const char c : name) {
@@ -30,19 +30,15 @@ std::string key_of(std::string_view name) {
   return key;
 }
 
-// --- which models ---
-
 template <class Has>
 bool any_has(const Models& models, Has has) {
   return std::any_of(models.begin(), models.end(), [&](const Model* model) { return has(*model); });
 }
 
-/// The models that meet a row's needs, in the order of the enumeration.
+/// The models that meet a row's needs, in the order of Needs.
 constexpr std::array<const char*, 4> kWhichModels{"all", "with outputs", "with inputs", "-M"};
 
 std::string which_models(Needs needs) { return kWhichModels[static_cast<std::size_t>(needs)]; }
-
-// --- DCON ---
 
 Json commands(const Models& models) {
   Json all = Json::array();
@@ -64,8 +60,7 @@ Json commands(const Models& models) {
   return all;
 }
 
-/// Returns the position of the data byte that contains a channel: formats a reply in which only this channel
-/// is on, and finds the byte that is not 0.
+/// Formats a reply in which only this channel is on, and finds the byte that is not 0.
 std::size_t data_byte_of(const Model& model, bool is_output, unsigned channel) {
   const auto on = static_cast<std::uint16_t>(1U << channel);
   ex9000::Reply reply;
@@ -76,8 +71,7 @@ std::size_t data_byte_of(const Model& model, bool is_output, unsigned channel) {
   return static_cast<std::size_t>(digit - reply.bytes().begin()) / 2;
 }
 
-/// Describes data byte 0, (First), or 1, (Second), of DCON replies, for example `DO8-12`; `00` if the byte
-/// contains no channel.
+/// `byte`: 0 (First) or 1 (Second) of DCON replies. For example `DO8-12`; `00`: no channel.
 std::string data_byte(const Model& model, std::size_t byte) {
   for (const bool is_output : {true, false}) {
     std::vector<std::string> held;
@@ -92,8 +86,6 @@ std::string data_byte(const Model& model, std::size_t byte) {
   }
   return "00";
 }
-
-// --- Modbus ---
 
 Json functions(const Models& models) {
   Json all = Json::array();
@@ -137,20 +129,18 @@ Json function_codes(registers::Functions functions) {
   return codes;
 }
 
-/// PLC numbers count from 1 and have at least four digits after the digit of the table.
+/// Counts from 1; has at least four digits after the digit of the table.
 std::string plc_number(const Table& table, unsigned address) {
   constexpr std::size_t kDigits = 4;
   const std::string number = std::to_string(address + 1);
   return table.digit + std::string(number.size() < kDigits ? kDigits - number.size() : 0, '0') + number;
 }
 
-/// Appends a row of kBitRegisters or kWordRegisters to `all`, if the model has it in this table. The model
-/// must support Modbus.
+/// The row of a model, which must support Modbus, if the model has it in this table.
 template <class Register>
 void add_register(const Model& model, const Table& table, const Register& entry, Json& all) {
   const auto& row = entry.row;
-  // Only the row of host OK lists no functions, because the firmware detects a host OK without
-  // kWordRegisters. Masters send a host OK with function 03 or 04.
+  // Only host OK lists no functions: the firmware detects it without kWordRegisters. Masters send 03 or 04.
   const registers::Functions functions = row.functions != 0 ? row.functions : registers::kReadRegisters;
   const bool reads = (functions & table.reads) != 0;
   const bool writes = (functions & table.writes) != 0;
@@ -183,7 +173,6 @@ void add_register(const Model& model, const Table& table, const Register& entry,
                  {"items", std::move(items)}});
 }
 
-/// Coils first, then discrete inputs, input registers and holding registers.
 Json registers_of(const Model& model) {
   Json all = Json::array();
   if (!model.speaks_modbus()) {
@@ -200,17 +189,13 @@ Json registers_of(const Model& model) {
   return all;
 }
 
-// --- entities ---
-
-/// A row of kBitRegisters or kWordRegisters that tools show. They do not show rows without an entry: those
-/// that repeat a row, the extensions, and the settings whose change would disconnect the client after a
-/// reset.
+/// What tools show. Not shown are rows that repeat a row, the extensions, and the settings whose change would
+/// disconnect the client after a reset.
 struct Shown {
   std::string_view id;
   /// output: read and written; input: a level or a latch; counter: continues with 0 after its highest value;
-  /// preset: a stored value of the outputs, which tools do not write, because a write also drives the
-  /// outputs; state: on or off, both are normal; problem: on means a problem; tenths: units of 0.1 s;
-  /// button: a coil that starts an action when 1 is written to it.
+  /// preset: a stored value of the outputs, not written, because that also drives them; state: both on and
+  /// off are normal; problem: on is one; tenths: of 0.1 s; button: a coil that starts an action at a 1.
   std::string_view role;
   std::string_view name;  ///< without the channel; unique
 };
@@ -255,7 +240,7 @@ Json entity(const Shown& shown, const Json& row, std::size_t number, unsigned& w
           {"channels", std::move(channels)}};
 }
 
-/// A row that is in two tables appears only once, for the first of them.
+/// A row in two tables appears once, for the first of them.
 Json entities_of(const Json& registers) {
   Json all = Json::array();
   unsigned written = 0;
@@ -278,8 +263,6 @@ Json addresses_of(const Json& registers) {
   }
   return all;
 }
-
-// --- all together ---
 
 Json described(const Model& model) {
   Json registers = registers_of(model);

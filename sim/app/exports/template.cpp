@@ -33,8 +33,7 @@ class Filling {
  public:
   Filling(std::string_view text, const Json& data) : rest_(text), scopes_{{&data, false}} {}
 
-  /// Returns the text up to the end of a section, or the whole text if `section` is empty. If `prints` is
-  /// false, the result is empty.
+  /// To the end of a section, or the whole text if `section` is empty. Without `prints`, empty.
   std::string up_to_end_of(std::string_view section, bool prints) {
     std::string text;
     for (std::size_t at = rest_.find("{{"); at != std::string_view::npos; at = rest_.find("{{")) {
@@ -89,7 +88,7 @@ class Filling {
     return text;
   }
 
-  /// Returns the values for which a section is printed, one after the other.
+  /// The section is printed for each of them.
   [[nodiscard]] std::vector<Scope> rounds_of(std::string_view condition) const {
     if (condition == "more") {
       return once(scopes_.back().more);
@@ -132,7 +131,7 @@ class Filling {
     }
   }
 
-  /// Returns the value with this name of the innermost object that has one.
+  /// In the innermost object that has one.
   [[nodiscard]] const Json& found(std::string_view name) const {
     if (name == ".") {
       return *scopes_.back().value;

@@ -7,7 +7,7 @@
 
 namespace ex9000::sim {
 
-/// Fills in a template with `data`. The syntax is a part of that of Mustache, plus what is marked with +:
+/// The syntax is a part of that of Mustache, plus what is marked with +:
 ///
 ///     {{name}}                a value of the innermost object that has this member; {{name.member}}
 ///     {{.}}                   the innermost value
@@ -19,8 +19,8 @@ namespace ex9000::sim {
 ///   + {{#more}}               true if another element of the list follows
 ///   + {{name|hex2}}, {{name|hex4}}, {{name*40}}, {{name-1}}   the number in hex, and arithmetic
 ///
-/// Nothing is escaped. Tags of sections and comments that are alone in a line leave no line. Throws
-/// std::logic_error if the template is wrong, for example contains a name that `data` does not have.
+/// Nothing is escaped. Tags of sections and comments alone in a line leave no line. Throws std::logic_error
+/// if the template is wrong, for example uses a name that `data` lacks.
 std::string filled_in(std::string_view text, const nlohmann::ordered_json& data);
 
 }  // namespace ex9000::sim

@@ -40,7 +40,7 @@ Parsed wrong(const std::string& what) {
   return parsed;
 }
 
-/// The settings that `play` has too.
+/// Those that `play` has too.
 bool is_for_play(const Setting<Setup>& setting) {
   return setting.name == "log" || setting.name == "capture" || setting.name == "seed";
 }
@@ -54,7 +54,7 @@ LineSetup line_of(const std::vector<std::string>& modules, const Options& option
   return line;
 }
 
-/// Rejects everything about a line beside a bus file, which has all of it.
+/// A bus file has everything about its lines.
 void reject_beside(const std::string& bus_file, const std::vector<std::string>& modules,
                    const Options& options) {
   for (const Setting<LineSetup>& setting : line_settings) {
@@ -67,8 +67,7 @@ void reject_beside(const std::string& bus_file, const std::vector<std::string>& 
   }
 }
 
-/// Returns the setup that the arguments describe. Reads the bus file if the arguments name one. An option
-/// overrides the key with the same name in the file. Throws std::invalid_argument with a one-line message.
+/// Reads the bus file if the arguments name one. An option overrides the key with the same name.
 Setup setup_of(const std::vector<std::string>& modules, const Options& options) {
   if (modules.empty()) {
     fail("no module given; try 'ex9000-sim EX9042D-M' or --help");
@@ -146,20 +145,17 @@ Parsed printed(const std::string& text) {
   return parsed;
 }
 
-/// Returns the options and positional arguments that the user gave for `app` itself, not for a subcommand, in
-/// the order in which they were added to `app`.
+/// Those for `app` itself, not for a subcommand, in the order in which they were added to `app`.
 std::vector<const CLI::Option*> given_of(const CLI::App& app) {
   return app.get_options([](const CLI::Option* option) { return option->count() != 0; });
 }
 
-/// Returns the name of an option. A positional argument has no such name. If `option` is positional, the
-/// result is its first value, as the user wrote it.
+/// Of a positional argument, its first value, as the user wrote it.
 std::string name_of(const CLI::Option& option) {
   return option.get_positional() ? option.results().front() : option.get_name();
 }
 
-/// Rejects arguments before a subcommand, because they would have no effect. Throws std::invalid_argument
-/// with a one-line message.
+/// They would have no effect there.
 void reject_arguments_before(const CLI::App& subcommand, const CLI::App& app) {
   const std::vector<const CLI::Option*> given = given_of(app);
   if (given.empty()) {
@@ -174,8 +170,7 @@ void reject_arguments_before(const CLI::App& subcommand, const CLI::App& app) {
                        : ", where it has no effect; leave it out, or see 'ex9000-sim " + name + " --help'"));
 }
 
-/// Rejects all arguments except `printing`, an option that prints text and runs nothing. Throws
-/// std::invalid_argument with a one-line message.
+/// `printing`: an option that prints text and runs nothing.
 void reject_other_arguments(const std::string& printing, const CLI::App& app) {
   for (const CLI::Option* option : given_of(app)) {
     if (option->get_name() != printing) {

@@ -12,7 +12,7 @@ namespace ex9000::sim {
 /// The exit status if an argument is wrong.
 constexpr int kWrongArguments = 2;
 
-/// The result of parsing the command line: either a job to do, or text to print and an exit status.
+/// Either a job to do, or text to print and an exit status.
 struct Parsed {
   std::optional<Setup> setup;      ///< the lines to simulate
   std::optional<play::Task> task;  ///< the files to play
@@ -21,12 +21,10 @@ struct Parsed {
   int exit_status = 0;
 };
 
-/// Returns `text` with a blank in place of each control character, and without blanks at the end. An error
-/// message must be one line, but the arguments that it quotes may contain newlines.
+/// Control characters become blanks, but not at the end: an error is one line, and may quote newlines.
 std::string one_line(std::string text);
 
-/// Parses the command line, and reads the bus file if the command line names one. Wrong arguments do not
-/// cause an exception: the result then has the error text and the exit status.
+/// Reads the bus file too. For wrong arguments, returns the error text and the exit status; does not throw.
 Parsed parse_arguments(int argc, const char* const* argv);
 
 }  // namespace ex9000::sim

@@ -6,7 +6,7 @@
 
 namespace ex9000::sim::help {
 
-/// The column at which descriptions begin.
+/// Where descriptions begin.
 constexpr std::size_t kColumn = 30;
 
 /// Printed after the options.
@@ -14,9 +14,8 @@ extern const char* const examples;
 /// The steps of transcripts and scenarios.
 std::string of_play();
 
-/// The topics of `help`, separated by |.
+/// For `help`, separated by |.
 std::string topics();
-/// Throws std::invalid_argument with a one-line message if there is no such topic.
 std::string on(const std::string& topic);
 
 }  // namespace ex9000::sim::help

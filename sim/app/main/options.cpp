@@ -8,7 +8,7 @@ namespace ex9000::sim {
 
 namespace {
 
-/// Whether a setting with this option may stand without a value, and which words it accepts.
+/// true: the option may stand without a value. `takes_next`: it accepts `next` as its value.
 template <class Settings, class Object>
 bool stands_alone(const Settings& settings, const std::string& word, const std::string& next, Object scratch,
                   bool& takes_next) {

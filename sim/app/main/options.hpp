@@ -11,7 +11,7 @@
 
 namespace ex9000::sim {
 
-/// Values by the name of their option, as the user has given them.
+/// By the name of their option, as the user has given them.
 class Options {
  public:
   template <class Settings>
@@ -34,8 +34,7 @@ class Options {
     return values != values_.end() && !values->second.empty();
   }
 
-  /// Takes the given values in the order of `settings`. Throws std::invalid_argument with a one-line message.
-  /// The last value of a Form::Optional counts, so that a caller of a script can override it.
+  /// In the order of `settings`. The last Form::Optional counts, so that a script's caller can override it.
   template <class Settings, class Object>
   void apply(const Settings& settings, Object& object) const {
     for (const auto& setting : settings) {
@@ -62,9 +61,8 @@ class Options {
   std::map<std::string_view, std::vector<std::string>> values_;
 };
 
-/// The arguments, with `=on` after each option that may stand without a value and has none, because CLI11
-/// would take any next word as the value. The next word is the value if the setting accepts it. Throws
-/// std::invalid_argument with a one-line message if an option without its value is before another option.
+/// The arguments, with `=on` after an option that may stand without a value unless it accepts the next word:
+/// CLI11 would take any. Throws if an option without its value is before another option.
 std::vector<std::string> complete_words(const CLI::App& app, int argc, const char* const* argv);
 
 }  // namespace ex9000::sim

@@ -18,12 +18,10 @@ class PlayRecord final : public play::PlayObserver {
  public:
   using Print = LineRecord::Print;
 
-  /// Writes the log and the capture that `writing` requests. `print` receives the lines of the log. The first
-  /// call of `run_begins` opens the capture file if `writing` names one. This call and all later calls of
-  /// member functions may throw the exceptions of Capture.
+  /// `print` gets the lines of the log. The first `run_begins` opens the capture that `writing` names; it and
+  /// all later calls may throw what Capture throws.
   PlayRecord(Writing writing, Print print);
 
-  // --- play::PlayObserver ---
   void run_begins(const std::string& what) override;
   Faults::Notice line_started(Line& line, const std::string& name) override;
   void time_reached(VirtualTime now) override;

@@ -32,15 +32,14 @@ void run(const Setup& setup) {
   const auto gives_up = [&stop_signals] { return stop_signals.arrived(); };
   StandardStream output(STDOUT_FILENO, kOutput, gives_up);
   StandardStream errors(STDERR_FILENO, "standard error", gives_up);
-  // If the reader of the log has closed the pipe, the program ends at the next write.
+  // When the reader of the log has closed the pipe, the program ends at the next write.
   const auto print_line = [&io, &output](const std::string& line) {
     if (!output.write(line + "\n")) {
       io.stop();
     }
   };
   boost::asio::signal_set signals(io);
-  // A stop signal stops `io` and does not end the process, so the destructors run. They remove the control
-  // socket and the links to pseudo-terminals.
+  // Stops only `io`, so that destructors remove the control socket and the links to pseudo-terminals.
   add_stop_signals(signals);
   signals.async_wait([&io](const boost::system::error_code& /*error*/, int /*signal*/) { io.stop(); });
   const auto greet = [&errors](const std::string& text) { errors.write(text + "\n"); };
@@ -70,9 +69,8 @@ int report_error(const std::exception& error, int status) {
   return status;
 }
 
-/// Opens /dev/null in place of each standard stream that is closed. Otherwise a file that the program opens
-/// later could get the descriptor of standard output or standard error, and the program would write its log
-/// or its messages into that file.
+/// Opens /dev/null for those that are closed. Else a file that is opened later could get the descriptor of
+/// standard output or standard error, and with it the log or the messages.
 void occupy_standard_streams() {
   int fd = open("/dev/null", O_RDWR);
   while (fd >= 0 && fd <= STDERR_FILENO) {
@@ -87,8 +85,7 @@ void occupy_standard_streams() {
 
 int run_program(int argc, const char* const* argv) {
   occupy_standard_streams();
-  // These signals would end the program at a write to a closed pipe or beyond the file-size limit. While they
-  // are ignored, the write returns an error instead.
+  // Else they would end the program at a write to a closed pipe, or beyond the file-size limit.
   static_cast<void>(std::signal(SIGPIPE, SIG_IGN));
   static_cast<void>(std::signal(SIGXFSZ, SIG_IGN));
   try {

@@ -3,8 +3,7 @@
 
 namespace ex9000::sim {
 
-/// Carries out the command line. Blocks until the work is done or a signal ends the program. Returns the exit
-/// status.
+/// Blocks until the work is done or a signal ends the program. Returns the exit status.
 int run_program(int argc, const char* const* argv);
 
 }  // namespace ex9000::sim

@@ -15,8 +15,7 @@ namespace ex9000::sim {
 StandardStream::StandardStream(int file, std::string name, GivesUp gives_up)
     : file_(file), name_(std::move(name)), gives_up_(std::move(gives_up)) {}
 
-/// Writes at most PIPE_BUF bytes in each system call, because a pipe that has room accepts this number
-/// without blocking.
+/// In pieces of PIPE_BUF bytes, which a pipe that has room accepts without blocking.
 bool StandardStream::write(const std::string& text) {
   for (std::size_t done = 0; done < text.size() && !ended_;) {
     if (!wait_for_room(file_, gives_up_)) {

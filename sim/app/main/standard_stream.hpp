@@ -7,19 +7,16 @@
 
 namespace ex9000::sim {
 
-/// A standard stream without a buffer, because users read a log while the program writes it. Only one thread
-/// at a time may use an object of this class.
+/// Without a buffer: users read a log while it is written. For one thread at a time.
 class StandardStream {
  public:
-  /// `file`: STDOUT_FILENO or STDERR_FILENO. `name`: name of the stream in messages.
+  /// `file`: STDOUT_FILENO or STDERR_FILENO. `name`: for messages.
   StandardStream(
       int file, std::string name, GivesUp gives_up = [] { return false; });
 
-  /// Writes `text`. If the stream accepts no output, for example because a pipe is full, this function blocks
-  /// until the reader reads or closes the pipe, or until `gives_up` returns true. Returns false if `gives_up`
-  /// has returned true or the reader has closed the pipe. Throws std::runtime_error with a one-line message
-  /// if the write fails for another reason. After an exception or the result false, later calls discard their
-  /// text and return false.
+  /// Blocks while the stream accepts nothing, for example a full pipe. false: `gives_up` is true, or the
+  /// reader has closed the pipe. Throws std::runtime_error if the write fails otherwise. After false or an
+  /// exception, later calls discard their text and return false.
   bool write(const std::string& text);
 
  private:

@@ -69,7 +69,6 @@ void LineTarget::add_line(const sim::LineSetup& setup, Memories::const_iterator 
   sim::begin_programs(line, setup);
 }
 
-/// Processes the events of all lines up to and including the time `until`.
 void LineTarget::run_until(sim::VirtualTime until) {
   for (const auto& line : lines_) {
     line->wires().run_until(until);
@@ -106,7 +105,6 @@ Bytes LineTarget::listen(std::chrono::nanoseconds time) {
   return std::exchange(heard_[line_], {});
 }
 
-/// Carries out an action of the chosen module.
 void LineTarget::on_module(sim::Words action) {
   action.insert(action.begin(), std::to_string(module_ + 1));
   sim::act({{"", chosen()}}, action);
@@ -135,8 +133,7 @@ void LineTarget::pulse_input(unsigned channel, std::uint32_t count) {
 }
 
 Led LineTarget::led(Led /*expected*/) {
-  // No virtual time passes here, so the check does not extend the time between other steps. The unit tests of
-  // StatusLed check how the LED flashes.
+  // No virtual time passes, so the check does not delay other steps. StatusLed's unit tests check flashing.
   if (module().powered() && module().module().led_pattern() == StatusLed::Pattern::HostTimeout) {
     return Led::Flashing;
   }
@@ -167,8 +164,7 @@ void LineTarget::choose_line(const std::string& name) {
             (names.empty() ? "the only line has no name; remove the step" : "expected one of " + names));
 }
 
-/// Chooses a line and a module. If the line changes, discards the bytes that the master of the new line has
-/// received so far.
+/// If the line changes, discards what the master of the new one has received so far.
 void LineTarget::turn_to(std::size_t line, std::size_t module) {
   if (line != line_) {
     heard_[line].clear();

@@ -13,27 +13,21 @@
 
 namespace ex9000::play {
 
-/// The initial EEPROM contents: one item for each module, in the order of the lines and of their modules.
-/// nullopt: the module starts up with the settings of its ModuleSpec.
+/// Initial EEPROM contents, one for each module in order; nullopt: it starts with its ModuleSpec's settings.
 using Memories = std::vector<std::optional<std::vector<std::uint8_t>>>;
-/// Reads the EEPROM files that `setup` names, even if another process uses them. Does not change the files.
-/// The result has nullopt for a module without an EEPROM file and for a file that does not exist. Throws
-/// std::invalid_argument with a one-line message if a file is not an EEPROM image or is not readable.
+/// From the files in `setup`, even if another process uses them; does not change them. nullopt: no file.
 Memories read_memories(const sim::Setup& setup);
 
-/// All lines have the same virtual time. The observer may be null; otherwise it must outlive the target.
+/// All lines have the same virtual time. The observer may be null; else it must outlive the target.
 class LineTarget : public Target {
  public:
-  /// Creates a target for a transcript; `start` provides its module.
+  /// For a transcript; `start` provides its module.
   explicit LineTarget(PlayObserver* observer = nullptr) : observer_(observer) {}
-  /// Creates a target for a scenario: the modules of `setup` start up with `memories`. Opens no files and no
-  /// ports. Throws std::invalid_argument with a one-line message if a fault of `setup` names a module that
-  /// its line does not have.
+  /// For a scenario. Opens no files and no ports. Throws if a fault names a module that its line lacks.
   LineTarget(const sim::Setup& setup, const Memories& memories, PlayObserver* observer = nullptr);
 
   [[nodiscard]] sim::VirtualTime now() { return chosen().clock().virtual_now(); }
 
-  // --- Target ---
   void start(const Model& model, const Settings* preset) override;
   void send(const Bytes& bytes) override;
   Bytes receive(std::size_t count, std::chrono::milliseconds patience) override;

@@ -6,8 +6,7 @@
 
 namespace ex9000 {
 
-/// Returns `frame` with its CRC appended. The function computes the CRC bit by bit (Modbus over Serial Line
-/// V1.02, 6.2.2), so that the tests do not check the firmware with its own code.
+/// Bit by bit (Modbus over Serial Line V1.02, 6.2.2), so as not to check the firmware with its own code.
 inline std::vector<std::uint8_t> with_crc(std::vector<std::uint8_t> frame) {
   unsigned crc = 0xFFFF;
   for (const std::uint8_t byte : frame) {

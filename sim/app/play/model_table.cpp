@@ -26,7 +26,7 @@ ModelEntry& entry_of(const Model& model, ModelTable& table) {
   return found != table.end() ? *found : table.emplace_back(ModelEntry{&model, {}, {}});
 }
 
-/// Adds a row to the table. `headings`: of the columns, the first one is that of the models.
+/// `headings`: of the columns; the first is that of the models.
 void add_row(const Words& row, const Words& headings, ModelTable& table) {
   if (row.size() != headings.size()) {
     fail("has " + std::to_string(row.size()) + " columns; expected " + std::to_string(headings.size()) +
@@ -42,7 +42,6 @@ void add_row(const Words& row, const Words& headings, ModelTable& table) {
   }
 }
 
-/// Returns whether the model belongs to the class.
 bool belongs(const ModelEntry& entry, const std::string& to) {
   return to == "all" || to == entry.model->designation || contains(entry.classes, to);
 }

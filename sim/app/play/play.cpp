@@ -44,8 +44,7 @@ void check(const Transcript& transcript, const std::optional<sim::Setup>& bus) {
   }
 }
 
-/// Throws if the capture is a file that is played, its table of models or a file that the bus names. Call
-/// this before the capture starts.
+/// Before the capture starts: it must not be a file that is played, its table of models, or one of the bus.
 void check_capture_path(const Task& task, const std::vector<Transcript>& all) {
   if (!task.writing.capture) {
     return;

@@ -14,15 +14,13 @@ class PlayObserver {
   PlayObserver& operator=(const PlayObserver&) = delete;
   virtual ~PlayObserver() = default;
 
-  /// Called before each run of a file. `what` names the file and, for a transcript, the model.
+  /// Before each run. `what`: the file and, for a transcript, the model.
   virtual void run_begins(const std::string& what) = 0;
-  /// Called when a line has started up. The line exists until `run_ends` is called. `name` may be empty if
-  /// there is only one line. Returns the function that receives the messages about the faults of the line;
-  /// the function may be empty.
+  /// A line has started up; it exists until `run_ends`. `name` may be empty if there is only one. Returns who
+  /// gets the messages about its faults; may be empty.
   virtual sim::Faults::Notice line_started(sim::Line& line, const std::string& name) = 0;
-  /// Called when all events on the lines up to `now` have been processed.
+  /// All events on the lines up to `now` have been processed.
   virtual void time_reached(sim::VirtualTime now) = 0;
-  /// Called at the end of each run.
   virtual void run_ends() = 0;
 };
 

@@ -12,15 +12,13 @@ namespace ex9000::play {
 namespace {
 
 constexpr std::chrono::milliseconds kLongestReply{250};
-/// If a reply is too long, its first extra byte arrives within this time, at 9600 baud or more.
+/// In this time, the first extra byte of a reply that is too long arrives, at 9600 baud or more.
 constexpr std::chrono::milliseconds kAfterReply{2};
-/// Without a store, an unexpected reply begins within this time after the request. The time is longer than
-/// the sum of T3.5 at 1200 baud, the 20 ms within which a reply must begin, and the first character of the
-/// reply.
+/// In this time after the request, an unexpected reply begins, without a store: longer than T3.5 at 1200
+/// baud, the 20 ms within which a reply must begin, and its first character.
 constexpr std::chrono::milliseconds kReplyBegins{65};
 
-/// Returns the DCON checksum of `text`. Does not use the firmware's code, so that the tests do not check the
-/// firmware with its own code.
+/// Without the firmware's code, so that the tests do not check the firmware with itself.
 std::string checksum_of(const std::string& text) {
   unsigned sum = 0;
   for (const char character : text) {
@@ -30,8 +28,7 @@ std::string checksum_of(const std::string& text) {
   return {kDigits[sum / 16 % 16], kDigits[sum % 16]};
 }
 
-/// Returns the bytes as text if all are printable ASCII, except a CR at the end; otherwise in hex. Returns
-/// the word `nothing` if there are no bytes.
+/// As text if all is printable ASCII except a CR at the end, else in hex; without bytes, `nothing`.
 std::string shown(const Bytes& bytes) {
   if (bytes.empty()) {
     return "nothing";

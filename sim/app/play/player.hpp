@@ -16,8 +16,8 @@ struct Result {
   [[nodiscard]] bool passed() const { return failure.empty(); }
 };
 
-/// Plays the steps up to the first failure. If all steps pass, checks that no more bytes arrive, and then
-/// calls `Target::end`. For a scenario, the modules of the target must have started up.
+/// Plays up to the first failure. If all steps pass, checks that no more bytes arrive, then calls
+/// `Target::end`. The modules of a scenario must have started up.
 Result play(const Transcript& transcript, Target& target);
 
 }  // namespace ex9000::play

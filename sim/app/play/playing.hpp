@@ -9,7 +9,7 @@
 
 namespace ex9000::play {
 
-/// The functions throw std::runtime_error if what arrives is not what they expect.
+/// Throws std::runtime_error if what arrives is not what is expected.
 class Playing {
  public:
   /// `rehearses`: steps take no time and expect nothing.
@@ -19,18 +19,17 @@ class Playing {
   Target& target() { return target_; }
   void set_checksum(bool on) { checksum_ = on; }
 
-  /// Sends a request. Before it, no byte may arrive that no step expects.
+  /// Before it, no byte may arrive that no step expects.
   void send(const Bytes& request);
   void send_dcon(const std::string& text) { send(dcon_frame(text)); }
-  /// Does not check for earlier replies, because the bytes may be the rest of a frame.
+  /// Does not check this: the bytes may be the rest of a frame.
   void send_more(const Bytes& bytes);
-  /// `permitted` contains at least one reply; all have the same length.
+  /// At least one reply; all have the same length.
   void expect_one_of(const std::vector<Bytes>& permitted);
   void expect_dcon(const std::string& text) { expect_one_of({dcon_frame(text)}); }
   void expect_outputs(std::uint16_t channels);
   void expect_led(Led shows);
   void nothing_for(std::chrono::nanoseconds time);
-  /// Throws if bytes arrive that no step expects.
   void nothing_more();
 
  private:

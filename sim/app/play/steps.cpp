@@ -20,7 +20,7 @@ using sim::parse_on_off;
 using sim::Words;
 using Run = std::function<void(Playing& playing)>;
 
-/// A step that begins with a keyword.
+/// A step with a keyword.
 struct Row {
   std::string_view shape;
   enum class Of {
@@ -137,7 +137,7 @@ constexpr Row kRows[] = {
     {"line NAME", Row::Of::Scenarios, line},
 };
 
-/// An action of the control socket, on module N or on the chosen line.
+/// Of the control socket, on module N or on the chosen line.
 Run action(const Words& words) {
   return [words](Playing& playing) { playing.target().act(words); };
 }
@@ -155,7 +155,7 @@ bool is_action(const std::string& word) {
        ", N ACTION, fault FAULT, fault off K|all");
 }
 
-/// Parses `HEX` or `HEX or HEX ...`.
+/// `HEX` or `HEX or HEX ...`.
 Run parse_modbus_reply(const std::string& text) {
   const std::string separator = " or ";
   std::vector<Bytes> permitted;
@@ -170,7 +170,7 @@ Run parse_modbus_reply(const std::string& text) {
   return [permitted = std::move(permitted)](Playing& playing) { playing.expect_one_of(permitted); };
 }
 
-/// Parses a step that sends a frame or expects one; null for any other step.
+/// A step that sends a frame or expects one; null: any other step.
 Run parse_frame(const std::string& text) {
   for (const std::string lead : {"<=", "=>", "<", ">"}) {
     if (text.rfind(lead, 0) != 0) {

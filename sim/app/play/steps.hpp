@@ -9,8 +9,7 @@
 
 namespace ex9000::play {
 
-/// Parses the text of a step; variables are replaced. `model`: of a transcript; null: the step is of a
-/// scenario, which has more steps. Throws std::invalid_argument with a one-line message.
+/// `text`: variables are replaced. `model`: null for a step of a scenario, which has more steps.
 Step parse_step(unsigned line, const std::string& text, const Model* model);
 
 }  // namespace ex9000::play

@@ -15,14 +15,13 @@
 
 namespace ex9000::play {
 
-/// What the status LED shows.
 enum class Led { On, Off, Flashing };
 constexpr const char* led_text(Led led) {
   return led == Led::On ? "on" : led == Led::Off ? "off" : "flashing";
 }
 
-/// A module and the master's end of its line. A target with several modules acts on one of them at a time.
-/// Each call returns when its action is complete; the target lets the required time pass.
+/// A module and the master's end of its line. Of several modules, a target acts on one at a time. Each call
+/// lets the required time pass, and returns when its action is complete.
 class Target {
  public:
   Target() = default;
@@ -30,50 +29,45 @@ class Target {
   Target& operator=(const Target&) = delete;
   virtual ~Target() = default;
 
-  /// Provides a module of this model. The memory of the module contains `preset`, or nothing if `preset` is
-  /// null. The supply is on, INIT* is released, and the inputs are off. Called once for each transcript,
-  /// before the other functions; not called for a scenario.
+  /// Once before a transcript, not for a scenario: provides a module with the supply on, INIT* released and
+  /// the inputs off. `preset`: in its memory; null: nothing.
   virtual void start(const Model& model, const Settings* preset) = 0;
 
-  /// Sends `bytes` on the line without a gap, at the master's rate.
+  /// Without a gap, at the master's rate.
   virtual void send(const Bytes& bytes) = 0;
-  /// Returns the received bytes when `count` bytes have arrived, or when no byte has arrived for `patience`.
+  /// Returns when `count` bytes have arrived, or none for `patience`.
   virtual Bytes receive(std::size_t count, std::chrono::milliseconds patience) = 0;
-  /// Lets `time` pass, then returns the received bytes that no earlier call has returned.
+  /// Lets `time` pass, then returns what no earlier call has returned.
   virtual Bytes listen(std::chrono::nanoseconds time) = 0;
-  /// These functions set the rate and the line format of the master.
+  /// Both: of the master.
   virtual void set_baud(std::uint32_t rate) = 0;
   virtual void set_format(LineFormat format) = 0;
 
-  /// Switches the supply. After switching on, returns when the module has had the time to start up.
+  /// Switched on, the module gets the time to start up.
   virtual void power(bool on) = 0;
-  /// Resets the module without loss of power, and returns when the module has had the time to start up.
+  /// Without loss of power; the module gets the time to start up.
   virtual void reset() = 0;
   virtual void set_init(bool asserted) = 0;
   virtual void set_input(unsigned channel, bool level) = 0;
   virtual void pulse_input(unsigned channel, std::uint32_t count) = 0;
   virtual std::uint16_t outputs() = 0;
-  /// Returns the state of the LED. `expected` is the state in the step. A target that can only watch the LED
-  /// may use `expected` to choose how long to watch.
+  /// `expected`: for a target that can only watch the LED, to choose how long.
   virtual Led led(Led expected) = 0;
 
-  // Functions for a target with several modules and with faults. They throw std::invalid_argument if the
-  // module or the line does not exist, or like sim::act. The implementations in this class always throw.
+  // For several modules and faults. Throw if the module or the line does not exist, or like sim::act.
 
-  /// Chooses the module for the following calls. `position` is the position of the module, from 0, across all
-  /// lines. The master then sends on the line of this module.
+  /// For the following calls. `position`: from 0, across all lines. The master sends on its line.
   virtual void choose_module(std::size_t /*position*/) {
     throw std::runtime_error("there is only one module");
   }
-  /// Chooses the first module of the line with this name.
+  /// The first module of the line.
   virtual void choose_line(const std::string& /*name*/) {
     throw std::runtime_error("there is only one line");
   }
-  /// Carries out an action (sim/notation/actions.hpp): `N ACTION`, or `ACTION` of the chosen line.
+  /// See sim/notation/actions.hpp: `N ACTION`, or `ACTION` of the chosen line.
   virtual void act(const sim::Words& /*words*/) { throw std::runtime_error("this target has no actions"); }
 
-  /// Called at the end of a run if all steps have passed. Throws std::runtime_error if the target has found
-  /// an error that no step has reported.
+  /// When all steps have passed. std::runtime_error: an error that no step has reported.
   virtual void end() {}
 };
 

@@ -26,7 +26,7 @@ struct Line {
   std::string text;
 };
 
-/// The variables of a header line.
+/// Of a header line.
 struct Given {
   std::string text;  ///< as in the file
   Variables variables;
@@ -45,7 +45,7 @@ std::string trimmed(const std::string& text) {
   return first == std::string::npos ? "" : text.substr(first, last - first + 1);
 }
 
-/// The settings of a `preset:` line, in which variables are replaced.
+/// Of a `preset:` line, in which variables are replaced.
 Settings preset_of(const Model& model, const std::string& preset) {
   sim::ModuleSpec spec = sim::factory_fresh(model);
   for (const std::string& word : sim::words_of(preset)) {
@@ -57,7 +57,6 @@ Settings preset_of(const Model& model, const std::string& preset) {
   return spec.settings;
 }
 
-/// Replaces each {VAR} by its value.
 std::string substitute(std::string text, const Variables& variables) {
   constexpr std::string_view kLetters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz_0123456789";
   for (auto at = text.find('{'); at != std::string::npos; at = text.find('{', at)) {
@@ -81,7 +80,7 @@ std::optional<std::string> header_value(const std::string& text, const std::stri
   return text.rfind(key + ":", 0) == 0 ? std::optional(trimmed(text.substr(key.size() + 1))) : std::nullopt;
 }
 
-/// The content of a file before it is combined with a model.
+/// A file before it is combined with a model.
 struct Source {
   ModelTable table;
   bool names_its_source = false;
@@ -100,7 +99,7 @@ void add_all(const Variables& added, Variables& variables) {
   }
 }
 
-/// Splits the value of a header line into its variables, VAR=TEXT, and the words before them.
+/// Variables, VAR=TEXT, and the words before them.
 std::pair<sim::Words, Given> words_and_variables(const std::string& text) {
   sim::Words words;
   Given given;
@@ -118,7 +117,7 @@ std::pair<sim::Words, Given> words_and_variables(const std::string& text) {
   return {words, given};
 }
 
-/// Adds the models of a `model:` line (`by_class` is false) or of a `models:` line.
+/// Of a `models:` line if `by_class`, else of a `model:` line.
 void add_models(const std::string& text, bool by_class, Source& source) {
   const auto [words, given] = words_and_variables(text);
   if (words.empty()) {
@@ -212,7 +211,7 @@ bool have_different_presets(const std::vector<ModelRun>& runs) {
                      [&runs](const ModelRun& run) { return run.preset != runs[0].preset; });
 }
 
-/// `line` is the line that is read, for the message of an error.
+/// `line`: the one that is read, for the message of an error.
 Transcript transcript_of(const std::string& path, const Source& source, const ModelRun& run,
                          const Given& with, unsigned& line) {
   Variables variables = run.given.variables;

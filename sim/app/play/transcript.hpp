@@ -21,19 +21,18 @@ class Playing;
 struct Step {
   unsigned line;     ///< line number in the file, from 1
   std::string text;  ///< the step without its comment; variables are replaced
-  /// Carries out the step. Throws std::runtime_error if the step fails.
+  /// Throws std::runtime_error if the step fails.
   std::function<void(Playing& playing)> run;
   bool acts = false;  ///< the step changes modules, lines or faults: see `rehearse`
 
   [[nodiscard]] sim::Words words() const { return sim::words_of(text); }
 };
 
-/// One run of a file: a transcript on one model, or a scenario, which runs on a bus.
+/// A transcript on one model, or a scenario on a bus.
 struct Transcript {
   std::string file;
   const Model* model = nullptr;  ///< null: a scenario
-  /// The model, the variables from the header and, if not all runs have the same, the preset. Empty: a
-  /// scenario.
+  /// The model, the header's variables and, if runs differ in it, the preset. Empty: a scenario.
   std::string run;
   Settings preset;  ///< of a transcript: factory settings with the changes from the header
   bool preset_given = false;
@@ -41,16 +40,13 @@ struct Transcript {
   std::vector<Step> steps;
 };
 
-/// The duration of a `silence` step, in which no byte may arrive. Without faults, an idle module begins its
-/// reply to a request within this time.
+/// Of a `silence` step. Without faults, an idle module begins its reply within this time.
 constexpr std::chrono::milliseconds kSilence{250};
 
-/// Returns the paths of all files below `directory` that end with .txt, sorted. Throws
-/// std::filesystem::filesystem_error if a directory cannot be read.
+/// Below `directory`, ending with .txt, sorted. Throws std::filesystem::filesystem_error.
 std::vector<std::string> transcript_files(const std::string& directory);
 
-/// Returns all runs of a transcript, one for each model and `with:` line, or the single run of a scenario.
-/// Throws std::invalid_argument that names the file, the line (if the file can be read) and what is wrong.
+/// For each model and `with:` line of a transcript; one for a scenario. Errors name the file and the line.
 std::vector<Transcript> load(const std::string& path);
 
 }  // namespace ex9000::play

@@ -12,7 +12,7 @@ namespace ex9000::sim {
 
 namespace {
 
-/// Returns whether the bytes are one request with the header of Modbus TCP, or begin with one.
+/// They are a request with the header of Modbus TCP, or begin with one.
 bool looks_like_modbus_tcp(const FrameBytes& bytes) {
   constexpr std::size_t kHeader = 6;  // transaction, protocol, length
   constexpr std::size_t kLeast = 2;   // unit and function
@@ -21,7 +21,7 @@ bool looks_like_modbus_tcp(const FrameBytes& bytes) {
          all.word(4) <= all.size - kHeader && crc16(all).value() != 0;
 }
 
-/// Returns the address in a DCON command; nullopt if it has none, for example ~**.
+/// nullopt: no address, for example in ~**.
 std::optional<std::uint8_t> dcon_address(const FrameBytes& bytes) {
   const auto begin = std::find_if(bytes.begin(), bytes.end(), [](std::uint8_t byte) { return byte > ' '; });
   if (bytes.end() - begin < 4 || bytes.back() != '\r') {

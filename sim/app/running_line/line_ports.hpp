@@ -14,39 +14,34 @@
 
 namespace ex9000::sim {
 
-/// Every port gets the bytes that the master's end of the line receives. If a master sets a rate at a port,
-/// this rate becomes the line's rate. Pacer or SteppedLine puts the bytes and the requests of masters on the
-/// line.
+/// All ports get what the master's end of the line receives, and a rate that a master sets at a port becomes
+/// the line's. Pacer or SteppedLine puts what masters send on the line.
 class LinePorts final : private WireObserver {
  public:
   using All = std::vector<std::unique_ptr<Port>>;
   using Notice = std::function<void(const std::string&)>;
 
-  /// Observes the bus of `line`: this object and all arguments must live as long as that bus is used.
-  /// `notice` receives a one-line message for each module that cannot receive because
-  /// of its rate or format, and for bytes that a port drops.
+  /// This object and all arguments must live as long as the wires of `line` are used. `notice` gets one line
+  /// for each module that cannot receive because of its rate or format, and for bytes that a port drops.
   LinePorts(Line& line, const All& ports, Notice notice);
 
-  /// Stores a byte that the master's end of the line has received. Call this for each such byte.
+  /// Each byte that the master's end has received.
   void hear(std::uint8_t byte) { heard_.push_back(byte); }
-  /// Returns whether a station other than the master has stopped sending since the last `hand_out`.
+  /// A station other than the master has stopped sending since the last `hand_out`.
   [[nodiscard]] bool reply_is_complete() const { return stopped_sending_; }
-  /// Calls `Port::send` of all ports with the bytes that `hear` has stored, and then discards these bytes. If
-  /// `reply_is_complete()` is true at the time of this call, also calls `Port::sent` of all ports. Does not
-  /// block: a port that has no room drops bytes. Reports the first of consecutive drops at a port with a
-  /// notice.
+  /// Sends the stored bytes to all ports and, if `reply_is_complete()`, tells them so (Port::sent). Does not
+  /// block: a port without room drops bytes, and a notice reports the first of consecutive drops.
   void hand_out();
-  /// Sets the line to the rate of the port, if the port has one, and reports mismatches.
+  /// Sets the line to the port's rate, if it has one, and reports mismatches.
   void take_rate(const Port& port);
-  /// Returns the number of bytes written to each port so far, including dropped bytes.
+  /// Bytes written to each port so far, with dropped ones.
   [[nodiscard]] std::uint64_t sent() const { return sent_; }
-  /// Reports each module that listens but cannot receive because its rate or format differs from that of the
-  /// line. Reports a mismatch only once, unless the mismatch ends and begins again.
+  /// Reports each module that listens but cannot receive at the line's rate or format; each mismatch once.
   void report_mismatches();
 
-  /// Lets the ports continue if they have stopped because Arrivals has returned false.
+  /// Ports that have stopped because Arrivals has returned false continue.
   void resume();
-  /// Whether a port still waits for its first master before line time may begin.
+  /// A port still waits for its first master before line time may begin.
   [[nodiscard]] bool hold_line() const;
 
   [[nodiscard]] const All& all() const { return ports_; }

@@ -19,36 +19,31 @@ class LineRecord final : private Station {
  public:
   using Print = LineLog::Print;
 
-  /// Records a line that has started up. `line` must outlive this object. If frames are recorded or `end_at`
-  /// is called, this object must also live as long as the bus of `line` is used. `name` is the name of the
-  /// line in a JSON log and in the capture. `print` receives the lines of the log.
+  /// `line` has started up, and must outlive this object. If frames are recorded or `end_at` is called, this
+  /// object must live as long as its wires are used. `name`: in a JSON log and in the capture.
   LineRecord(Line& line, std::string name, LogFormat format, const Print& print);
 
-  /// Writes a note to the log, with the time of the line's clock. Notes are printed even if frames are not.
-  /// Does nothing after the end of the log, see `end_at`.
+  /// Printed even if frames are not. Nothing after `end_at`.
   void note(const std::string& text);
-  /// The same for what happens to the line and its modules: printed only if frames are.
+  /// What happens to the line and its modules: printed only if frames are.
   void event(const std::string& text);
   void print_frames();
-  /// Starts to write frames to `capture`, which must outlive this object. `began` is the timestamp of time 0
-  /// of the line in the capture, since 1970-01-01 00:00:00 UTC.
+  /// `capture` must outlive this object. `began`: the line's time 0, since 1970-01-01 00:00:00 UTC.
   void keep_in(Capture& capture, VirtualTime began);
-  /// From now on, a note follows each recorded frame to which no module replies, if the reason is known: see
-  /// `hint_for`. Each text is noted once.
+  /// After a recorded frame, notes why no module replies, if known (`hint_for`); each text once.
   void give_hints() { gives_hints_ = true; }
-  /// Starts to call `take` with each frame when the frame has ended, and `note` with each note.
+  /// `take` gets each frame when it has ended, `note` each note.
   void tell(FrameWatch::Take take, LineLog::Note note);
-  /// Ends the log and the capture at `end` in the line's time. The line may run beyond `end`, because the
-  /// program reads the wall clock only at some moments. The log and the capture omit everything that happens
-  /// after `end`. Call this before the line's time reaches `end`.
+  /// In the line's time, which must not have reached it. The line may run beyond `end`, because the wall
+  /// clock is read only at some moments; what happens then is not recorded.
   void end_at(VirtualTime end);
-  /// Returns the collector of the frames; null if no frames are recorded.
+  /// Null: no frames are recorded.
   FrameWatch* frames() { return listens_ ? &frames_ : nullptr; }
   /// Records the frames that are still in progress.
   void finish() { frames_.finish(); }
 
  private:
-  // --- Station: called at the time that `end_at` sets ---
+  // At the time of `end_at`.
   void run() override;
 
   void write(const std::string& text, bool prints);

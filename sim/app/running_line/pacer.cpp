@@ -10,15 +10,13 @@ namespace ex9000::sim {
 
 namespace {
 
-/// When this many bytes wait for the line, masters have to wait, as if the buffer of their UART were full.
+/// With so many bytes waiting, masters have to wait, as if the buffer of their UART were full.
 constexpr std::size_t kMostWaiting = 4096;
 
-/// Limits how far virtual time runs ahead of the wall clock, so that watchdogs do not expire early after many
-/// consecutive transactions.
+/// How far virtual time may be ahead: else watchdogs expire early after many consecutive transactions.
 constexpr std::chrono::milliseconds kFarthestAhead{5};
 
-/// The shortest delay that is reported. A master may notice this delay of a reply, and a user must be able to
-/// find the reason.
+/// A master may notice this delay of a reply, and a user must be able to find the reason.
 constexpr VirtualTime kReportedDelay = std::chrono::milliseconds(20);
 
 }  // namespace
@@ -74,8 +72,7 @@ VirtualTime Pacer::wall() const {
   return first_ + (pace_.speed == 1 ? real : std::chrono::duration_cast<VirtualTime>(real * pace_.speed));
 }
 
-/// Converts `time`, a time of the line, to a time of the wall clock. If the speed is not 1, the result is at
-/// most a century after the start, because the clock's range is finite.
+/// On the wall clock; unless the speed is 1, at most a century after the start: its range is finite.
 std::chrono::steady_clock::time_point Pacer::when(VirtualTime time) const {
   constexpr VirtualTime kCentury = std::chrono::hours(24 * 365 * 100);
   const VirtualTime ahead = time - first_;
@@ -86,8 +83,7 @@ std::chrono::steady_clock::time_point Pacer::when(VirtualTime time) const {
   return began_ + (real < kCentury ? std::chrono::duration_cast<VirtualTime>(real) : kCentury);
 }
 
-/// Processes the events up to `until`, and later events that need not wait for the wall clock. Leaves the
-/// line's clock at the last event, not at `until`: see Pace::host_latency.
+/// Also later events that need not wait. The line's clock stays at the last event: see Pace::host_latency.
 void Pacer::catch_up(VirtualTime until) {
   VirtualTime next = line_.wires().next();
   report_delay(next);
@@ -96,14 +92,13 @@ void Pacer::catch_up(VirtualTime until) {
   }
 }
 
-/// Returns whether the event at `next` need not wait for the wall clock.
+/// The event at `next` need not wait for the wall clock.
 bool Pacer::leads(VirtualTime next) const {
   return pace_.lead != VirtualTime(0) &&
          (line_.wires().carries() || next <= line_.spacing().last_byte() + pace_.lead);
 }
 
-/// Returns whether masters have to wait, because the line has many bytes to carry or virtual time has run too
-/// far ahead.
+/// Masters have to wait: many bytes wait for the line, or virtual time is too far ahead.
 bool Pacer::is_full() const {
   return line_.master().waiting() >= kMostWaiting || line_.clock().virtual_now() > wall() + kFarthestAhead;
 }
@@ -122,7 +117,7 @@ void Pacer::follow() {
   arm_timer();
 }
 
-/// Makes masters wait if `is_full()`. Returns whether masters wait.
+/// Returns whether masters wait.
 bool Pacer::pause_if_full() {
   if (is_full()) {
     paused_ = true;
@@ -152,9 +147,7 @@ void Pacer::arm_timer() {
   });
 }
 
-/// Reports the delay of an event that was due at `next`, if the delay is at least kReportedDelay. Reports a
-/// later delay only if it is at least twice as long as the last reported delay, because a busy host causes
-/// many delays.
+/// A later delay only if at least twice as long as the last one reported: a busy host causes many.
 void Pacer::report_delay(VirtualTime next) {
   if (next > wall()) {
     return;
@@ -213,10 +206,9 @@ bool Pacer::bytes(const Port& port, Bytes bytes, const Port::Positions& damaged,
   return !pause_if_full();
 }
 
-/// Returns the size of the first Modbus frame in `bytes`. Many masters send the next request immediately
-/// after a request without a reply, and the program may read both in one piece. The first frame is the
-/// shortest prefix of at least 4 bytes whose CRC is correct. If there is no such prefix, or if the CRC of all
-/// bytes is correct, all bytes are a single frame.
+/// Many masters send on at once after a request without a reply, and both may be read in one piece. The first
+/// frame is the shortest prefix of at least 4 bytes with a correct CRC. If there is none, or the CRC of all
+/// bytes is correct, they are one frame.
 std::size_t Pacer::first_frame_size(Bytes bytes) {
   constexpr std::size_t kShortest = 4;
   Crc16 crc;
@@ -230,8 +222,7 @@ std::size_t Pacer::first_frame_size(Bytes bytes) {
   return crc.value() == 0 ? bytes.size : first;
 }
 
-/// Returns the earliest start of a frame to `address`: see Pace::keep_frames_apart. The returned time may be
-/// in the past.
+/// See Pace::keep_frames_apart. It may be in the past.
 VirtualTime Pacer::earliest_frame(std::uint8_t address) const {
   if (!pace_.keep_frames_apart) {
     return VirtualTime(0);

@@ -14,49 +14,39 @@
 
 namespace ex9000::sim {
 
-/// The relation between virtual time and the wall clock.
 struct Pace {
-  /// Compensates for the wall clock time that the process takes to wake up and read. The pacer subtracts this
-  /// value from the time at which the program reads bytes, and uses the result as the time at which the
-  /// master has written them. If the port is connected to a real line, the pacer also subtracts the
-  /// transmission time of the bytes. The result is never before an event that has already happened. Without
-  /// this compensation, the host's delays would extend every transaction.
+  /// The wall clock time in which the process wakes up and reads: subtracted from the time of a read (with
+  /// the transmission time, at a real line), it gives the time at which the master wrote, but never before an
+  /// event that has happened. Without it, the host's delays would extend every transaction.
   VirtualTime host_latency = std::chrono::microseconds(300);
-  /// While a byte is on the wires, and until `lead` has passed after its end, the pacer processes events
-  /// without waiting for the wall clock. If virtual time is then more than 5 ms ahead of the wall clock,
-  /// masters have to wait. If `lead` is zero, every event waits for the wall clock.
+  /// While a byte is on the wires, and for `lead` after its end, events do not wait for the wall clock. If
+  /// virtual time is then more than 5 ms ahead, masters wait. Zero: every event waits.
   VirtualTime lead{0};
-  /// After a Modbus reply of a module that still has power, a frame to another address waits until the
-  /// silence that ends a Modbus frame has passed. If `lead` is not zero, a frame after a frame of the master
-  /// waits for this silence too. After any other bytes that the master has not sent, a frame to address 0 or
-  /// to the address of a Modbus module waits until modules no longer treat these bytes as part of the frame.
-  /// Without these delays, many masters, for example libmodbus, would begin a frame too early after a Modbus
-  /// reply. Modules that have received the reply would then treat the reply and this frame as one frame. On a
-  /// real line, a slow adapter usually causes this delay.
+  /// After a Modbus reply of a module that still has power, a frame to another address waits for the silence
+  /// that ends a Modbus frame; with `lead`, so does a frame after one of the master. After other bytes that
+  /// the master has not sent, a frame to address 0 or to a Modbus module waits until modules no longer add it
+  /// to these. Else many masters, such as libmodbus, begin too early after a Modbus reply, and modules that
+  /// have heard it take both for one frame. On a real line, a slow adapter usually delays them.
   bool keep_frames_apart = true;
   /// The ratio of virtual time to the wall clock.
   double speed = 1;
 };
 
-/// Virtual time follows the wall clock from `start` on, or from the time at which each port that holds the
-/// line (Port::hold_line) has had a master.
+/// Follows the wall clock from `start` on, or once each port with Port::hold_line has had a master.
 class Pacer final : private Arrivals {
  public:
-  /// `frames` may be null. `io` must outlive this object. `line`, `ports` and `frames` must live as long as
-  /// `io` runs. `notice` receives messages about long delays of the host, and about two Modbus frames that
-  /// were read in one piece and that modules treat as one frame.
+  /// `frames` may be null. `io` must outlive this object; `line`, `ports` and `frames` must live while it
+  /// runs. `notice`: of long host delays, and of two Modbus frames in one piece that modules take for one.
   Pacer(boost::asio::io_context& io, Line& line, LinePorts& ports, FrameWatch* frames, Pace pace,
         LinePorts::Notice notice);
 
-  /// Accepts masters, and puts the bytes and the requests from `ports` on the line. Calls `begun` when line
-  /// time begins.
+  /// Accepts masters, and puts what they send on the line. `begun`: when line time begins.
   void start(std::function<void()> begun = nullptr);
-  /// Returns the line's present time. The line's clock has the time of the last event, which may be earlier.
+  /// The line's clock has the time of the last event, which may be earlier.
   [[nodiscard]] VirtualTime present() const { return std::max(wall(), line_.clock().virtual_now()); }
-  /// Advances the line to its present time, then runs `action`, which may use the line.
+  /// Advances the line to its present time; then `action` may use it.
   void now(const std::function<void()>& action);
-  /// The two halves of `now`, for an action that uses several lines. Between them, the caller may use the
-  /// line.
+  /// The two halves of `now`, between which the caller may use several lines.
   void reach_present();
   void follow();
 
@@ -71,7 +61,6 @@ class Pacer final : private Arrivals {
   void report_delay(VirtualTime next);
   void report_joined(Bytes bytes);
   void begin();
-  // --- Arrivals ---
   bool bytes(const Port& port, Bytes bytes, const Port::Positions& damaged, Port::Sender sender) override;
   bool requests(std::size_t size, std::function<void()> process) override;
   void left(Port::Sender sender) override;

@@ -23,42 +23,33 @@ class RunningLine {
  public:
   using Print = std::function<void(const std::string& line)>;
 
-  /// Opens everything that `setup` names, except EEPROM files that do not exist, and starts up the modules.
-  /// Throws std::invalid_argument or std::runtime_error with a one-line message. After an exception,
-  /// everything is closed again, no new file remains, and the content of existing files is unchanged. `io`
-  /// and `setup` must outlive this object. If `stepped` is true, the behaviour of the ports does not depend
-  /// on the wall clock.
+  /// Opens all that `setup` names, except missing EEPROM files, and starts up the modules. After an
+  /// exception, everything is closed, no new file remains, and existing files are unchanged. `io` and `setup`
+  /// must outlive this object. `stepped`: the ports do not depend on the wall clock.
   RunningLine(boost::asio::io_context& io, const LineSetup& setup, std::uint64_t seed, LogFormat format,
               bool stepped, const Print& print);
   RunningLine(const RunningLine&) = delete;
   RunningLine& operator=(const RunningLine&) = delete;
 
-  /// Updates existing EEPROM files with the data that modules have stored during their start. Throws
-  /// std::runtime_error with a one-line message if a file cannot be written.
+  /// Writes what modules have stored during their start to the existing EEPROM files.
   void renew_memories();
-  /// Creates the missing EEPROM files and appends them to `made`. Throws std::invalid_argument with a
-  /// one-line message if such a file exists now or cannot be created.
+  /// Creates the missing EEPROM files and appends them to `made`.
   void make_missing_memories(std::list<NewFile>& made);
 
   LineRecord& record() { return *record_; }
-  /// Connects the memories to their EEPROM files: from now on, all data that a module with such a file stores
-  /// is written to the file. Call this after `make_missing_memories`.
+  /// From now on, modules also store in their EEPROM files. After `make_missing_memories`.
   void start();
-  /// Accepts masters. While `io` runs, the line's time passes at `speed` times the speed of the wall clock;
-  /// `begun`: see Pacer::start.
+  /// Accepts masters. While `io` runs, line time passes at `speed`. `begun`: see Pacer::start.
   void start_paced(double speed, std::function<void()> begun);
-  /// Accepts masters. The line's time passes only when the caller advances it. `arrived`: see
-  /// SteppedLine::start.
+  /// Accepts masters. The caller advances the time. `arrived`: see SteppedLine::start.
   SteppedLine& start_stepped(SteppedLine::Arrived arrived);
-  /// Processes all events until the modules have been up for `up`, without waiting.
+  /// Until the modules have been up for `up`, without waiting.
   void run_until(VirtualTime up);
 
   Line& line() { return *line_; }
-  /// Call this only after `start_paced`.
+  /// Only after `start_paced`.
   Pacer& pacer() { return *pacer_; }
-  /// See LinePorts::sent.
   [[nodiscard]] std::uint64_t sent() const { return connected_ ? connected_->sent() : 0; }
-  /// Returns the line's time at which the modules have been up for `up`.
   [[nodiscard]] VirtualTime when_up_for(VirtualTime up) const { return came_up_ + up; }
   [[nodiscard]] const LineSummary& summary() const { return summary_; }
 

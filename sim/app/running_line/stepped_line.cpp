@@ -12,7 +12,7 @@ void SteppedLine::start(Arrived arrived) {
   }
 }
 
-/// Only serial ports report damaged bytes, and a line with a serial port cannot run in stepped time.
+/// Only serial ports report damaged bytes, and stepped time cannot use them.
 bool SteppedLine::bytes(const Port& port, Bytes bytes, const Port::Positions& /*damaged*/,
                         Port::Sender /*sender*/) {
   return store(bytes.size, [this, &port, copy = std::vector<std::uint8_t>(bytes.begin(), bytes.end())] {

@@ -13,8 +13,7 @@ RunningProgram::RunningProgram(boost::asio::io_context& io, Setup setup, Print p
                                const std::string& models)
     : io_(io), setup_(std::move(setup)), print_(std::move(print)), greet_(std::move(greet)), end_(io) {
   for (const LineSetup& line : setup_.lines) {
-    // If a simulated line has a name, each of its lines in the text log begins with this name. JSON has a
-    // key for the name.
+    // In the text log, each line of a named line begins with its name; JSON has a key for it.
     const bool as_it_is = line.name.empty() || for_machines();
     const std::string lead = as_it_is ? "" : line.name + ": ";
     lines_.push_back(std::make_unique<RunningLine>(
@@ -80,8 +79,7 @@ void RunningProgram::open_capture() {
   capture_ = std::make_unique<Capture>(*setup_.capture, place, [this] { return stop_signals_.arrived(); });
 }
 
-/// Carries out a command of the control socket or of the panel. Before the command, advances all paced lines
-/// to the present time, so that the reply describes all lines at this time.
+/// For the control socket or the panel. Paced lines first reach the present, so the reply is of one time.
 Control::Reply RunningProgram::carry_out(const std::string& command) {
   if (stepper_) {
     return control_->carry_out(command);
@@ -109,8 +107,7 @@ void RunningProgram::answer(const std::string& command, const ControlSocket::Ans
   }
 }
 
-/// Begins the capture. If the lines do not follow the wall clock, the capture contains the lines' time
-/// without an offset, so that the capture does not depend on the time of day.
+/// Without the wall clock, times have no offset: the capture must not depend on the time of day.
 void RunningProgram::keep_a_capture() {
   capture_->begin();
   const auto now = std::chrono::system_clock::now().time_since_epoch();
@@ -161,9 +158,7 @@ void RunningProgram::line_begun() {
   }
 }
 
-/// Creates the missing EEPROM files, begins the capture, prints the greeting, and starts paced lines.
-/// `start` calls this after the other steps that can fail. If such a step fails, no EEPROM file is created,
-/// and an existing capture file keeps its content.
+/// After all else that can fail in `start`: a failure creates no EEPROM file and keeps an existing capture.
 void RunningProgram::begin() {
   make_files_and_greet();
   lines_to_begin_ = lines_.size();
@@ -181,15 +176,13 @@ void RunningProgram::begin() {
   }
 }
 
-/// Returns whether the run has an end. A duration of a century or more on the wall clock counts as endless,
-/// because the clock's range is finite.
+/// A century or more on the wall clock counts as endless: the clock's range is finite.
 bool RunningProgram::ends() const {
   constexpr auto kLongestRun = std::chrono::hours(24 * 365 * 100);
   return setup_.lasts && (!setup_.speed.paced() || *setup_.lasts / setup_.speed.factor < kLongestRun);
 }
 
-/// Ends the run by the wall clock. The timer may expire after the end of the run, but the logs and the
-/// capture end exactly at the end of the run.
+/// The timer may expire late, but the logs and the capture end exactly at the end of the run.
 void RunningProgram::end_by_the_clock() {
   end_.expires_after(std::chrono::duration_cast<VirtualTime>(*setup_.lasts / setup_.speed.factor));
   end_.async_wait([this](const boost::system::error_code& error) {

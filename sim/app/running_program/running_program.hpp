@@ -27,26 +27,21 @@ class RunningProgram {
  public:
   using Print = RunningLine::Print;
 
-  /// Opens everything that `setup` names, except EEPROM files that do not exist. Throws std::invalid_argument
-  /// or std::runtime_error with a one-line message. After an exception, everything is closed again, no new
-  /// file remains, and the content of existing files is unchanged. `print` receives the log, the notes and
-  /// the greeting; if the log is JSON, `greet` receives the greeting instead. `models` is the content of the
-  /// panel's /models.json. `io` must outlive this object.
+  /// Opens all that `setup` names, except missing EEPROM files. After an exception, everything is closed, no
+  /// new file remains, and existing files are unchanged. `print` gets log, notes and greeting; if the log is
+  /// JSON, `greet` gets the greeting. `models`: the content of /models.json. `io` must outlive this.
   RunningProgram(boost::asio::io_context& io, Setup setup, Print print, Print greet,
                  const std::string& models);
   RunningProgram(const RunningProgram&) = delete;
   RunningProgram& operator=(const RunningProgram&) = delete;
 
-  /// Updates the existing EEPROM files, creates the missing files, prints the greeting, and starts the lines.
-  /// If `setup` has a duration, paced or stepped lines stop `io` at its end. Throws std::invalid_argument or
-  /// std::runtime_error with a one-line message. If the greeting has not been printed, the destructor removes
-  /// the new files.
+  /// Updates the existing EEPROM files, creates the missing ones, prints the greeting, and starts the lines.
+  /// Paced or stepped lines stop `io` after the duration of `setup`, if any. Unless the greeting has been
+  /// printed, the destructor removes the new files.
   void start();
-  /// Only for Speed::Kind::Max: processes all events in the duration of `setup`. Ends early if `io` is
-  /// stopped.
+  /// Only for Speed::Kind::Max: processes the duration of `setup`, or less if `io` is stopped.
   void run_unpaced();
-  /// Records the frames that are still in progress. Call this when `io` has stopped or `run_unpaced` has
-  /// returned. Throws std::runtime_error with a one-line message if a record cannot be written.
+  /// After `io` or `run_unpaced`: records frames in progress. std::runtime_error: that cannot be written.
   void finish();
 
  private:

@@ -25,7 +25,6 @@ bool Stepper::is_advance(const std::string& command) {
   return !words.empty() && words[0] == "advance";
 }
 
-/// Throws std::invalid_argument with a one-line message.
 Stepper::Request Stepper::parse(const std::string& command) {
   const Words words = words_of(command);
   if (words.size() < 2) {
@@ -105,10 +104,8 @@ void Stepper::carry_out(const Request& request, const Answer& answer) {
   answer({"ok " + seconds_text(now), now >= end_});
 }
 
-/// Advances the lines. Processes events in the order of time across all lines, so that the logs of the lines
-/// are not printed one after the other. In each step, only the line with the next event advances; at the end,
-/// all lines advance to the same time. Returns false if the program was asked to end before the command was
-/// completed.
+/// In the order of time across all lines, so that their logs are not printed one after the other: only the
+/// line with the next event advances, and all do at the end. false: the program was asked to end before.
 bool Stepper::pass(const Request& request) {
   struct State {
     SteppedLine* line;

@@ -6,20 +6,17 @@
 
 namespace ex9000::sim {
 
-/// Adds SIGINT, SIGTERM and SIGHUP to `signals`, except those that the process ignores at this time. If nohup
-/// has started the program, the process ignores SIGHUP. If a shell script has started the program in the
-/// background, the process ignores SIGINT.
+/// SIGINT, SIGTERM, SIGHUP; not those that are ignored: SIGHUP by nohup, SIGINT in a script's background.
 void add_stop_signals(boost::asio::signal_set& signals);
 
-/// Detects the signals of `add_stop_signals` in code that computes for a long time or waits for a reader.
-/// Such code may prevent the io_context of the program from running.
+/// For code that computes for a long time or waits for a reader, while the program's io_context does not run.
 class StopSignals {
  public:
   StopSignals();
   StopSignals(const StopSignals&) = delete;
   StopSignals& operator=(const StopSignals&) = delete;
 
-  /// Returns whether one of these signals has arrived since construction. Does not block.
+  /// Since construction. Does not block.
   bool arrived();
 
  private:

@@ -74,8 +74,8 @@ class BusFileReader {
     return module;
   }
 
-  /// Calls `take_part` with the value of `part`, because the settings may depend on it. Then reads the
-  /// settings of `object`, in the order of `settings`, because some depend on those before.
+  /// First the value of `part`, because the settings may depend on it; then the settings in the order of
+  /// `settings`, because some depend on those before.
   template <class Settings, class Object, class TakePart>
   void read(const Node& node, const Settings& settings, Object& object, const Part& part,
             TakePart take_part) const {
@@ -142,7 +142,7 @@ class BusFileReader {
     return members;
   }
 
-  /// Rejects NUL, because the operating system would end a path there.
+  /// Rejects NUL: the operating system would end a path there.
   [[nodiscard]] static std::string text_of(const Node& node) {
     if (!node.IsScalar()) {
       fail(node.IsNull() ? "has no value; write one, or leave the key out" : "expected a single value");
@@ -170,8 +170,7 @@ class BusFileReader {
   const std::string& path_;
 };
 
-/// Where the last document of a YAML stream begins. YAML::LoadAll would never end at a surplus bracket,
-/// because it takes each bracket for a document.
+/// Where the last document begins. YAML::LoadAll never ends at a surplus bracket, which it takes for one.
 struct DocumentStart final : YAML::EventHandler {
   using Mark = YAML::Mark;
   using Text = std::string;

@@ -7,18 +7,16 @@
 
 namespace ex9000::sim {
 
-/// Returns whether an argument names a bus file: it ends with .yaml, .yml or .json, has other characters
-/// before that, and is not MODEL[@ADDR],KEY=VALUE, whose last value may be such a path. With a `/` before its
-/// first comma, such a path names a bus file too.
+/// It ends with .yaml, .yml or .json after other characters, and is not MODEL[@ADDR],KEY=VALUE, whose last
+/// value may be such a path; with a `/` before its first comma, it is a bus file too.
 bool is_bus_file(const std::string& argument);
 
-/// Reads a bus file. Throws std::invalid_argument with a one-line message, `PATH:LINE: KEY: TEXT`, without
-/// LINE and KEY if the file cannot be read.
+/// Errors: `PATH:LINE: KEY: TEXT`, without LINE and KEY if the file cannot be read.
 Setup read_bus_file(const std::string& path);
-/// Parses `text` as the content of the file `path`. Throws like read_bus_file.
+/// As the content of the file `path`.
 Setup parse_bus_file(const std::string& path, const std::string& text);
 
-/// Returns app/setup/example.yaml.
+/// It is app/setup/example.yaml.
 std::string example_bus_file();
 
 }  // namespace ex9000::sim

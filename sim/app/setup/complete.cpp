@@ -57,8 +57,7 @@ void check_ports(const LineSetup& line, const Speed& speed) {
   }
 }
 
-/// Rejects a speed that cannot be combined with the control socket or the panel, or that requires a value
-/// that is missing.
+/// Against the control socket, the panel and the duration.
 void check_speed(const Setup& setup) {
   const auto wrong = [&setup](const std::string& what) { fail(place_of(setup.places, "speed") + what); };
   if (setup.speed.stepped() && !setup.control) {

@@ -8,15 +8,13 @@
 
 namespace ex9000::sim {
 
-/// Creates a line. Its modules have no power yet, and its master uses the factory baud rate and 8N1.
+/// Its modules have no power yet; its master has the factory baud rate and 8N1.
 std::unique_ptr<Line> make_line(const LineSetup& setup, Master::Receive receive);
 
-/// Returns the rate and the format that `line` has at first: those that `setup` gives, and otherwise those of
-/// the first module. Call this after `line` has started up.
+/// What `setup` gives, else that of the first module. After `line` has started up.
 SerialMode first_mode(const LineSetup& setup, const Line& line);
 
-/// Starts the input programs and adds the faults. Call this after the line has started up and after
-/// `Line::configure_faults`. A fault whose time has already passed takes effect immediately.
+/// After the start and `Line::configure_faults`. A fault whose time has passed takes effect immediately.
 void begin_programs(Line& line, const LineSetup& setup);
 
 }  // namespace ex9000::sim

@@ -11,8 +11,7 @@ namespace ex9000::sim {
 
 namespace {
 
-/// Returns whether both paths name the same file. Compares the inodes, or the paths if at least one of the
-/// files does not exist.
+/// By inode, or by path if at least one of the files does not exist.
 bool are_one(const std::string& a, const std::string& b) {
   struct stat of_a {};
   struct stat of_b {};

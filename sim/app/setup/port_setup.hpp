@@ -30,10 +30,8 @@ struct PortSetup {
   std::string place;                      ///< prefix of messages
 };
 
-/// Throws std::invalid_argument with a one-line message.
 PortSetup parse_port(const std::string& text);
 
-/// The kinds of ports and their options, one a line, for help.
 std::string port_help();
 
 }  // namespace ex9000::sim

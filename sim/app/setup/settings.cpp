@@ -44,8 +44,7 @@ Speed parse_speed(const std::string& text) {
   if (text == "step") {
     return {Speed::Kind::Stepped};
   }
-  // Above kFastest, the lines' time would advance in large steps, because the timers of the wall clock are
-  // not precise enough. Users can choose `max` instead.
+  // Above kFastest, the wall clock's timers are too coarse: time would advance in large steps. `max` remains.
   constexpr double kSlowest = 0.001;
   constexpr double kFastest = 1000;
   const auto speed = decimal_number(text, kSlowest, kFastest);

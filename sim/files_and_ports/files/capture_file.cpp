@@ -18,7 +18,7 @@ namespace ex9000::sim {
 
 CaptureFile::CaptureFile(const std::string& path, const std::string& place, GivesUp gives_up)
     : where_(place + path), gives_up_(std::move(gives_up)) {
-  // Without O_NONBLOCK, open would wait until a pipe has a reader.
+  // Without O_NONBLOCK, open would wait for a reader of a pipe.
   constexpr int kFlags = O_WRONLY | O_APPEND | O_CLOEXEC | O_NONBLOCK;
   constexpr mode_t kAsUmaskPermits = 0666;
   file_ = FileDescriptor(open(path.c_str(), kFlags | O_CREAT | O_EXCL, kAsUmaskPermits));

@@ -19,12 +19,11 @@ namespace {
 
 constexpr std::size_t kSize = hal::doubles::Memory::kSize;
 
-/// A file that gets its final name only when it is complete.
+/// Gets its final name only when it is complete.
 class Draft {
  public:
-  /// Opens a file without a name in the folder of `path`, so that nothing remains if the process is killed.
-  /// If the file system does not support such files, or if /proc is missing, opens a file with a temporary
-  /// name instead. `link_to` requires /proc to give a name to a file that has none.
+  /// Has no name, so that nothing remains if the process is killed. If the file system does not support that,
+  /// or /proc is missing, which `link_to` would need, it has a temporary name.
   explicit Draft(const std::string& path) {
     const std::filesystem::path folder = std::filesystem::path(path).parent_path();
     constexpr mode_t kAsUmaskPermits = 0666;
@@ -47,10 +46,9 @@ class Draft {
   Draft(const Draft&) = delete;
   Draft& operator=(const Draft&) = delete;
 
-  /// Transfers the file to the caller. The file is not open if opening has failed.
+  /// Not open if opening has failed.
   [[nodiscard]] FileDescriptor take_file() { return std::move(file_); }
-  /// Gives the file the name `path`. Returns false if the system call fails, for example because `path`
-  /// exists.
+  /// false: the system call has failed, for example because `path` exists.
   [[nodiscard]] bool link_to(const std::string& path) const {
     return linkat(AT_FDCWD, name_.c_str(), AT_FDCWD, path.c_str(), AT_SYMLINK_FOLLOW) == 0;
   }
@@ -61,9 +59,8 @@ class Draft {
   bool temporary_ = false;
 };
 
-/// Returns the mode of `file`. Throws std::invalid_argument with a one-line message if the file is not open
-/// or is not an image. Call this immediately after open(): if open() has failed, the message contains the
-/// reason from errno, and `access`, which is "read" or "read and written".
+/// Returns the file's mode. Call it directly after open(): if that has failed, the message has the reason
+/// from errno, and `access`, which is "read" or "read and written".
 mode_t require_image(const FileDescriptor& file, const std::string& path, const char* access) {
   struct stat status {};
   if (!file.is_open() || fstat(file.get(), &status) != 0) {
@@ -79,7 +76,6 @@ mode_t require_image(const FileDescriptor& file, const std::string& path, const 
   return status.st_mode;
 }
 
-/// Reads the image in `file`. Throws std::invalid_argument with a one-line message if reading fails.
 std::vector<std::uint8_t> image_in(const FileDescriptor& file, const std::string& path) {
   std::vector<std::uint8_t> image(kSize);
   if (pread(file.get(), image.data(), kSize, 0) != static_cast<ssize_t>(kSize)) {
@@ -105,7 +101,7 @@ EepromFile::EepromFile(std::string path)
     return;
   }
   const mode_t mode = require_image(file_, path_, "read and written");
-  // A file without any write permission is protected; open() alone would let root write to it.
+  // Without any write permission, a file is protected; open() alone would let root write to it.
   if ((mode & (S_IWUSR | S_IWGRP | S_IWOTH)) == 0) {
     fail(path_ + ": is read-only; make it writable with chmod u+w, or name another path");
   }
@@ -130,7 +126,7 @@ void EepromFile::create(const std::vector<std::uint8_t>& image) {
 }
 
 bool EepromFile::write(std::uint16_t address, Bytes bytes) const {
-  // If an error makes a write incomplete, the next write fails and sets errno to the reason.
+  // After an incomplete write, the next one fails and sets errno to the reason.
   ssize_t written = 0;
   for (std::size_t done = 0; done < bytes.size && written >= 0; done += static_cast<std::size_t>(written)) {
     written = pwrite(file_.get(), bytes.data + done, bytes.size - done, static_cast<off_t>(address + done));

@@ -7,11 +7,10 @@
 
 namespace ex9000::sim {
 
-/// Owns a file descriptor. The destructor closes it.
 class FileDescriptor {
  public:
   FileDescriptor() = default;
-  /// Owns `fd`, the result of a system call; a negative number means that nothing is open.
+  /// `fd`: the result of a system call; negative: nothing is open.
   explicit FileDescriptor(int fd) : fd_(fd) {}
   FileDescriptor(FileDescriptor&& other) noexcept : fd_(other.release()) {}
   FileDescriptor& operator=(FileDescriptor&& other) noexcept {
@@ -25,9 +24,8 @@ class FileDescriptor {
   }
 
   [[nodiscard]] bool is_open() const { return fd_ >= 0; }
-  /// Returns the file descriptor, which is valid while this object owns it; negative if nothing is open.
   [[nodiscard]] int get() const { return fd_; }
-  /// Returns the file descriptor and no longer owns it. The caller must close it.
+  /// The caller must close it.
   int release() { return std::exchange(fd_, -1); }
 
  private:

@@ -14,7 +14,7 @@ inline bool is_there(const std::string& path) {
   return lstat(path.c_str(), &status) == 0;
 }
 
-/// The destructor removes the file, unless `was_there` is true or `keep` was called.
+/// The destructor removes the file, unless it `was_there` or `keep` was called.
 class NewFile {
  public:
   NewFile(std::string path, bool was_there) : path_(std::move(path)), kept_(was_there) {}

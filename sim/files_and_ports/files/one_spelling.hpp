@@ -7,10 +7,8 @@
 
 namespace ex9000::sim {
 
-/// Returns `path` as an absolute path, and resolves symbolic links, `.` and `..` in the path of its folder:
-/// different spellings of the path of a file become equal. Does not follow a symbolic link at `path` itself.
-/// If the path of the folder cannot be resolved, for example because symbolic links form a loop, returns
-/// `path` as an absolute path and resolves nothing.
+/// Absolute, with symbolic links, `.` and `..` in its folder resolved; a link at `path` itself stays. If the
+/// folder cannot be resolved, for example because links form a loop: only absolute.
 inline std::string one_spelling(const std::string& path) {
   std::error_code error;
   const std::filesystem::path absolute = std::filesystem::absolute(path, error);

@@ -10,10 +10,8 @@
 
 namespace ex9000::sim {
 
-/// Opens a regular file for reading. Returns a stream that is not open if `path` is not a regular file or is
-/// not readable. Does not open a pipe, because opening a pipe may block. Does not open a device, because a
-/// device may deliver bytes without end. Skips the byte-order mark of UTF-8. Throws std::invalid_argument
-/// with a one-line message if the file is UTF-16.
+/// Not open unless `path` is a regular file and readable: opening a pipe may block, and a device may deliver
+/// bytes without end. Skips the byte-order mark of UTF-8; throws for UTF-16.
 inline std::ifstream open_text_file(const std::string& path) {
   std::ifstream file;
   std::error_code unknown;

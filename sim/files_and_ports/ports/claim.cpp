@@ -9,8 +9,8 @@
 
 namespace ex9000::sim {
 
-/// Binds an abstract socket to a name. The kernel gives a name to only one socket at a time, and releases the
-/// name when the socket is closed. The name contains a hash of the path, because the path may be too long.
+/// The kernel gives the name of an abstract socket to one socket at a time, until it is closed. A hash,
+/// because the path may be too long for a name.
 Claim::Claim(const std::string& path) : socket_(socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
   sockaddr_un address{};
   address.sun_family = AF_UNIX;

@@ -16,9 +16,8 @@
 
 namespace ex9000::sim {
 
-/// Makes the kernel probe the client, so that a client that has disappeared without a word frees its place:
-/// after 30 s without a byte, every 10 s, until three probes have no answer. By default the kernel waits two
-/// hours.
+/// A client that has disappeared without a word frees its place: after 30 s without a byte, the kernel probes
+/// it every 10 s, three times. Its default is two hours.
 inline void keep_alive(boost::asio::ip::tcp::socket& socket) {
   const auto set = [&socket](int level, int name, int value) {
     setsockopt(socket.native_handle(), level, name, &value, sizeof value);
@@ -29,23 +28,20 @@ inline void keep_alive(boost::asio::ip::tcp::socket& socket) {
   set(IPPROTO_TCP, TCP_KEEPCNT, 3);
 }
 
-/// Accepts the clients of a server. None of the functions blocks. After the destructor, the io_context must
-/// not accept any more.
+/// Accepts the clients of a server; never blocks. The io_context must not accept after the destructor.
 template <class Protocol>
 class Listener {
  public:
   using Socket = typename Protocol::socket;
   using Endpoint = typename Protocol::endpoint;
-  /// Receives the socket of each client. It does not block; over TCP, it sends without delay (TCP_NODELAY),
-  /// see also `keep_alive`.
+  /// The socket does not block. Over TCP, it sends without delay (TCP_NODELAY); see also `keep_alive`.
   using Admit = std::function<void(Socket socket)>;
 
   explicit Listener(boost::asio::io_context& io) : acceptor_(io), next_try_(io) {}
 
-  /// Begins to listen. If that fails, returns the error and changes nothing.
+  /// An error has changed nothing.
   [[nodiscard]] boost::system::error_code listen(const Endpoint& endpoint) {
-    // Connections of a process that has ended may still exist. They must not prevent this process from
-    // listening.
+    // Connections that an ended process has left must not prevent this one from listening.
     constexpr bool kReuseAddress = true;
     try {
       acceptor_ = Acceptor(acceptor_.get_executor(), endpoint, kReuseAddress);
@@ -56,13 +52,12 @@ class Listener {
   }
   [[nodiscard]] Endpoint endpoint() const { return acceptor_.local_endpoint(); }
 
-  /// Calls `admit` for each client while the io_context runs. Call this once.
+  /// While the io_context runs. Once.
   void start(Admit admit) {
     admit_ = std::move(admit);
     accept();
   }
-  /// Before this function returns, it calls `admit` for all clients that wait to be accepted. The io_context
-  /// does not have to run. Call this only after `start`.
+  /// Admits all clients that wait, now, without the io_context. Only after `start`.
   void accept_waiting() {
     boost::system::error_code error;
     acceptor_.non_blocking(true, error);
@@ -74,8 +69,7 @@ class Listener {
  private:
   using Acceptor = typename Protocol::acceptor;
 
-  /// After an error, accepts again after 100 ms: if the process has no free file descriptor, immediate
-  /// retries would use all of the processor's time.
+  /// 100 ms after an error: without a free file descriptor, immediate retries would take all processor time.
   void accept() {
     acceptor_.async_accept([this](const boost::system::error_code& error, Socket socket) {
       if (!error) {
@@ -107,7 +101,7 @@ class Listener {
   Admit admit_;
 };
 
-/// The clients of a server that their pending operations own: a client ends with its last operation.
+/// Owned by their pending operations: a client ends with its last operation.
 template <class Client>
 class Clients {
  public:
@@ -127,8 +121,7 @@ class Clients {
   std::vector<std::weak_ptr<Client>> clients_;
 };
 
-/// Returns a text for the error, with advice for the user. The advice is `mend`, unless the port is in use,
-/// or the process or the system has no free file descriptor.
+/// With advice, which is `mend`, unless the port is in use or no file descriptor is free.
 inline std::string why_not_listening(const boost::system::error_code& error, const std::string& mend) {
   if (error == boost::system::errc::address_in_use) {
     return "the port is in use; name another port, or end the program that uses it";

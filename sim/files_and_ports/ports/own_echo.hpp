@@ -11,25 +11,23 @@
 
 namespace ex9000::sim {
 
-/// Some adapters receive what they send. A real module ignores its own bytes (wire.md section 9). Without
-/// this filter, a simulated module would receive its own reply as a request. For example, the module would
-/// carry out its reply to Modbus function 05, because that reply equals the request.
+/// Some adapters receive what they send. A real module ignores its own bytes (wire.md section 9); a simulated
+/// one would take its reply for a request, and carry out its reply to function 05, which equals the request.
 class OwnEcho {
  public:
   using Clock = std::chrono::steady_clock;
 
   explicit OwnEcho(hal::SerialMode mode) : mode_(mode) {}
 
-  /// Records that the program sends `bytes` at `now`, so that `in` expects their echo.
+  /// `in` expects the echo of these bytes from `now` on.
   void sent(Bytes bytes, Clock::time_point now) {
     const std::chrono::nanoseconds bits = std::chrono::seconds(bits_of_character(mode_.format));
     awaited_.insert(awaited_.end(), bytes.begin(), bytes.end());
     until_ = now + bits * awaited_.size() / mode_.baud + kLatency;
   }
 
-  /// Returns how many bytes at the beginning of `heard` are echo. Compares `heard`, which the program has
-  /// received at `now`, with the next bytes of the expected echo. After a different byte or a timeout (see
-  /// `kLatency`), expects no more echo until the next call of `sent`.
+  /// How many leading bytes of `heard` are the echo. After a different byte or a timeout (`kLatency`), no
+  /// more echo is expected until the next `sent`.
   [[nodiscard]] std::size_t in(Bytes heard, Clock::time_point now) {
     if (now > until_) {
       awaited_.clear();
@@ -46,10 +44,9 @@ class OwnEcho {
   }
 
  private:
-  /// Maximum time from the end of the last byte on the line until the program reads its echo. An adapter may
-  /// collect bytes for 16 ms, and a busy host may delay the program by seconds. If the limit were too short,
-  /// a module could carry out its own reply. If the adapter has no echo and the next request arrives within
-  /// this time, the request loses its leading bytes that match the reply.
+  /// From the end of the last byte on the line until the program reads its echo: an adapter may collect bytes
+  /// for 16 ms, and a busy host may delay the program by seconds. If too short, a module could carry out its
+  /// own reply. Without an echo, a request within this time loses leading bytes that match the reply.
   static constexpr std::chrono::seconds kLatency{10};
 
   hal::SerialMode mode_;

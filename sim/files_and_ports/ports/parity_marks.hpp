@@ -7,9 +7,8 @@
 
 namespace ex9000::sim {
 
-/// Decodes the bytes from a port that has the flags INPCK and PARMRK (POSIX.1-2017, 11.2.2). In hexadecimal:
-/// FF 00 X means a byte X with a line error, FF FF means a byte FF, and all other bytes are unchanged. A mark
-/// may be split between two calls of `read`.
+/// Of a port with the flags INPCK and PARMRK (POSIX.1-2017, 11.2.2), in hex: FF 00 X is a byte X with a line
+/// error, FF FF is a byte FF. A mark may be split between two calls of `read`.
 class ParityMarks {
  public:
   struct Arrived {

@@ -17,10 +17,9 @@ class Port;
 /// Takes what arrives at the ports of a line.
 class Arrivals {
  public:
-  /// Positions of bytes, in ascending order.
+  /// In ascending order.
   using Positions = std::vector<std::size_t>;
-  /// Identifies a master that can leave while its bytes wait; null for any other master. A pointer that is
-  /// never dereferenced.
+  /// Identifies a master that can leave while its bytes wait, else null. Never dereferenced.
   using Sender = const void*;
 
   Arrivals() = default;
@@ -28,20 +27,18 @@ class Arrivals {
   Arrivals& operator=(const Arrivals&) = delete;
   virtual ~Arrivals() = default;
 
-  /// Takes bytes for the line. `damaged`: those with wrong parity or a framing error. Returns false if the
-  /// port must wait for `resume` before it delivers more bytes of this sender.
+  /// `damaged`: wrong parity or a framing error. false: no more bytes of this sender before `resume`.
   virtual bool bytes(const Port& port, Bytes bytes, const Positions& damaged, Sender sender) = 0;
-  /// Takes `size` bytes that a gateway turns into requests. Calls `process` exactly once, now or later, when
-  /// the line has reached its present time. Returns false if the gateway must wait for `resume`.
+  /// Bytes that a gateway turns into requests. Calls `process` exactly once, now or later, when the line has
+  /// reached its present time. false: no more before `resume`.
   virtual bool requests(std::size_t size, std::function<void()> process) = 0;
-  /// A master has left, so no more of its bytes need to be sent. Only TCP reports this: the bytes of a
-  /// program that has closed a pseudo-terminal are sent, as by a serial port.
+  /// A master has left: its bytes need not be sent. Only TCP reports this; the bytes of a program that has
+  /// closed a pseudo-terminal are sent, as by a serial port.
   virtual void left(Sender /*sender*/) {}
   /// The first master has connected to a port that line time waits for.
   virtual void connected() {}
 };
 
-/// What a user needs to reach a port.
 struct PortSummary {
   std::string kind;     ///< as in --port: pty, tcp, modbus-tcp or serial
   std::string address;  ///< the path or HOST:PORT
@@ -60,38 +57,31 @@ class Port {
   virtual ~Port() = default;
 
   [[nodiscard]] virtual PortSummary summary() const = 0;
-  /// Accepts masters, and delivers to `arrivals` while the io_context runs and during `read_waiting`. Call
-  /// this once.
+  /// Once. Delivers to `arrivals` while the io_context runs, and in `read_waiting`.
   virtual void start(Arrivals& arrivals) = 0;
-  /// Continues to deliver after `arrivals` has returned false.
+  /// After `arrivals` has returned false.
   virtual void resume() = 0;
-  /// Delivers, before it returns, all that has arrived, except from masters that must wait for `resume`. The
-  /// io_context does not have to run. Call this only after `start`. Only stepped time uses this function. For
-  /// a serial port it does nothing, because stepped time cannot use serial ports.
+  /// Delivers all that has arrived, except from masters that must wait for `resume`; does not need the
+  /// io_context. Only after `start`, and only in stepped time, which cannot use serial ports.
   virtual void read_waiting() {}
 
-  /// Sends bytes from the line to each master that has the port open; if there is none, the bytes are lost.
-  /// Returns how many bytes the port has dropped because a master has it open and does not read. If the port
-  /// has dropped bytes for several masters, returns the largest number for one master. A serial port returns
-  /// the number of bytes for which the kernel has had no room since the previous call.
+  /// To each master that has the port open. Returns how many bytes are dropped because such a master does not
+  /// read, at most for one master; a serial port, for how many the kernel had no room since the last call.
   virtual std::size_t send(const std::vector<std::uint8_t>& bytes) = 0;
-  /// Call this when a station that is not the master has turned off its driver. No more bytes of the reply
-  /// of this station follow.
+  /// A station other than the master has turned off its driver: its reply is complete.
   virtual void sent() {}
 
-  /// Returns the rate of this port, in bits per second; nullopt if masters cannot set a rate at this port, or
-  /// if the rate is 0.
+  /// In bits per second; nullopt: masters cannot set a rate here, or it is 0.
   [[nodiscard]] virtual std::optional<std::uint32_t> baud() const { return std::nullopt; }
-  /// Returns whether the port is connected to a real line. If it is, the transmission time of the bytes has
-  /// already passed when they arrive.
+  /// A real line: the transmission time of bytes has already passed when they arrive.
   [[nodiscard]] virtual bool is_a_line() const { return false; }
 
-  /// Makes line time wait until a master has connected to this port.
+  /// Line time waits until a master has connected here.
   void hold_line() { holds_line_ = true; }
   [[nodiscard]] bool holds_line() const { return holds_line_; }
 
  protected:
-  /// Call this when a master has connected, before its first bytes.
+  /// When a master has connected, before its first bytes.
   void let_line_go(Arrivals& arrivals) {
     if (holds_line_) {
       holds_line_ = false;

@@ -11,8 +11,7 @@ namespace ex9000::sim {
 
 namespace {
 
-/// Returns the number of a group in /etc/group; nullopt if it is not there. The function of the C library
-/// requires shared libraries, which the static program does not have.
+/// Reads /etc/group: the C library would require shared libraries, which the static program does not have.
 std::optional<gid_t> group_called(const std::string& name) {
   std::ifstream groups("/etc/group");
   for (std::string line; std::getline(groups, line);) {

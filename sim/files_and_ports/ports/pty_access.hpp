@@ -13,8 +13,7 @@ struct PtyAccess {
   std::optional<gid_t> group;  ///< nullopt: the group that the system has chosen
 };
 
-/// Parses `MODE[:GROUP]`, for example 660:dialout. MODE has three octal digits: 6, and twice 0, 2, 4 or 6.
-/// GROUP is a name in /etc/group or a number. Throws std::invalid_argument with a one-line message.
+/// `MODE[:GROUP]`, such as 660:dialout: 6, then twice 0, 2, 4 or 6; a name in /etc/group or a number.
 PtyAccess parse_pty_access(const std::string& text);
 
 }  // namespace ex9000::sim

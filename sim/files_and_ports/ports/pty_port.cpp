@@ -24,14 +24,13 @@ namespace ex9000::sim {
 
 namespace {
 
-/// Returns the target of a symbolic link; empty if `link` is not one.
+/// Empty if `link` is not a symbolic link.
 std::string link_target(const std::string& link) {
   std::error_code error;
   return std::filesystem::read_symlink(link, error).string();
 }
 
-/// If a link to a pseudo-terminal exists at the path `link`, removes it. Throws if another simulator uses the
-/// path, or if any other file exists at the path.
+/// Removes a link to a pseudo-terminal. Throws if another simulator uses the path, or anything else is there.
 void remove_stale(const std::string& link, const Claim& claim) {
   if (!claim.held()) {
     unavailable(link + ": another simulator uses this path; end that simulator or name another path");
@@ -46,8 +45,7 @@ void remove_stale(const std::string& link, const Claim& claim) {
   unlink(link.c_str());
 }
 
-/// Opens the slave for a short time, to set it up or to discard its unread bytes. If Visits watches the
-/// device, Visits reports this like a master that opens and closes the slave.
+/// For a moment, to set it up or discard its unread bytes. Visits reports this like a master's visit.
 FileDescriptor open_slave(const std::string& device) {
   return FileDescriptor(open(device.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
 }
@@ -128,18 +126,17 @@ bool PtyPort::is_open_at_a_master() const {
   return poll(&master, 1, 0) == 0 || (master.revents & POLLHUP) == 0;
 }
 
-/// Clears CLOCAL, so that the next master can set it, and discards the bytes that no master has read, like a
-/// serial port: the next master must not receive a reply to the previous master. Does not discard them if the
-/// next master has opened the slave before this call.
+/// Discards what no master has read, like a serial port: the next master must not get a reply to the previous
+/// one. Not if that master has already opened the slave. Clears CLOCAL, so that the next master can set it.
 void PtyPort::end_visit() {
   if (unread_) {
     unread_ = false;
     tcflush(open_slave(device_).get(), TCIFLUSH);
   }
   // tcsetattr() fails with EINVAL if nothing of a request takes effect. A pseudo-terminal drops parity, so a
-  // second program that asks for the settings of the first and for parity would fail. CLOCAL has no effect on
-  // a pseudo-terminal, and nearly all programs set it. Unlike tcsetattr(), this call changes nothing else,
-  // even if a master opens the slave at this moment.
+  // program that asks for the previous settings and parity would fail. With CLOCAL cleared, which nearly all
+  // programs set and which means nothing here, something takes effect. Unlike tcsetattr(), this changes
+  // nothing else, even if a master opens the slave now.
   const int off = 0;
   ioctl(master_.get(), TIOCSSOFTCAR, &off);
 }
@@ -177,8 +174,7 @@ void PtyPort::read_waiting() {
   }
 }
 
-/// Reads bytes and delivers them. Returns the number of bytes. If there are none, returns 0 if a
-/// master has the pseudo-terminal open, otherwise a negative number.
+/// The number of bytes. 0: none, but a master has the pseudo-terminal open; negative: none has.
 ssize_t PtyPort::take() {
   visits_.take();  // a new master must be detected before the program replies to its bytes
   const ssize_t size = ::read(master_.get(), bytes_.data(), bytes_.size());

@@ -17,29 +17,24 @@
 
 namespace ex9000::sim {
 
-/// Owns the simulator's end. Masters open and close the other end (the slave), which keeps its settings while
-/// no master has it open. The constructor sets the terminal to raw mode.
+/// The simulator's end, in raw mode. The masters' end (the slave) keeps its settings between masters.
 class PtyPort final : public Port {
  public:
-  /// Creates a pseudo-terminal, sets its rate to `baud`, and creates a symbolic link to the slave at the path
-  /// `link`. If no other simulator uses this path, replaces an existing link to a pseudo-terminal. Throws
-  /// std::invalid_argument with a one-line message if anything else exists at the path, or if the link cannot
-  /// be created. Throws std::runtime_error if another simulator uses the path, or if the system cannot
-  /// create, set up or watch a pseudo-terminal. If `access` has a value, sets the mode and the group of the
-  /// slave; throws std::invalid_argument if the user may not use that group. After an exception, neither a
-  /// new link nor a new pseudo-terminal remains.
+  /// Makes `link` a link to the slave; replaces a link to a pseudo-terminal if no other simulator uses it.
+  /// std::runtime_error: another simulator uses the path, or the system cannot create, set up or watch a
+  /// pseudo-terminal. std::invalid_argument: also if the user may not use the group in `access`. After an
+  /// exception, neither a new link nor a new pseudo-terminal remains.
   PtyPort(boost::asio::io_context& io, std::string link, std::uint32_t baud,
           const std::optional<PtyAccess>& access = std::nullopt);
-  /// Removes the link if it still leads to this object's slave.
+  /// Removes the link if it still leads to this slave.
   ~PtyPort() override;
 
   [[nodiscard]] PortSummary summary() const override;
   void start(Arrivals& arrivals) override;
   void resume() override;
   void read_waiting() override;
-  /// The pseudo-terminal stores a limited number of bytes that no master has read, for example about 20 KiB
-  /// on Linux 6.18; further bytes are lost. Writes nothing if no master has the slave open, because the bytes
-  /// would wait for the next master.
+  /// The pseudo-terminal stores a limited number of unread bytes, about 20 KiB on Linux 6.18; more are lost.
+  /// Writes nothing while no master has the slave open: the bytes would wait for the next master.
   std::size_t send(const std::vector<std::uint8_t>& bytes) override;
   [[nodiscard]] std::optional<std::uint32_t> baud() const override;
 
@@ -47,7 +42,7 @@ class PtyPort final : public Port {
   void visited();
   [[nodiscard]] bool is_open_at_a_master() const;
   void end_visit();
-  /// Reads bytes whenever they arrive, until no master has the slave open or the port must wait for `resume`.
+  /// Until no master has the slave open, or the port must wait for `resume`.
   void read();
   [[nodiscard]] ssize_t take();
 

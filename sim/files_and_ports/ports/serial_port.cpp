@@ -23,12 +23,10 @@ namespace ex9000::sim {
 
 namespace {
 
-/// The port holds back the beginning of a reply for this time, or until the reply is complete, so that delays
-/// of the host do not cause gaps in the reply.
+/// A reply is held back this long, or until it is complete: delays of the host must not cause gaps in it.
 constexpr std::chrono::milliseconds kCushion{10};
 
-/// Asks the driver for low latency. Without this setting, an adapter may hold bytes back for up to 16 ms, and
-/// a frame may arrive in several pieces. Not all drivers support the setting.
+/// Else an adapter may hold bytes back for up to 16 ms, and split frames. Not all drivers support it.
 void ask_for_low_latency(int fd) {
   serial_struct settings{};
   if (ioctl(fd, TIOCGSERIAL, &settings) == 0) {
@@ -39,7 +37,6 @@ void ask_for_low_latency(int fd) {
 
 constexpr const char* kInUse = "is in use by another program; end that program or name another port";
 
-/// Configures the open port; throws if that fails.
 void set_up(int fd, hal::SerialMode mode) {
   termios before{};
   if (tcgetattr(fd, &before) != 0) {
@@ -50,8 +47,7 @@ void set_up(int fd, hal::SerialMode mode) {
   }
   termios settings = before;
   cfmakeraw(&settings);
-  // Disables XON/XOFF. Otherwise, the port could send XOFF on the line. If the format has parity, the kernel
-  // marks bytes with line errors (see ParityMarks).
+  // No XON/XOFF: the port could send XOFF. With parity, the kernel marks line errors (see ParityMarks).
   settings.c_iflag = has_parity(mode.format) ? INPCK | PARMRK : 0;
   settings.c_cflag &= ~static_cast<tcflag_t>(kTermiosFormat | CRTSCTS);
   settings.c_cflag |= CLOCAL | CREAD | termios_format(mode.format);
@@ -67,7 +63,7 @@ void set_up(int fd, hal::SerialMode mode) {
   tcflush(fd, TCIOFLUSH);
 }
 
-/// Opens and configures the port. The caller must close it.
+/// The caller must close it.
 int open_port(const std::string& device, hal::SerialMode mode) {
   FileDescriptor port(open(device.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
   if (!port.is_open()) {

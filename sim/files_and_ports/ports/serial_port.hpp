@@ -1,5 +1,4 @@
-// A real serial port, for example a USB RS-485 adapter. A master on the real line at this port can reach the
-// simulated modules.
+// A real serial port, such as a USB RS-485 adapter: a master on the real line reaches the simulated modules.
 #pragma once
 
 #include <array>
@@ -17,10 +16,8 @@ namespace ex9000::sim {
 
 class SerialPort final : public Port {
  public:
-  /// Opens `device` in `mode` for exclusive use (TIOCEXCL, flock). `echo`: the adapter receives what it
-  /// sends. Throws std::runtime_error with a one-line message if the device cannot be opened or is in use,
-  /// and std::invalid_argument if it is not a serial port or does not accept the settings. All messages begin
-  /// with `place` and `device`.
+  /// For exclusive use (TIOCEXCL, flock). `echo`: the adapter receives what it sends. std::runtime_error: it
+  /// cannot be opened or is in use. All messages begin with `place` and `device`.
   SerialPort(boost::asio::io_context& io, const std::string& place, const std::string& device,
              hal::SerialMode mode, bool echo);
 

@@ -36,9 +36,8 @@ class TcpPort::Client final : public TcpServer::Client {
   bool paused_ = false;
 };
 
-/// Removes the client after the linger time, if it has closed its sending side before this call, and the port
-/// still has nothing to read from it. While the client is paused, its unread bytes hide the end of the
-/// stream, so this looks again after each linger time.
+/// Removes the client after the linger time if it has closed its sending side by now, and still has nothing
+/// to read. While it is paused, unread bytes hide the end of the stream, so this looks again each time.
 void TcpPort::Client::linger() {
   if (!port_.linger_ || !connected()) {
     return;

@@ -9,17 +9,14 @@
 
 namespace ex9000::sim {
 
-/// Transfers only the bytes: no MBAP header, no telnet negotiation. The port sends the bytes from the line to
-/// all clients, and passes the bytes of each client to the line.
+/// Only the bytes: no MBAP header, no telnet negotiation. Bytes from the line go to all clients.
 class TcpPort final : public TcpServer {
  public:
-  /// A client that has closed its sending side can still receive replies. The port keeps such a client for
-  /// this time, or for up to twice this time if it must wait for `resume`; nullopt: forever. After this time,
-  /// or after a reset of the connection, the client has left: see Arrivals::left.
+  /// How long a client that has closed its sending side still gets replies, up to twice that if it must wait
+  /// for `resume`; nullopt: forever. Then, or at a reset of the connection, it has left (Arrivals::left).
   using Linger = std::optional<std::chrono::milliseconds>;
   static constexpr std::chrono::milliseconds kUsualLinger{1000};
 
-  /// See TcpServer::TcpServer.
   TcpPort(boost::asio::io_context& io, const TcpAddress& address, Linger linger)
       : TcpServer(io, address), io_(io), linger_(linger) {}
 

@@ -92,7 +92,7 @@ void TcpServer::Client::read_waiting() {
   }
 }
 
-/// Reads the available bytes, up to the size of `bytes_`. Returns the error if no bytes are available.
+/// At most the size of `bytes_`; an error if no bytes are available.
 error_code TcpServer::Client::take() {
   error_code error;
   const std::size_t size = socket_.read_some(boost::asio::buffer(bytes_), error);
@@ -112,8 +112,8 @@ std::optional<std::size_t> TcpServer::Client::write(const std::vector<std::uint8
   return written;
 }
 
-/// Before that, reads and drops the bytes that have already arrived, at most 256 KiB: if unread bytes were
-/// left, the close would reset the connection, and the client could lose its last replies.
+/// First reads and drops up to 256 KiB that have arrived: with bytes unread, the close would reset the
+/// connection, and the client could lose its last replies.
 void TcpServer::Client::remove() {
   if (!connected()) {
     return;

@@ -18,7 +18,6 @@
 
 namespace ex9000::sim {
 
-/// A port that masters reach over TCP.
 class TcpServer : public Port {
  public:
   ~TcpServer() override;
@@ -30,30 +29,26 @@ class TcpServer : public Port {
  protected:
   using Socket = boost::asio::ip::tcp::socket;
 
-  /// The maximum number at the same time. Usually reached only if clients do not disconnect.
+  /// At the same time. Usually reached only if clients do not disconnect.
   static constexpr std::size_t kMostClients = 64;
 
-  /// The server and pending asynchronous operations share a client: the server may remove it, or be
-  /// destroyed, while an operation is pending. Then the client is not connected, and handlers must do
-  /// nothing.
+  /// Shared by the server and pending operations: meanwhile, the server may remove it, or be destroyed. Then
+  /// it is not connected, and handlers must do nothing.
   class Client : public std::enable_shared_from_this<Client> {
    public:
     Client(TcpServer& server, Socket socket) : socket_(std::move(socket)), server_(server) {}
     virtual ~Client() = default;
 
     [[nodiscard]] bool connected() const { return socket_.is_open(); }
-    /// Whether the client has closed its sending side, and all its bytes have been read. It can still
-    /// receive.
+    /// It has closed its sending side, and all its bytes have been read. It can still receive.
     [[nodiscard]] bool ended() const { return ended_; }
-    /// Reads whenever bytes arrive, as long as `may_read`. Call this when `may_read` has become true.
+    /// Whenever bytes arrive, as long as `may_read`. Call it when that has become true.
     void read();
-    /// See Port.
     virtual void resume() { read(); }
     void read_waiting();
-    /// Writes the bytes that the client accepts now, and returns their number. If the connection has failed,
-    /// removes the client and returns nullopt.
+    /// Returns how many bytes the client accepts now; nullopt: the connection has failed and is removed.
     std::optional<std::size_t> write(const std::vector<std::uint8_t>& bytes);
-    /// Closes the connection. The object remains until the functions that are running now have returned.
+    /// The object remains until the functions that are running now have returned.
     void remove();
     void close();
 
@@ -77,7 +72,7 @@ class TcpServer : public Port {
     bool ended_ = false;
   };
 
-  /// Starts to listen. Throws std::runtime_error with a one-line message if the address is not available.
+  /// std::runtime_error: the address is not available.
   TcpServer(boost::asio::io_context& io, const TcpAddress& address);
 
   [[nodiscard]] std::string address() const;
@@ -86,8 +81,7 @@ class TcpServer : public Port {
   [[nodiscard]] const std::list<std::shared_ptr<Client>>& clients() const { return clients_; }
 
   virtual std::shared_ptr<Client> client_of(Socket socket) = 0;
-  /// Called if kMostClients are connected and another comes. Removes one, or returns false to refuse the
-  /// other.
+  /// When one more than kMostClients comes: removes one, or returns false to refuse it.
   virtual bool make_room() = 0;
 
  private:

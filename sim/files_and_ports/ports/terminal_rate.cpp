@@ -1,7 +1,6 @@
 #include "sim/files_and_ports/ports/terminal_rate.hpp"
 
-// This header and <termios.h> cannot be included in the same file, because both define `termios`. Only this
-// one has termios2. tcgetattr() does not return a rate that was set with BOTHER.
+// Only this header has termios2, which tells rates set with BOTHER. Like <termios.h>, it defines `termios`.
 #include <asm/termbits.h>
 #include <sys/ioctl.h>
 

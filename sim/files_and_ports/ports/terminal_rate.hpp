@@ -6,9 +6,8 @@
 
 namespace ex9000::sim {
 
-/// Returns the output rate of the terminal `fd`, in bits per second: any rate that a program has set, also
-/// one without a termios constant, and one that was set with BOTHER. `fd` may be either end of a
-/// pseudo-terminal. Returns nullopt if the rate is 0 (B0, hang up) or cannot be read. Does not block.
+/// The output rate in bits per second, also one without a termios constant (BOTHER). `fd` may be either end
+/// of a pseudo-terminal. nullopt: the rate is 0 (B0, hang up) or cannot be read.
 std::optional<std::uint32_t> terminal_rate(int fd);
 
 }  // namespace ex9000::sim

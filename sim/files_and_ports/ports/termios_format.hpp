@@ -7,9 +7,8 @@
 
 namespace ex9000::sim {
 
-/// The flags of `c_cflag` that define a line format together with CS8.
+/// Of `c_cflag`, besides CS8.
 constexpr tcflag_t kTermiosFormat = CSTOPB | PARENB | PARODD;
-/// Returns the flags of kTermiosFormat that are set in this line format.
 constexpr tcflag_t termios_format(LineFormat format) {
   switch (format) {
     case LineFormat::k8N1:

@@ -57,10 +57,8 @@ void Visits::wait() {
                       });
 }
 
-/// Reads all events, then calls the function of each device that has at least one event. Calls each function
-/// only once, because the number of events has no meaning: the kernel merges identical consecutive events. If
-/// the kernel's queue was full, events of any device may be lost. In this case, calls the functions of all
-/// devices.
+/// One call for each device, whatever the number of events: the kernel merges identical ones. After an
+/// overflow of its queue, events of any device may be lost, so calls the functions of all.
 void Visits::take() {
   std::set<int> visited;
   for (ssize_t size = 0; (size = read(inotify_.native_handle(), events_.data(), events_.size())) > 0;) {

@@ -8,8 +8,7 @@
 
 namespace ex9000::sim {
 
-/// The commands of `--control`, without the socket and without `advance`. Each command is a text without a
-/// newline.
+/// Without the socket and without `advance`. A command has no newline.
 class Control {
  public:
   explicit Control(LinesInUse lines) : lines_(std::move(lines)) {}
@@ -19,7 +18,7 @@ class Control {
     bool quit = false;
   };
 
-  /// Carries out a command and returns the reply. A rejected command changes nothing.
+  /// A rejected command changes nothing.
   Reply carry_out(const std::string& command);
 
  private:

@@ -20,8 +20,7 @@ using Local = boost::asio::local::stream_protocol;
 constexpr std::size_t kLongestLine = 1000;  // characters, without the newline
 constexpr std::size_t kMostClients = 64;    // at the same time
 
-/// Removes a socket at `path` if the process that created it has ended. Throws std::invalid_argument if
-/// another program may still use the path, or if a file that is not a socket is there.
+/// Removes the socket of a process that has ended. Throws if it may be in use, or is not a socket.
 void remove_stale(boost::asio::io_context& io, const std::string& path, const Claim& claim) {
   const std::string in_use = path + ": another program listens there; end it or name another path";
   if (!claim.held()) {

@@ -15,29 +15,25 @@
 
 namespace ex9000::sim {
 
-/// Serves up to 64 clients at the same time, and disconnects further clients. Each line from a client is a
-/// command. The reply to each command is one line, and replies keep the order of the commands. If a client
-/// does not read its replies, the server stops reading from this client and continues to serve the others.
+/// Serves up to 64 clients, and disconnects any more. Each line from a client is a command, and gets one line
+/// as reply, in order. While a client does not read its replies, only this client is not served.
 class ControlSocket {
  public:
   using Answer = std::function<void(const Control::Reply&)>;
-  /// Carries out `command`. Calls `answer` exactly once, during the call or later, unless the program ends
-  /// first. Until `answer` is called, the server reads nothing more from the client that sent the command.
+  /// Calls `answer` exactly once, now or later, unless the program ends first. Until then, nothing more is
+  /// read from the client that sent the command.
   using CarryOut = std::function<void(const std::string& command, const Answer& answer)>;
 
-  /// Starts to listen on `path`; replaces a socket of a process that has ended. Throws std::invalid_argument
-  /// with a one-line message if the path is empty or too long, if a file that is not a socket is there, or if
-  /// it cannot be created, and std::runtime_error if another program listens there. If the member `quit` of a
-  /// reply is true, the parameter `quit` is called after the reply has been sent, or after an attempt to send
-  /// the reply has failed.
+  /// Replaces a socket of a process that has ended. std::runtime_error: another program listens there. `quit`
+  /// is called when a reply with Reply::quit has been sent, or sending it has failed.
   ControlSocket(boost::asio::io_context& io, std::string path, CarryOut carry_out,
                 std::function<void()> quit);
-  /// Removes the socket file if it still belongs to this object.
+  /// Removes the socket file if it is still this object's.
   ~ControlSocket();
   ControlSocket(const ControlSocket&) = delete;
   ControlSocket& operator=(const ControlSocket&) = delete;
 
-  /// Starts to accept clients. Does not block. Call this function when the lines are ready for commands.
+  /// When the lines are ready for commands.
   void start();
 
  private:
@@ -45,7 +41,7 @@ class ControlSocket {
 
   void admit(boost::asio::local::stream_protocol::socket socket);
   void read(const std::shared_ptr<Client>& client);
-  /// The action after the reply has been sent.
+  /// After the reply.
   enum class Then { ReadOn, Part, Quit };
   void send(const std::shared_ptr<Client>& client, const std::string& text, Then then);
 

@@ -14,7 +14,7 @@ std::vector<std::uint8_t> exception_pdu(const MbapFrame& request, std::uint8_t c
   return {static_cast<std::uint8_t>(request.pdu[0] | kRtuException), code};
 }
 
-/// Returns whether at least one module listens, and all modules that listen speak ASCII.
+/// At least one module listens, and all that listen speak ASCII.
 bool speaks_only_ascii(const Line& line) {
   bool ascii = false;
   for (std::size_t i = 0; i < line.size(); ++i) {

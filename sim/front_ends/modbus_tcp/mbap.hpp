@@ -10,23 +10,23 @@
 
 namespace ex9000::sim {
 
-/// A request or a reply: the header without its protocol and its length, and the PDU.
+/// Without the protocol and the length in the header.
 struct MbapFrame {
   std::uint16_t transaction = 0;  ///< chosen by the client; a reply has the number of its request
   std::uint8_t unit = 0;          ///< address of the module; 0: all modules
   std::vector<std::uint8_t> pdu;  ///< 1 to 253 bytes: the function code and its data
 };
 
-/// Finds the frames in the bytes of a connection. TCP may split a frame into pieces, or join several frames.
+/// TCP may split a frame into pieces, or join several.
 class MbapReader {
  public:
   void add(Bytes bytes);
-  /// Removes and returns the next frame; nullopt if this frame is not complete yet, or if `broken` is true.
+  /// nullopt: the next frame is not complete yet, or `broken`.
   std::optional<MbapFrame> next();
-  /// Returns whether `next` has found a header with a wrong protocol or length. In this case the start of the
-  /// next frame is unknown, so the caller must close the connection. The frames before this header are valid.
+  /// A header had a wrong protocol or length: close the connection, because the start of the next frame is
+  /// unknown. Frames before it are valid.
   [[nodiscard]] bool broken() const { return broken_; }
-  /// Returns the number of bytes that `next` has not returned yet.
+  /// Bytes that `next` has not returned yet.
   [[nodiscard]] std::size_t size() const { return bytes_.size(); }
 
  private:

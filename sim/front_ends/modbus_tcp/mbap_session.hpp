@@ -14,13 +14,11 @@
 
 namespace ex9000::sim {
 
-/// Takes the requests from the bytes of a client. Passes each request to the line only after the answer to
-/// the previous one, so that the clients of a line take turns. Replies have the order of the requests. The
-/// destructor drops requests that have not been sent. None of the functions blocks.
+/// Passes each request to the line only after the answer to the previous one, so that the clients of a line
+/// take turns, and replies keep their order. The destructor drops unsent requests. Nothing blocks.
 class MbapSession {
  public:
-  /// `line` must outlive this object. `answered` is called after each answer of `ask_on_line`. `timeout`: see
-  /// there.
+  /// `line` must outlive this object. `answered` follows each answer of `ask_on_line`; `timeout`: there.
   MbapSession(Line& line, std::function<void()> answered, VirtualTime timeout = kGatewayTimeout)
       : line_(line), answered_(std::move(answered)), timeout_(timeout) {}
   MbapSession(const MbapSession&) = delete;
@@ -28,15 +26,14 @@ class MbapSession {
 
   void receive(Bytes bytes);
 
-  /// The bytes for the client. The caller removes what it has sent.
+  /// For the client. The caller removes what it has sent.
   std::vector<std::uint8_t> replies;
 
-  /// Returns how many bytes wait to become requests.
+  /// Bytes that wait to become requests.
   [[nodiscard]] std::size_t unread() const { return reader_.size(); }
-  /// Returns whether the session has found a header with a wrong protocol or length. Later bytes of the
-  /// client are ignored.
+  /// By a header with a wrong protocol or length. Later bytes are ignored.
   [[nodiscard]] bool broken() const { return reader_.broken(); }
-  /// Returns whether all complete requests have been answered.
+  /// All complete requests have been answered.
   [[nodiscard]] bool idle() const { return !waiting_ && !passing_on_; }
 
  private:

@@ -9,8 +9,8 @@ namespace ex9000::sim {
 
 namespace {
 
-/// The server does not read from a client while at least this many bytes of the client wait to become
-/// requests. The limit is not lower than SteppedLine::kMostBytes, the largest N of `advance ... after N`.
+/// With so many bytes that wait to become requests, the server reads no more from a client. Not below
+/// SteppedLine::kMostBytes, the largest N of `advance ... after N`.
 constexpr std::size_t kMostUnread = 65536;
 
 }  // namespace
@@ -24,7 +24,7 @@ class ModbusTcpServer::Client final : public TcpServer::Client {
             server.line_, [this] { go_on(); }, server.timeout_) {}
 
  private:
-  /// A client that does not accept its replies can send no more requests.
+  /// A client must accept its replies before it can send more requests.
   [[nodiscard]] bool may_read() const override {
     return !server_.paused_ && !session_.broken() && session_.unread() < kMostUnread &&
            session_.replies.empty();
@@ -52,8 +52,7 @@ void ModbusTcpServer::Client::receive(Bytes bytes) {
   server_.paused_ = !server_.arrivals().requests(bytes.size, process);
 }
 
-/// Writes the replies that the client accepts. Then reads from the client again if it can send more requests;
-/// otherwise, disconnects it when all its requests have been answered.
+/// Writes replies; then reads on, or disconnects a client that can send no more, after its last answer.
 void ModbusTcpServer::Client::go_on() {
   if (!connected() || writing_) {
     return;

@@ -15,15 +15,14 @@
 
 namespace ex9000::sim {
 
-/// Receives requests over Modbus TCP and sends them on the line as Modbus RTU frames, like a serial device
-/// server. Each client may send further requests before it has received its replies. A client that sends a
-/// frame with a wrong protocol or length is disconnected after the replies to its earlier requests.
+/// A gateway to Modbus RTU, like a serial device server. Clients need not wait for replies before they send
+/// more. After a wrong protocol or length, a client is disconnected when it has its earlier replies.
 class ModbusTcpServer final : public TcpServer {
  public:
-  /// Receives a one-line message when the server refuses a client, or disconnects it because of its bytes.
+  /// One line, when a client is refused, or is disconnected because of its bytes.
   using Notice = std::function<void(const std::string& text)>;
 
-  /// See TcpServer::TcpServer. `line` must outlive this object. `timeout`: see `ask_on_line`.
+  /// `line` must outlive this object. `timeout`: see `ask_on_line`.
   ModbusTcpServer(
       boost::asio::io_context& io, Line& line, const TcpAddress& address,
       VirtualTime timeout = kGatewayTimeout, Notice notice = [](const std::string& /*text*/) {})
@@ -31,7 +30,7 @@ class ModbusTcpServer final : public TcpServer {
 
   [[nodiscard]] PortSummary summary() const override;
   void resume() override;
-  /// Does nothing: clients get only the replies to their own requests.
+  /// Clients get only the replies to their own requests.
   std::size_t send(const std::vector<std::uint8_t>& /*bytes*/) override { return 0; }
 
  private:

@@ -34,7 +34,7 @@ std::string exception_text(std::uint8_t code) {
          (code < kNames.size() && code != 0 ? ": " + std::string(kNames[code]) : "");
 }
 
-/// Returns the first `count` bits as text, the lowest bit of each byte first.
+/// The lowest bit of each byte first.
 std::string bits_text(Bytes bytes, std::size_t count) {
   std::string text;
   for (std::size_t i = 0; i < std::min(count, bytes.size * 8); ++i) {
@@ -53,8 +53,7 @@ std::string words_text(Bytes bytes) {
   return text;
 }
 
-/// Returns the text for a valid Modbus reply: the exception if the reply is one, the values if the function
-/// code is 01 to 04, otherwise an empty text. `request` and `reply` are PDUs.
+/// Of PDUs: the exception, or the values of a function 01 to 04, else empty.
 std::string values_text(Bytes request, Bytes reply) {
   constexpr std::size_t kValues = 2;  // after the function code and the byte count
   const std::uint8_t function = reply[0];

@@ -33,7 +33,6 @@ const State* state_of(const SimulatedModule& module) {
   return module.powered() && module.module().listening() ? &module.module().state() : nullptr;
 }
 
-/// `value_of(channel)` of each channel.
 template <class ValueOf>
 Message list_of(unsigned channels, ValueOf value_of) {
   Message list = Message::array();
@@ -79,8 +78,8 @@ Message records_of(const SimulatedModule& module) {
            list_of(module.model().inputs, [&](unsigned channel) { return inputs.counter(channel); })}};
 }
 
-/// `timeout` is in 0.1 s; `expires` is the line time in us at which the host watchdog expires if no request
-/// restarts it, or null; `resetStatus` is what $AA5 would report.
+/// `timeout`: in 0.1 s. `expires`: line time in us if no request restarts the watchdog, or null.
+/// `resetStatus`: what $AA5 would report.
 Message host_watchdog_of(const SimulatedModule& module, VirtualTime now) {
   const State* const state = state_of(module);
   if (state == nullptr) {
@@ -91,8 +90,7 @@ Message host_watchdog_of(const SimulatedModule& module, VirtualTime now) {
             {"resetStatus", false}};
   }
   const Deadline expiry = module.module().host_watchdog_expiry();
-  // Rounds `now` down to microseconds, like the firmware's clock, so that `expires` stays the same until the
-  // watchdog is restarted.
+  // Rounded down like the firmware's clock, so that `expires` stays the same until the watchdog is restarted.
   const std::int64_t since = microseconds(now);
   const Time core_now(static_cast<std::uint32_t>(since));
   const bool runs = expiry.armed() && !expiry.reached(core_now);
@@ -124,8 +122,7 @@ Message message_of(const Settings& settings) {
       {"filters", list_of(kMaxInputs, [&](unsigned channel) { return settings.input_filters.of(channel); })}};
 }
 
-/// The copies, and the settings in the copy that a reset would load (wire.md section 8), or else the factory
-/// settings.
+/// The copies, and the settings that a reset would load (wire.md section 8), else the factory settings.
 Message stored_of(const SimulatedModule& module) {
   Message copies = Message::array();
   Message current;

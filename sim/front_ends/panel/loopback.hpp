@@ -8,10 +8,8 @@
 
 namespace ex9000::sim {
 
-/// Returns whether `host`, the value of the Host header, is 127.0.0.1 or localhost, with or without a port. A
-/// request with any other name may come from a page of another site, even if that name resolves to this
-/// machine. The port proves nothing, and is another one in a browser that reaches the server through an SSH
-/// tunnel.
+/// 127.0.0.1 or localhost, with or without a port. Any other name may come from another site's page, even if
+/// it resolves to this machine. The port proves nothing: an SSH tunnel has another one.
 inline bool is_loopback_host(std::string_view host) {
   const std::size_t colon = std::min(host.find(':'), host.size());
   const std::string_view name = host.substr(0, colon);
@@ -21,8 +19,7 @@ inline bool is_loopback_host(std::string_view host) {
          port.empty() == (colon == host.size());
 }
 
-/// Returns whether `origin`, the value of the Origin header, is that of the page at `host`, the value of the
-/// Host header. A page of another server of this machine has another port, and thus another origin.
+/// A page of another server of this machine has another port, and thus another origin.
 inline bool is_origin_of(std::string_view origin, std::string_view host) {
   return origin == "http://" + std::string(host);
 }

@@ -19,22 +19,19 @@ inline std::int64_t microseconds(VirtualTime time) {
   return std::chrono::duration_cast<std::chrono::microseconds>(time).count();
 }
 
-/// Returns the list of a line's faults. `first` is the position of the line's first module across all lines,
-/// from 0.
+/// `first`: the position of the line's first module across all lines, from 0.
 Message message_of(const std::vector<Faults::Info>& faults, std::size_t first);
 
-/// Returns the message for the traffic entry `entry`, whose number is `number`. `modules` is the number of
-/// modules on the line. A frame from a station whose number is above `modules` comes from a fault.
+/// `modules`: on the line. A frame from a station above comes from a fault.
 Message message_of(const RecentTraffic::Entry& entry, std::uint64_t number, std::size_t modules);
 
-/// A request of the page to carry out a command.
 struct PageRequest {
   std::uint64_t id = 0;  ///< chosen by the page, for the reply
   std::string command;   ///< a command of the control socket
   std::string undo;      ///< a command that undoes `command`, see PanelViewer::ask; empty: none
 };
 
-/// Returns the request in `message`, or nullopt if `message` is not a valid request to carry out a command.
+/// nullopt: not a valid request to carry out a command.
 std::optional<PageRequest> parse_page_request(const Message& message);
 
 }  // namespace ex9000::sim

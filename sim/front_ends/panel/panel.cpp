@@ -23,21 +23,19 @@ namespace ex9000::sim {
 
 namespace {
 
-/// The maximum number of frames and notes in one message, for all lines together, unless kFewestFrames
-/// applies. At speed 1, two lines at 115200 baud usually carry fewer frames between two calls of `look`.
-/// Writing this number of frames causes no delay that a master notices.
+/// Frames and notes in one message, unless kFewestFrames applies: more than two lines at 115200 baud usually
+/// carry between two looks at speed 1, and too few to cause a delay that a master notices.
 constexpr std::size_t kMostFrames = 250;
-/// The limit for each line is at least this number, even if there are many lines.
+/// For each line, even if there are many.
 constexpr std::size_t kFewestFrames = 20;
 
-/// The limit for actions that a page holds active; only a faulty page exceeds it.
+/// Actions that a page holds active; only a faulty page exceeds it.
 constexpr std::size_t kMostHeld = 256;
 
-/// The limit for the console requests of one page that have not been answered yet.
+/// Console requests of one page without an answer.
 constexpr std::size_t kMostAsked = 16;
 
-/// The time after which a page gets another message even if nothing has changed. Without messages, the page
-/// cannot distinguish an idle simulator from a simulator that does not respond.
+/// Without a message this often, a page could not tell an idle simulator from one that does not respond.
 constexpr std::chrono::seconds kHeartbeat{1};
 
 std::string random_id() {
@@ -53,8 +51,7 @@ std::string random_id() {
 
 }  // namespace
 
-/// A part of the state, and the number of the look at which it last changed. A look captures the present
-/// state for all viewers.
+/// A part of the state, and the number of the look at which it last changed. Looks are for all viewers.
 struct Panel::Tracked {  // NOLINT(bugprone-exception-escape): moving a value does not throw
   Message value;
   std::uint64_t changed = 0;  ///< 0: there is no value yet
@@ -82,7 +79,6 @@ struct Panel::Watched {
   RecentTraffic recent;
   Tracked faults;
 
-  /// Captures the present state. `look` is the number of this look.
   void capture(std::uint64_t look) {
     now = present();
     for (Module& module : modules) {
@@ -178,8 +174,7 @@ class Panel::Viewer final : public PanelViewer {
   }
 
  private:
-  /// Sends or rejects a request of the console; the answer follows in a later message. Returns false if the
-  /// line does not exist.
+  /// The answer follows in a later message. false: the line does not exist.
   bool ask_line(const ConsoleRequest& request) {
     if (request.line >= panel_.lines_.size()) {
       return false;
@@ -235,7 +230,6 @@ class Panel::Viewer final : public PanelViewer {
             {"usualFaults", usual_faults()}, {"lines", std::move(lines)}, {"modules", std::move(modules)}};
   }
 
-  /// Adds `part` to the message if it has changed.
   void add(Message& message, const std::string& key, const Tracked& part) const {
     if (part.changed > sent_look_) {
       message[key] = part.value;

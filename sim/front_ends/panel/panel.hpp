@@ -16,7 +16,7 @@
 
 namespace ex9000::sim {
 
-/// Carries messages between the panel and one open page.
+/// Between the panel and one open page.
 class PanelViewer {
  public:
   PanelViewer() = default;
@@ -24,49 +24,45 @@ class PanelViewer {
   PanelViewer& operator=(const PanelViewer&) = delete;
   virtual ~PanelViewer() = default;
 
-  /// Carries out a request of the page; a later call of `next` returns the reply. A request with a command
-  /// may also contain a second command that undoes the first one. If the first command succeeds, the page
-  /// holds the action of this command active until the page sends the second command, or until `leave`.
-  /// Returns false if `text` is not a valid request, or if the page would hold too many actions active.
+  /// A request of the page; a later `next` returns the reply. It may have a second command that undoes the
+  /// first: if the first succeeds, the page holds its action active until it sends the second, or until
+  /// `leave`. false: not a valid request, or too many active actions.
   virtual bool ask(const std::string& text) = 0;
-  /// Returns the next message for the page. The message contains all new replies, the new recent traffic, and
-  /// the new changes that Panel::look has captured. The first message also describes the lines and their
-  /// modules. Returns an empty text if there is nothing new and the last message is less than 1 s old.
+  /// All new replies, traffic, and changes that Panel::look has captured; the first message also describes
+  /// lines and modules. Empty: nothing is new, and the last message is less than 1 s old.
   virtual std::string next() = 0;
-  /// Call this when the page has disconnected: carries out the second command of each active action. Not the
-  /// destructor does this, because a command advances a line, whose log or capture may fail; throws what the
-  /// command throws. At the end of the program, destroy this object without this call.
+  /// When the page has disconnected: carries out the second command of each active action, and throws what
+  /// that throws. Not the destructor, because a command advances a line, whose log or capture may fail. At
+  /// the end of the program, destroy this object without this call.
   virtual void leave() = 0;
 };
 
-/// Viewers affect the lines only by the commands and requests that their pages send. Without viewers, the
-/// panel only stores the last frames and notes of each line.
+/// Viewers affect the lines only by the commands and requests of their pages. Without viewers, the panel only
+/// stores the last frames and notes of each line.
 class Panel {
  public:
   using CarryOut = std::function<Control::Reply(const std::string& command)>;
 
-  /// Sends a request on the line at position `line`, from 0.
+  /// On the line at the position `line`, from 0.
   using Ask = std::function<void(std::size_t line, RequestQueue::Request request)>;
 
   using WallClock = std::function<std::chrono::steady_clock::time_point()>;
 
-  /// `speed` is the ratio of the lines' time to the wall clock. `wall_clock` is the clock for the messages
-  /// that pages get even if nothing has changed.
+  /// `speed`: of line time to the wall clock. `wall_clock`: for messages while nothing changes.
   Panel(CarryOut carry_out, Ask ask, double speed, WallClock wall_clock = std::chrono::steady_clock::now);
   ~Panel();
   Panel(const Panel&) = delete;
   Panel& operator=(const Panel&) = delete;
 
-  /// Adds a line. Call this before the first viewer connects. `line` must outlive this object; `present`
-  /// returns the line's time.
+  /// Before the first viewer. `line` must outlive this object; `present` returns its time.
   void add_line(const LineSummary& summary, const Line& line, std::function<VirtualTime()> present);
-  /// Adds a frame of the line at position `line`, from 0.
+  /// `line`: the position, from 0.
   void hear(std::size_t line, const Frame& frame);
   void note(std::size_t line, VirtualTime now, const std::string& text);
 
   /// Captures the present state for all viewers.
   void look();
-  /// Returns the viewer for a page that has connected. This object must outlive the viewer.
+  /// For a page that has connected. This object must outlive the viewer.
   std::unique_ptr<PanelViewer> viewer();
 
  private:

@@ -28,25 +28,22 @@ using boost::asio::ip::tcp;
 using boost::system::error_code;
 
 constexpr std::uint16_t kDefaultPort = 9042;
-/// The largest number of open pages. This limit protects the program from clients that never disconnect.
+/// Open pages: a limit against clients that never disconnect.
 constexpr std::size_t kMostPages = 16;
-/// The largest number of requests in progress. Open pages do not count. A browser sends up to six at a time,
-/// for all its pages together.
+/// In progress, without open pages. A browser sends up to six at a time, for all its pages together.
 constexpr std::size_t kMostRequests = 64;
 constexpr std::uint32_t kLongestHeader = 8192;
 constexpr std::size_t kLongestPageRequest = 4096;
-/// The timeout of each step: receiving a request, sending its response, the handshake of a WebSocket.
+/// For each step: a request, its response, the handshake of a WebSocket.
 constexpr std::chrono::seconds kRequestTimeout{5};
-/// The server disconnects a page that sends nothing for this time, not even the replies to pings.
+/// A page that sends nothing for this time, not even replies to pings, is disconnected.
 constexpr std::chrono::seconds kIdle{20};
-/// The interval at which the server captures the state while a page is open. A page must show a change within
-/// 100 ms. The rest of the 100 ms is for sending and drawing the change.
+/// How often the state is captured: a page must show a change within 100 ms, with sending and drawing.
 constexpr std::chrono::milliseconds kLookEvery{30};
 
 tcp::endpoint here(std::uint16_t port) { return {boost::asio::ip::address_v4::loopback(), port}; }
 
-/// The complete response for connections beyond the limit. It is constant, so that it requires no memory for
-/// each connection.
+/// For connections beyond the limit. Constant, so that it needs no memory for each connection.
 constexpr std::string_view kTooManyRequestsResponse =
     "HTTP/1.1 503 Service Unavailable\r\nContent-Type: text/plain\r\nContent-Length: 34\r\n"
     "Connection: close\r\n\r\ntoo many requests are in progress\n";
@@ -55,7 +52,6 @@ std::string_view view_of(beast::string_view text) { return {text.data(), text.si
 
 using Request = http::request<http::empty_body>;
 
-/// Returns the file for the path of a request; null if there is no such file.
 const EmbeddedFile* page_file(std::string_view target) {
   for (const EmbeddedFile& file : page_files()) {
     if (target == "/" + std::string(file.name) || (target == "/" && file.name == "index.html")) {
@@ -98,7 +94,7 @@ class PanelServer::Connections {
   class Client;
 
   void admit(tcp::socket socket);
-  /// The number of connections that are pages or are becoming pages.
+  /// Also those that are becoming pages.
   [[nodiscard]] std::size_t pages();
   void look();
 
@@ -109,7 +105,7 @@ class PanelServer::Connections {
   Clients<Client> clients_;
 };
 
-/// A connection: a single request, or a page that gets messages until it disconnects.
+/// A single request, or a page that gets messages until it disconnects.
 class PanelServer::Connections::Client : public std::enable_shared_from_this<Client> {
  public:
   Client(Connections& server, tcp::socket socket)
@@ -128,7 +124,7 @@ class PanelServer::Connections::Client : public std::enable_shared_from_this<Cli
   [[nodiscard]] bool is_page() const { return viewer_ != nullptr; }
   [[nodiscard]] bool takes_a_page() const { return takes_a_page_; }
 
-  /// Sends the next message for the page if there is one and the previous message has been sent.
+  /// If there is a message, and the previous one has been sent.
   void tell() {
     if (!viewer_ || !outgoing_.empty()) {
       return;
@@ -203,9 +199,8 @@ class PanelServer::Connections::Client : public std::enable_shared_from_this<Cli
     return request.method() == http::verb::get || request.method() == http::verb::head;
   }
 
-  /// Returns whether each header Sec-Fetch-Site of the request is same-origin or none; true if there is no
-  /// such header. Browsers do not send Origin with every request. Newer browsers also send Sec-Fetch-Site,
-  /// with another value if a page of another origin has caused the request.
+  /// Browsers do not send Origin with every request. Newer ones also send Sec-Fetch-Site, with another value
+  /// if a page of another origin has caused the request.
   [[nodiscard]] static bool is_fetched_by_us(const Request& request) {
     const auto fetched = request.equal_range("Sec-Fetch-Site");
     return std::all_of(fetched.first, fetched.second, [](const auto& field) {
@@ -238,8 +233,8 @@ class PanelServer::Connections::Client : public std::enable_shared_from_this<Cli
         [self = shared_from_this()](const error_code& /*error*/, std::size_t /*size*/) { self->leave(); });
   }
 
-  /// Reads the rest of the request, up to about 1 MiB, before the connection closes. If unread bytes were
-  /// left, the close would reset the connection, and the client could lose the response.
+  /// Reads the rest of the request, up to about 1 MiB: with bytes unread, the close would reset the
+  /// connection, and the client could lose the response.
   void leave() {
     error_code ignored;
     stream().socket().shutdown(tcp::socket::shutdown_send, ignored);
@@ -276,7 +271,7 @@ class PanelServer::Connections::Client : public std::enable_shared_from_this<Cli
         return;
       }
       if (!self->takes_a_page_) {
-        // A browser tells the page why a WebSocket was closed, but not why a WebSocket was rejected.
+        // A browser tells the page why a WebSocket was closed, but not why it was rejected.
         self->close(websocket::close_code::try_again_later, "too many pages are open already");
       } else {
         self->buffer_.clear();
@@ -287,7 +282,7 @@ class PanelServer::Connections::Client : public std::enable_shared_from_this<Cli
     });
   }
 
-  /// Ends the page, if there is one. The connection stays open.
+  /// The connection stays open.
   void end_page() {
     if (const std::unique_ptr<PanelViewer> viewer = std::move(viewer_)) {
       viewer->leave();
@@ -311,10 +306,9 @@ class PanelServer::Connections::Client : public std::enable_shared_from_this<Cli
     });
   }
 
-  /// Processes a request of the page, and disconnects the page if the request is not valid. If the request is
-  /// a command, reads the next request only after the reply to this command has been queued. A client
-  /// therefore cannot send commands faster than the server replies to them. The replies to console requests
-  /// come later; the viewer limits the number of these requests.
+  /// Disconnects the page if the request is not valid. Reads the next one only when the reply to a command is
+  /// queued, so a client cannot send commands faster than the server replies. Replies to console requests
+  /// come later; the viewer limits their number.
   void answer_page_request() {
     answering_ = false;
     const std::string asked = beast::buffers_to_string(buffer_.data());
@@ -357,8 +351,7 @@ std::size_t PanelServer::Connections::pages() {
                                                 [](const auto& client) { return client->takes_a_page(); }));
 }
 
-/// If a page is open, captures the present state, sends each page its next message, and does this again after
-/// kLookEvery at the latest.
+/// If a page is open: captures the state, sends each page its next message, and comes again in kLookEvery.
 void PanelServer::Connections::look() {
   const auto clients = clients_.all();
   if (std::none_of(clients.begin(), clients.end(), [](const auto& client) { return client->is_page(); })) {

@@ -12,10 +12,9 @@
 
 namespace ex9000::sim {
 
-/// Stores the last 512 entries.
 class RecentTraffic {
  public:
-  /// A frame, or a note about the line if `note` has a value.
+  /// A note about the line if `note` has a value, else a frame.
   struct Entry {
     Frame frame;
     std::optional<std::string> note;  ///< `frame.began` is the time of the note
@@ -29,17 +28,14 @@ class RecentTraffic {
     entries_.push_back(std::move(entry));
   }
 
-  /// Entries are numbered from 0 in the order of arrival. Returns the number of the next entry.
+  /// The number of the next entry; they are numbered from 0 in the order of arrival.
   [[nodiscard]] std::uint64_t end() const { return first_ + entries_.size(); }
-  /// Returns the number of the first entry to show. This entry has a number of at least `from`, is still
-  /// stored, and is one of the last `most` entries. If there is no such entry, returns `end()` or a higher
-  /// number.
+  /// The first entry to show: at least `from`, still stored, among the last `most`; else `end()` or more.
   [[nodiscard]] std::uint64_t first_of(std::uint64_t from, std::size_t most) const {
     const std::uint64_t newest = end() - std::min<std::uint64_t>(most, end());
     return std::max({from, first_, newest});
   }
-  /// Returns a stored entry. `number` must be at least the result of a call of `first_of` after the last
-  /// `add`, and less than `end()`.
+  /// `number`: at least a `first_of` since the last `add`, and below `end()`.
   [[nodiscard]] const Entry& entry(std::uint64_t number) const {
     return entries_[static_cast<std::size_t>(number - first_)];
   }

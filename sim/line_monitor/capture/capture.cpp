@@ -33,9 +33,8 @@ std::size_t Capture::add_line(const std::string& name, std::size_t modules, std:
 }
 
 void Capture::write(std::size_t line, const Frame& frame) {
-  // The master of each line has its own port, because Wireshark matches replies with requests by their ports.
-  // In a frame of a station that is neither the master nor a module, both ports are 0, because this station
-  // may send both requests and replies.
+  // Wireshark matches replies with requests by their ports, so the master of each line has its own. Ports 0:
+  // a station that is neither master nor module may send both.
   constexpr std::size_t kFirstMastersPort = 10000;
   const auto master = static_cast<std::uint16_t>(kFirstMastersPort + line);
   const bool known = frame.station <= lines_[line].modules;

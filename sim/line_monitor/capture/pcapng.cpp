@@ -9,7 +9,7 @@ constexpr std::uint32_t kSectionHeaderBlock = 0x0A0D0D0A;
 constexpr std::uint32_t kInterfaceDescriptionBlock = 1;
 constexpr std::uint32_t kEnhancedPacketBlock = 6;
 
-// Option codes: first those of all blocks (3.5), then those of one type of block.
+// Option codes: of all blocks (3.5), then of one type of block.
 constexpr std::uint16_t kEndOfOptions = 0;
 constexpr std::uint16_t kComment = 1;
 constexpr std::uint16_t kSectionUserApplication = 4;
@@ -24,15 +24,14 @@ void put(Block& block, Number number) {
   }
 }
 
-/// Appends `bytes` and pads the block with zeros to a multiple of four bytes.
+/// Pads the block with zeros to a multiple of four bytes.
 template <class Bytes>
 void put_padded(Block& block, const Bytes& bytes) {
   block.insert(block.end(), bytes.begin(), bytes.end());
   block.resize((block.size() + 3) / 4 * 4);
 }
 
-/// Appends an option (3.5), with at most 65535 bytes of `value`. The length in the option excludes the
-/// padding.
+/// An option (3.5), cut after 65535 bytes. Its length excludes the padding.
 void put_option(Block& block, std::uint16_t code, const std::string& value) {
   constexpr std::size_t kLongest = 0xFFFF;
   const std::string fitting = value.substr(0, kLongest);
@@ -41,8 +40,7 @@ void put_option(Block& block, std::uint16_t code, const std::string& value) {
   put_padded(block, fitting);
 }
 
-/// Returns a complete block (3.1): type and length, the body, and the length again. `body` must end with its
-/// options; this function adds the end of options.
+/// A complete block (3.1): type, length, body, length. Adds the end to the options at the end of `body`.
 Block framed(std::uint32_t type, Block body) {
   put_option(body, kEndOfOptions, "");
   constexpr std::size_t kTypeAndLengths = 12;

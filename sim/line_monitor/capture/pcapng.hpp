@@ -11,19 +11,17 @@ namespace ex9000::sim::pcapng {
 
 using Block = std::vector<std::uint8_t>;
 
-/// Returns a Section Header Block (4.1), the first block of a file. `userappl` names the program that writes
-/// the file.
+/// Section Header Block (4.1), the first of a file. `userappl`: the program that writes it.
 Block section_header(const std::string& userappl);
 
-/// Returns an Interface Description Block (4.2), which describes a source of packets. Interfaces are numbered
-/// from 0 in the order of their blocks. Packets may have any length. The times of packets are in nanoseconds
-/// (if_tsresol 9).
+/// Interface Description Block (4.2): a source of packets of any length, with times in ns (if_tsresol 9).
+/// Interfaces are numbered from 0 in the order of their blocks.
 Block interface_description(std::uint16_t link_type, const std::string& name);
 
 /// Bits 0 and 1 of epb_flags (4.3.1).
 enum class Direction : std::uint32_t { Inbound = 1, Outbound = 2 };
 
-/// The content of an Enhanced Packet Block (4.3).
+/// Enhanced Packet Block (4.3).
 struct EnhancedPacket {
   std::uint32_t interface_id = 0;
   std::chrono::nanoseconds timestamp{0};  ///< since 1970-01-01 00:00:00 UTC

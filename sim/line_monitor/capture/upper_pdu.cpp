@@ -4,7 +4,7 @@ namespace ex9000::sim {
 
 namespace {
 
-// Tags and values are defined in exported_pdu_tlvs.h of Wireshark.
+// From Wireshark's exported_pdu_tlvs.h.
 constexpr std::uint16_t kEndOfTags = 0;
 constexpr std::uint16_t kDissectorName = 12;
 constexpr std::uint16_t kPortType = 24;
@@ -13,7 +13,7 @@ constexpr std::uint16_t kDestinationPort = 26;
 constexpr std::uint16_t kProtocolColumn = 33;
 constexpr std::uint32_t kTcp = 2;
 
-/// Appends the lowest `bytes` bytes of `number` in big-endian order.
+/// The lowest `bytes` bytes, big-endian.
 void put(std::vector<std::uint8_t>& header, std::uint32_t number, unsigned bytes) {
   for (unsigned byte = bytes; byte-- != 0;) {
     header.push_back(static_cast<std::uint8_t>(number >> 8U * byte));
@@ -26,8 +26,7 @@ void put_number(std::vector<std::uint8_t>& header, std::uint16_t tag, std::uint3
   put(header, number, sizeof number);
 }
 
-/// Appends a tag with a text, padded with zeros to a multiple of four bytes. The length in the tag includes
-/// the padding.
+/// Padded with zeros to a multiple of four bytes, which the tag's length includes.
 void put_text(std::vector<std::uint8_t>& header, std::uint16_t tag, std::string text) {
   text.resize((text.size() + 3) / 4 * 4);
   put(header, tag, 2);

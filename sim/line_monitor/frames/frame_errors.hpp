@@ -7,12 +7,10 @@
 
 namespace ex9000::sim {
 
-/// Describes a collision, a rate or parity of the sender that differs from that of the line, and the bytes in
-/// `frame.changes`. Positions of bytes count from 1. Returns an empty string if there is no error.
+/// A collision, a rate or parity unlike the line's, and `frame.changes`; bytes count from 1. Empty: no error.
 std::string line_error(const Frame& frame);
 
-/// Describes the errors of `line_error` and, if there was no collision, the error of `check_error`. Returns
-/// an empty string if there is no error.
+/// Also the `check_error`, unless there was a collision.
 std::string errors(const Frame& frame);
 
 }  // namespace ex9000::sim

@@ -66,12 +66,10 @@ bool checksum_is_right(const std::string& text) {
   return std::string(checksum, text.end()) == hex_byte_text(std::accumulate(text.begin(), checksum, 0U));
 }
 
-/// Returns whether the byte is 00 or LF, which modules ignore before a delimiter (wire.md section 3). The
-/// turn-around of a line can produce 00, and some terminals send LF after CR.
+/// Modules ignore these before a delimiter (wire.md section 3): 00 from a turn-around, LF after CR.
 bool is_skipped(std::uint8_t byte) { return byte == 0x00 || byte == '\n'; }
 
-/// Returns the position of the first byte that is not 00 or LF if this byte is a delimiter; otherwise the
-/// beginning of `bytes`.
+/// The first byte that is not skipped if it is a delimiter, else the beginning.
 FrameBytes::const_iterator dcon_begin(const FrameBytes& bytes) {
   const auto first = std::find_if_not(bytes.begin(), bytes.end(), is_skipped);
   const bool delimits =
@@ -79,7 +77,7 @@ FrameBytes::const_iterator dcon_begin(const FrameBytes& bytes) {
   return delimits ? first : bytes.begin();
 }
 
-/// Returns the text of a DCON frame, without skipped bytes before a delimiter and without CR.
+/// Without skipped bytes before a delimiter and without CR.
 std::string dcon_text(const FrameBytes& bytes) {
   return {dcon_begin(bytes), bytes.end() - (bytes.back() == '\r' ? 1 : 0)};
 }
@@ -105,8 +103,7 @@ std::string dcon_reply(const FrameBytes& bytes) {
   return bytes.front() == '?' ? "rejected" : "reply";
 }
 
-/// Returns whether a function of `listed` can access `row`, and the address is in `row` on at least one
-/// model.
+/// A function of `listed` can access the row, and on at least one model the address is in it.
 template <class Row>
 bool lies_in(const Row& row, registers::Functions listed, unsigned address) {
   return (row.functions & listed) != 0 &&
@@ -115,8 +112,7 @@ bool lies_in(const Row& row, registers::Functions listed, unsigned address) {
          });
 }
 
-/// Returns the meaning of the address in `request`. `request` must not include the CRC, and its function code
-/// must be at most 10 (hex).
+/// `request`: without the CRC, and with a function code up to 10 (hex).
 std::string row_meaning(Bytes request) {
   if (modbus::is_host_ok(request)) {
     return ", host OK";

@@ -11,8 +11,8 @@ namespace {
 
 constexpr std::size_t kMaster = 0;
 
-// The longest pauses inside a frame. The first is for a master that writes a frame in pieces; at low rates,
-// the time of four characters is longer and applies instead. The second is for a person who types a frame.
+// The longest pauses inside a frame: of a master that writes it in pieces (four characters, if they take
+// longer), and of a person who types it.
 constexpr VirtualTime kLongestPauseInWrite = std::chrono::milliseconds(5);
 constexpr VirtualTime kLongestPauseInTyping = std::chrono::seconds(5);
 
@@ -25,9 +25,7 @@ FrameWatch::Sender& FrameWatch::sender(std::size_t station) {
   return senders_[station];
 }
 
-/// Returns whether the master's byte from `start` to `end` begins a new frame. A time limit alone cannot
-/// detect a new frame: gaps between requests without a reply may be shorter than gaps between the pieces of
-/// one request.
+/// A time limit cannot tell: gaps between requests without a reply may be shorter than inside one request.
 bool FrameWatch::begins_another(VirtualTime start, VirtualTime end) {
   constexpr std::size_t kShortest = 4;
   const Frame& frame = sender(kMaster).frame;

@@ -12,7 +12,7 @@ namespace ex9000::sim {
 
 namespace {
 
-/// The options that set a line format. A pseudo-terminal ignores the format, but a real bus does not.
+/// A pseudo-terminal ignores the format, but a real bus does not.
 struct FormatOptions {
   const char* mbpoll;   ///< for mbpoll, whose default is 8E1
   const char* picocom;  ///< for picocom, whose default is 8N1
@@ -24,8 +24,7 @@ const FormatOptions& options_of(LineFormat format) {
   return kInTheOrderOfLineFormat[static_cast<std::size_t>(format)];
 }
 
-/// Returns commands for mbpoll, which counts coils, inputs and registers from 1. `port` is the path of a
-/// pseudo-terminal or a host, and `options` are mbpoll's options for this connection.
+/// mbpoll counts from 1. `port`: a pseudo-terminal or a host; `options`: for this connection.
 std::string mbpoll(const ModuleSummary& module, const std::string& options, const std::string& port) {
   const std::string common = "    mbpoll " + options + " -a " + std::to_string(module.address);
   const auto read = [&](const char* type, unsigned count, const char* what) {
@@ -50,8 +49,7 @@ std::string terminal(const ModuleSummary& module, const std::string& link) {
          "M and Enter\n";
 }
 
-/// Returns commands that a user can paste to use the module; empty if masters can reach the module neither
-/// through a pseudo-terminal nor through the gateway.
+/// Empty if masters reach the module neither through a pseudo-terminal nor through the gateway.
 std::string commands(const LineSummary& line, const ModuleSummary& module) {
   if (const PortSummary* pty = line.port("pty")) {
     const std::string link = shell_word(pty->address);
@@ -85,7 +83,7 @@ std::string shared_addresses(const std::vector<ModuleSummary>& modules) {
   return text;
 }
 
-/// A gateway without a module that it can reach.
+/// It cannot reach any module.
 std::string useless_gateway(const LineSummary& line) {
   const bool useless = line.port("modbus-tcp") != nullptr &&
                        std::all_of(line.modules.begin(), line.modules.end(),

@@ -11,7 +11,7 @@
 
 namespace ex9000::sim {
 
-/// A module after it has started up.
+/// After it has started up.
 struct ModuleSummary {
   std::string designation;
   unsigned inputs = 0;
@@ -29,7 +29,7 @@ struct LineSummary {
   std::vector<ModuleSummary> modules;
   std::vector<PortSummary> ports;
 
-  /// The first port of this kind; null if the line has none.
+  /// The first; null: none.
   [[nodiscard]] const PortSummary* port(const std::string& kind) const;
 };
 
@@ -39,11 +39,9 @@ struct BannerContent {
   std::string control;  ///< path of the control socket; empty: none
 };
 
-/// Returns a text of several lines that names the version, the panel, the simulated lines with their ports
-/// and modules, and the control socket. For each module that masters can reach through a pseudo-terminal or a
-/// gateway, the text contains commands that the user can paste. For a Modbus module, these commands read the
-/// outputs, the inputs and the counters that the module has, and switch output 0 on if there are outputs. For
-/// a module that speaks ASCII, the command opens a terminal program.
+/// Names the version, the panel, the lines with their ports and modules, and the control socket. For each
+/// module behind a pseudo-terminal or a gateway, it has commands to paste: they read what a Modbus module has
+/// and switch output 0 on, or open a terminal program for ASCII.
 std::string greeting(const BannerContent& all);
 
 }  // namespace ex9000::sim

@@ -36,8 +36,7 @@ using Object = nlohmann::ordered_json;
 
 double seconds(VirtualTime time) { return std::chrono::duration<double>(time).count(); }
 
-/// Returns the object as one line of text. Replaces invalid UTF-8, because the name of a line may be a path,
-/// and a path may contain invalid UTF-8.
+/// Replaces invalid UTF-8: the name of a line may be a path, which may contain it.
 std::string text_of(const Object& object) {
   return object.dump(-1, ' ', false, Object::error_handler_t::replace);
 }

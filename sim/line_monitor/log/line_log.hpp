@@ -1,4 +1,4 @@
-// The log of an RS-485 line. It contains one entry, a line of text, for each frame and for each note.
+// The log of an RS-485 line: one line of text for each frame and for each note.
 #pragma once
 
 #include <functional>
@@ -11,8 +11,7 @@
 
 namespace ex9000::sim {
 
-/// The names of the master and of the modules, in the order of the stations. Stations that are attached to
-/// the line later, for example by faults, have no name.
+/// In the order of the stations. Stations attached later, for example by faults, have no name.
 class StationNames {
  public:
   explicit StationNames(std::vector<std::string> names) : names_(std::move(names)) {}
@@ -36,16 +35,14 @@ class LineLog {
   virtual ~LineLog() = default;
 
   virtual void frame(const Frame& frame) = 0;
-  /// Writes a note about the line. `now` is the time of the line's clock.
+  /// `now`: of the line's clock.
   virtual void note(VirtualTime now, const std::string& text) = 0;
 };
 
-/// Returns the log for people. The entry of a frame contains the time, direction, sender and bytes of the
-/// frame, and its errors and its meaning if they are known.
+/// For people: a frame's time, direction, sender and bytes, its errors, and its meaning if known.
 std::unique_ptr<LineLog> text_log(StationNames names, LineLog::Print print);
 
-/// Returns the log for programs: each entry is one line with one JSON object (RFC 8259). Members of
-/// the object of a frame:
+/// For programs: each entry is a line with one JSON object (RFC 8259). Members for a frame:
 ///   time      line time in seconds at the start of the first start bit
 ///   line      name of the line
 ///   from      name of the station that sent the frame, or `unknown sender`
@@ -54,7 +51,7 @@ std::unique_ptr<LineLog> text_log(StationNames names, LineLog::Print print);
 ///   meaning   see `meaning`; present if it is known, the station has a name, and there was no collision
 ///   error     see `errors`, but only `line_error` if the station has no name; present if there is an error
 ///   collided  whether at least one byte collided, see WireObserver::byte
-/// Members of the object of a note: time, line, note.
+/// Members for a note: time, line, note.
 std::unique_ptr<LineLog> json_log(std::string line, StationNames names, LineLog::Print print);
 
 }  // namespace ex9000::sim

@@ -1,4 +1,4 @@
-// A seeded random number generator with the same results on every platform.
+// Seeded random numbers, the same on every platform.
 #pragma once
 
 #include <cstdint>
@@ -11,8 +11,7 @@ class Chance {
   explicit Chance(std::uint64_t seed) : engine_(seed) {}
 
   std::uint64_t number() { return engine_(); }
-  /// Returns true with this probability. Uses the engine's numbers directly, because they are the same on
-  /// every platform. The results of the standard library's distributions may differ between platforms.
+  /// Takes the engine's numbers directly: the standard library's distributions may differ between platforms.
   bool happens(double probability) {
     constexpr double kOneIn2To64 = 1.0 / 18446744073709551616.0;
     return probability > 0 && static_cast<double>(engine_()) * kOneIn2To64 < probability;

@@ -13,7 +13,7 @@ namespace ex9000::sim {
 
 class Echo final : public Station {
  public:
-  /// Attaches itself to `wires`; the echo is off at first. `mode` is the present mode of the line.
+  /// Off at first. `mode`: the line's present one.
   Echo(Wires& wires, SerialMode mode)
       : wires_(wires),
         end_(wires.attach(*this)),
@@ -21,19 +21,16 @@ class Echo final : public Station {
   Echo(const Echo&) = delete;
   Echo& operator=(const Echo&) = delete;
 
-  /// The echo sends the received bytes when no byte has arrived for `delay` and no byte is on the wires.
+  /// Repeats what it has heard once no byte has arrived for `delay` and none is on the wires.
   void switch_on(VirtualTime delay) { delay_ = delay; }
-  /// The echo still sends the bytes that it has already received.
+  /// Bytes already heard are still sent.
   void switch_off() { delay_.reset(); }
-  /// Sets the rate and format of the line.
   void set_mode(SerialMode mode) { repeater_.set_mode(mode); }
-  /// Returns whether the echo has bytes to send or is sending.
   [[nodiscard]] bool sending() const { return !heard_.empty() || repeater_.sending(); }
 
-  // --- Station ---
   void run() override {
     if (wires_.carries()) {
-      // This byte is not in `heard_` yet: it is received after its first stop bit.
+      // The byte on the wires is not in `heard_` yet: it arrives after its first stop bit.
       wake_after(repeater_.takes(1));
       return;
     }
@@ -42,7 +39,7 @@ class Echo final : public Station {
   }
 
  private:
-  /// The maximum number of bytes in one transmission of the echo. Further received bytes are ignored.
+  /// In one transmission; further bytes are ignored.
   static constexpr std::size_t kMostHeard = 1024;
 
   void hear(std::uint8_t byte) {

@@ -16,7 +16,7 @@
 
 namespace ex9000::sim {
 
-/// When a fault occurs, that is, takes effect, and how long the fault lasts.
+/// When a fault takes effect ("occurs"), and for how long.
 struct Schedule {
   enum class When { Always, At, EveryTime, EveryReply, Probably, AfterWrites };
 
@@ -24,21 +24,19 @@ struct Schedule {
   VirtualTime time{0};      ///< At: the scheduled time, in the line's time; EveryTime: the period
   std::uint64_t count = 1;  ///< EveryReply: 10 means every 10th reply; AfterWrites: number of EEPROM writes
   double probability = 0;   ///< Probably: the probability for each reply
-  /// How long the fault lasts after it begins. nullopt: a fault that a reply triggers lasts until the end of
-  /// this reply, and a fault with any other schedule is permanent.
+  /// nullopt: until the end of the reply that triggers the fault; with any other schedule, for ever.
   std::optional<VirtualTime> lasts;
 
   [[nodiscard]] bool of_replies() const { return when == When::EveryReply || when == When::Probably; }
 };
 
-/// What the active faults do to the wires.
+/// What all active faults do together, to the wires and to a module.
 struct LineFaults {
   NoiseRates noise;
   std::optional<VirtualTime> echo_after;
   std::vector<std::uint8_t> foreign_bytes;
 };
 
-/// What the active faults do to a module.
 struct ModuleFaults {
   bool no_supply = false;
   bool hangs = false;
@@ -48,8 +46,8 @@ struct ModuleFaults {
 
 struct Fault;
 
-/// A kind of fault. A fault does not undo what it does: when one begins or ends, the scheduler begins with no
-/// effect, and calls `effect` for each fault that is still active, in the order in which they were added.
+/// A kind of fault. It does not undo its effect: when a fault begins or ends, the scheduler starts from no
+/// effect and calls the `effect` of each active fault, in the order of their addition.
 struct FaultKind {
   enum class Value { None, Probability, Time, Pause, Rate, Byte, Bytes };
   enum class Lasts {
@@ -60,7 +58,7 @@ struct FaultKind {
   };
   using OnLine = void (*)(const Fault& fault, LineFaults& line);
   using OnModule = void (*)(const Fault& fault, ModuleFaults& module);
-  /// Called before the module sends a reply. `state`: that of the module.
+  /// Before the module sends a reply. `state`: the module's.
   using OnReply = void (*)(const Fault& fault, Reply& reply, const State& state);
 
   std::string_view name;
@@ -75,7 +73,7 @@ struct FaultKind {
 
 struct Fault {
   const FaultKind* kind = nullptr;  ///< an element of `fault_kinds`
-  // The value, of which the kind uses at most one member.
+  // The value; a kind uses at most one of these.
   double probability = 0;
   VirtualTime time{0};
   std::uint32_t rate = 0;

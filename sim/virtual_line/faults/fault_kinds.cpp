@@ -35,7 +35,6 @@ void end_with_crc(std::vector<std::uint8_t>& frame) {
   frame.insert(frame.end(), {crc.low_byte(), crc.high_byte()});
 }
 
-/// Ends a DCON frame.
 void end_with_cr(std::string text, const State& state, std::vector<std::uint8_t>& frame) {
   if (state.in_force.checksum) {
     text += hex_byte_text(std::accumulate(text.begin(), text.end(), 0U));
@@ -44,7 +43,7 @@ void end_with_cr(std::string text, const State& state, std::vector<std::uint8_t>
   frame.assign(text.begin(), text.end());
 }
 
-/// MODBUS Application Protocol V1.1b3, section 7. In ASCII, the module rejects the command.
+/// MODBUS Application Protocol V1.1b3, section 7; in ASCII a rejection.
 void refuse(const Fault& fault, Reply& reply, const State& state) {
   constexpr unsigned kException = 0x80;
   if (state.speaks_modbus()) {
@@ -55,8 +54,7 @@ void refuse(const Fault& fault, Reply& reply, const State& state) {
   }
 }
 
-/// In ASCII, `!` and `?` precede an address, except in the replies `!` and `?` without one (wire.md section
-/// 3). A reply with `>` has none.
+/// ASCII replies have an address after `!` or `?`, but not the bare `!` and `?`, nor `>` (wire.md section 3).
 void answer_as(const Fault& fault, Reply& reply, const State& state) {
   constexpr std::ptrdiff_t kCheck = 2;  // bytes of the CRC, characters of the checksum
   auto& bytes = reply.bytes;

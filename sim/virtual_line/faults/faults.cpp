@@ -13,7 +13,7 @@ namespace {
 
 using When = Schedule::When;
 
-/// The foreign station drops a message if at least this many bytes are already waiting.
+/// The foreign station drops a message if this many bytes already wait.
 constexpr std::size_t kMostForeign = 1024;
 
 }  // namespace
@@ -91,7 +91,7 @@ std::vector<Faults::Info> Faults::list() const {
   return all;
 }
 
-/// Processes everything that is due: ends occurrences first, then begins new ones, then updates the effects.
+/// Ends occurrences first, then begins new ones, then updates the effects.
 void Faults::run() {
   const VirtualTime now = wires_.clock().virtual_now();
   end_where([now](std::size_t /*place*/, VirtualTime ends) { return ends <= now; });
@@ -119,16 +119,14 @@ void Faults::run() {
   end_.run_at(next);
 }
 
-/// Schedules an update of the effects at the present time. If a module is in the middle of an action, the
-/// update follows this action.
+/// Has `run` update the effects now, but after the action that a module may be in.
 void Faults::change() {
   changed_ = true;
   end_.run_at(wires_.clock().virtual_now());
 }
 
-/// Begins an occurrence. `place`: the module whose reply has triggered it, or kEverywhere. A module may cause
-/// this call in the middle of an action. This function therefore does not change any module; `run` changes
-/// the modules later.
+/// `place`: the module whose reply triggers the occurrence, or kEverywhere. A module may call this in the
+/// middle of an action, so only `run` changes modules.
 void Faults::begin(Scheduled& scheduled, std::size_t place) {
   const auto lasts = scheduled.fault.schedule.lasts;
   scheduled.active[place] = lasts ? wires_.clock().virtual_now() + *lasts : kNever;
@@ -137,7 +135,6 @@ void Faults::begin(Scheduled& scheduled, std::size_t place) {
   say(scheduled, "occurs");
 }
 
-/// Ends the occurrences for which `over` returns true.
 template <class Over>
 void Faults::end_where(Over over) {
   for (Scheduled& scheduled : scheduled_) {
@@ -187,8 +184,7 @@ void Faults::written(std::size_t module) {
   }
 }
 
-/// Calls all effects of this type of the faults that are active at `place`: a module, or kEverywhere for the
-/// line.
+/// `place`: a module, or kEverywhere for the line.
 template <class Effect, class... Affected>
 void Faults::apply_at(std::size_t place, Affected&&... affected) const {
   for (const Scheduled& scheduled : scheduled_) {

@@ -34,8 +34,7 @@ Levels Noise::disturbed(const Sent& sent) {
   return levels;
 }
 
-/// Puts the next stray character on the wires. Does not enable a driver, because no device sends this
-/// character.
+/// Enables no driver: no device sends the stray character.
 void Noise::run() {
   const auto [byte, mode] = strays_.begin()->second;
   strays_.erase(strays_.begin());

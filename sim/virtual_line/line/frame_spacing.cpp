@@ -21,7 +21,6 @@ VirtualTime FrameSpacing::after_others(std::uint8_t address) const {
   return is_for_modbus(address) ? last_byte_ + line_.rtu_separate() : VirtualTime(0);
 }
 
-/// Returns whether a frame that begins with this byte may be for a Modbus module.
 bool FrameSpacing::is_for_modbus(std::uint8_t address) const {
   for (std::size_t i = 0; i < line_.size(); ++i) {
     const SimulatedModule& module = line_.module(i);

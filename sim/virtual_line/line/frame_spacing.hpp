@@ -10,26 +10,20 @@ namespace ex9000::sim {
 
 class Line;
 
-/// Observes which station has sent last, so that the master can begin a frame late enough: modules must not
-/// treat two frames as one.
+/// Observes who has sent last: modules must not treat two frames as one. Valid only while `line` exists.
 class FrameSpacing final : private WireObserver {
  public:
-  /// Observes Wires of `line`. Use this object only while `line` exists.
   explicit FrameSpacing(Line& line);
 
-  /// Returns the end of the last complete byte on the wires, including a second stop bit; 0 if no byte is
-  /// complete yet.
+  /// The end of the last complete byte, with a second stop bit; 0: none yet.
   [[nodiscard]] VirtualTime last_byte() const { return last_byte_; }
-  /// Returns whether the master has sent the last complete byte. Also returns true if no byte is
-  /// complete yet.
+  /// Also true if no byte is complete yet.
   [[nodiscard]] bool master_was_last() const { return last_speaker_ == 0; }
 
-  /// Returns the earliest time at which the master may begin a frame. If the frame begins earlier, the
-  /// addressed modules may join it to the previous frame. `address` is the first byte of the frame. The
-  /// returned time may be in the past. Call this only if `master_was_last()` is false.
+  /// The earliest start, perhaps in the past, of a frame that begins with `address`: sooner, the addressed
+  /// modules may join it to the previous frame. Only if `!master_was_last()`.
   [[nodiscard]] VirtualTime after_others(std::uint8_t address) const;
-  /// Returns the earliest time at which the master may begin a frame. If the frame begins earlier, modules
-  /// may join it to the previous frame of the master. Call this only if `master_was_last()` is true.
+  /// The same after a frame of the master: only if `master_was_last()`.
   [[nodiscard]] VirtualTime after_own() const;
 
  private:

@@ -6,7 +6,7 @@ namespace ex9000::sim {
 
 namespace {
 
-/// The number of times that a contact bounces during the bounce time.
+/// Bounces within the bounce time.
 constexpr unsigned kChatters = 4;
 
 }  // namespace
@@ -28,8 +28,7 @@ void MovedInput::plan(VirtualTime begins) {
   }
 }
 
-/// Plans one change of the level, and the bounces after it: real contacts open and close several times before
-/// they settle.
+/// Plans a change and its bounces: real contacts open and close several times before they settle.
 void MovedInput::chatter(VirtualTime begins, bool level) {
   moves_.push_back({begins, level});
   if (program_.bounce == VirtualTime(0)) {

@@ -20,15 +20,13 @@ struct InputProgram {
   VirtualTime bounce{0};  ///< how long the contacts bounce after each change
 };
 
-/// Changes the level of one input, even if the module has no power.
+/// Starts when constructed; needs no power at the module. The same `seed` gives the same bouncing.
 class MovedInput final : public Station {
  public:
-  /// Attaches itself to `wires` and starts the program now. The same `seed` produces the same bouncing.
   MovedInput(Wires& wires, SimulatedModule& module, const InputProgram& program, std::uint64_t seed);
   MovedInput(const MovedInput&) = delete;
   MovedInput& operator=(const MovedInput&) = delete;
 
-  // --- Station ---
   void run() override;
 
  private:

@@ -5,8 +5,8 @@
 
 namespace ex9000::sim {
 
-/// If the CRC is correct, the frame is complete, and a very short silence ends it. Any other frame may be
-/// incomplete, because it can arrive in pieces, so only a longer silence ends it.
+/// A correct CRC proves a frame complete, so a very short silence ends it. Any other frame may be arriving in
+/// pieces, so only a longer silence ends it.
 LineTiming instantly(std::uint32_t /*baud*/, LineFormat /*format*/) {
   constexpr Duration kSilence(6);
   constexpr Duration kQuiet = milliseconds(2);

@@ -34,16 +34,14 @@ void RequestQueue::send_next() {
   send();
 }
 
-/// Returns whether the master sends, bytes are on the wires, or the line is unsettled. After a reply to this
-/// queue, an unsettled line does not count, because `send` leaves the required silence.
+/// After a reply to this queue an unsettled line does not count: `send` leaves the required silence.
 bool RequestQueue::others_use_the_line() const {
   return line_.master().sending() || line_.wires().carries() ||
          (line_.spacing().last_byte() != own_byte_ && line_.unsettled());
 }
 
-/// Sends the first request. While others use the line, tries again every 1 ms until the deadline. If the
-/// master is sending at the deadline, reports that the request was not sent. If only other stations use the
-/// line at the deadline, sends the request anyway.
+/// While others use the line, tries again every 1 ms. At the deadline, sends if only other stations use it,
+/// but gives up if the master is sending.
 void RequestQueue::send() {
   constexpr VirtualTime kBetweenLooks = std::chrono::milliseconds(1);
   Master& master = line_.master();
@@ -120,9 +118,7 @@ void RequestQueue::run() {
   }
 }
 
-/// Returns whether the received frame is the reply to the request in progress. If another program has sent
-/// bytes through the master since this request, returns false, because the frame may be the reply to those
-/// bytes.
+/// Not if another program has sent since the request: the frame may be the reply to that.
 bool RequestQueue::is_reply() const {
   const Request& request = waiting_.front();
   const bool is_for_this_queue = line_.master().taken() == taken_;
@@ -131,8 +127,7 @@ bool RequestQueue::is_reply() const {
           (!reply_.damaged && request.is_reply({reply_.bytes.data(), reply_.bytes.size()})));
 }
 
-/// Sends the next request, and then reports the reply to the finished request. The order matters because
-/// `done` may call `ask`, which must not find the state of the finished request.
+/// Sends the next request first: `done` may call `ask`, which must not find the state of this one.
 void RequestQueue::finish(const Reply& reply) {
   const Request request = std::move(waiting_.front());
   waiting_.pop_front();

@@ -13,23 +13,20 @@ namespace ex9000::sim {
 
 class Line;
 
-/// Sends requests through the master of the line, one at a time. After each request, waits for its reply or
-/// for the turn-around time, as a serial device server does. Keeps the order of the requests, and leaves the
-/// silence that modules require between frames. None of the functions blocks. All times are in the virtual
-/// time of the line.
+/// Sends requests through the line's master as a serial device server does: one at a time, in order, each
+/// followed by its reply or the turn-around time, and with the silence that modules require between frames.
+/// Nothing blocks. All times are virtual.
 ///
-/// Other programs can use the line at the same time: they send through the same master, but not through this
-/// queue. A request first waits while the master sends or a byte is on the wires. If there has been a byte on
-/// the wires, and the last one did not belong to a reply to this queue, the request also waits until the line
-/// has settled (Line::unsettled). These two waits together take at most kReplyTimeout. The other programs do
-/// not wait for this queue. If one of them sends while a request is in progress, the request gets no reply.
+/// Other programs may send through the same master without this queue. A request waits while the master sends
+/// or a byte is on the wires, and then until the line has settled (Line::unsettled), unless the last byte
+/// belonged to a reply to this queue or there was none; in all at most kReplyTimeout. The others do not wait
+/// for the queue: if one sends while a request is in progress, the request gets no reply.
 class RequestQueue final : private Station {
  public:
-  /// The usual Request::timeout, and the longest wait for a line that others use. This is more than twice the
-  /// time within which a module that stores settings must begin its reply (wire.md section 7).
+  /// The usual Request::timeout, and the longest wait for a line that others use: more than twice the time in
+  /// which a module that stores settings must begin its reply (wire.md section 7).
   static constexpr VirtualTime kReplyTimeout = std::chrono::milliseconds(500);
-  /// The turn-around time: after a request that expects no reply, the queue waits for this time, so that
-  /// modules can process the request (Modbus over Serial Line V1.02, 2.4.1: 100 ms to 200 ms).
+  /// Lets modules process a request without a reply (Modbus over Serial Line V1.02, 2.4.1: 100 to 200 ms).
   static constexpr VirtualTime kTurnaround = std::chrono::milliseconds(100);
 
   struct Reply {
@@ -42,26 +39,21 @@ class RequestQueue final : private Station {
   struct Request {
     std::vector<std::uint8_t> bytes;  ///< the frame on the line, at least one byte
     bool expects_reply = true;
-    /// The maximum time from the end of the request to the end of the first byte of its reply.
+    /// From the end of the request to the end of the reply's first byte.
     VirtualTime timeout = kReplyTimeout;
-    /// Returns whether `frame` is the reply. The queue ignores damaged frames, and frames for which this
-    /// function returns false. If this function is empty, the first frame is the reply, even a damaged one.
+    /// Picks the reply from the undamaged frames; empty: the first frame is it, even a damaged one.
     std::function<bool(Bytes frame)> is_reply;
-    /// The queue calls this function exactly once, unless the owner is destroyed before the queue sends the
-    /// request, or the queue is destroyed before the call.
+    /// Called exactly once, unless `owner` dies before the request is sent, or the queue before the call.
     std::function<void(const Reply& reply)> done;
     std::weak_ptr<void> owner;  ///< the client; must not be empty
   };
 
-  /// Attaches this object to Wires and the master of `line`. This object must live as long as they are
-  /// used.
+  /// This object must live as long as the wires and the master of `line` are used.
   explicit RequestQueue(Line& line);
   RequestQueue(const RequestQueue&) = delete;
   RequestQueue& operator=(const RequestQueue&) = delete;
 
-  /// Sends the request when all earlier requests are done.
   void ask(Request request);
-  /// Returns whether a request waits or is in progress.
   [[nodiscard]] bool busy() const { return state_ != State::Idle; }
 
  private:

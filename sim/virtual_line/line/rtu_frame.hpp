@@ -14,7 +14,6 @@ constexpr std::uint8_t kRtuBroadcast = 0;
 constexpr std::uint8_t kLastRtuAddress = 247;
 constexpr std::uint8_t kRtuException = 0x80;  ///< this bit of the function code marks an exception
 
-/// Returns the frame with this address and PDU.
 inline std::vector<std::uint8_t> rtu_frame(std::uint8_t address, const std::vector<std::uint8_t>& pdu) {
   std::vector<std::uint8_t> frame;
   frame.reserve(pdu.size() + 3);
@@ -26,11 +25,10 @@ inline std::vector<std::uint8_t> rtu_frame(std::uint8_t address, const std::vect
   return frame;
 }
 
-/// Returns the PDU in a frame of at least three bytes.
+/// `frame`: at least three bytes.
 inline Bytes pdu_of(Bytes frame) { return frame.first(frame.size - 2).from(1); }
 
-/// Returns the number of bytes in the reply to `request` if the reply is not an exception. 0 if the request
-/// is too short, or if its function is not 01 to 06, 0F or 10 (hex).
+/// Size of a reply that is no exception; 0: `request` is too short, or no function 01 to 06, 0F, 10 (hex).
 inline std::size_t rtu_reply_size(Bytes request) {
   constexpr std::size_t kAddressAndCount = 8;  // minimum size of a request that reads or writes
   constexpr std::size_t kWithoutData = 5;      // address, function, byte count, CRC
@@ -55,12 +53,10 @@ inline std::size_t rtu_reply_size(Bytes request) {
   }
 }
 
-/// Returns whether `frame` is a valid reply, perhaps an exception, to `request`. Both begin with the address
-/// and end with the CRC. Checks the CRC, the address, the function code, and the length of an exception. If
-/// the reply is not an exception, and the function is 01 to 06, 0F or 10 (hex), also checks the length, and
-/// the byte count or the repeated part of the request (MODBUS Application Protocol V1.1b3, section 6). These
-/// checks reject nearly all echoes of requests with functions 01 to 04, and most late replies to earlier
-/// requests.
+/// Both begin with the address and end with the CRC. Checks the CRC, the address, the function code and the
+/// length of an exception; for functions 01 to 06, 0F and 10 (hex) also the length, and the byte count or
+/// what the reply repeats (MODBUS Application Protocol V1.1b3, section 6). This rejects nearly all echoes of
+/// functions 01 to 04, and most late replies to earlier requests.
 inline bool is_rtu_reply(Bytes request, Bytes frame) {
   constexpr std::size_t kException = 5;  // size of an exception; no reply is shorter
   if (frame.size < kException || crc16(frame).value() != 0 || frame[0] != request[0] ||

@@ -1,4 +1,4 @@
-// Stores the times at which stations have to run, and finds the earliest time.
+// When each station is due, and the earliest of these times.
 #pragma once
 
 #include <algorithm>
@@ -12,29 +12,25 @@ namespace ex9000::sim {
 using hal::doubles::kNever;
 using hal::doubles::VirtualTime;
 
-/// One due time for each station, at the leaves of a tree whose other nodes are the earlier of the two below
-/// them.
+/// A tree: the leaves are the due times of the stations, each other node the earlier of the two below it.
 class DueTimes {
  public:
-  /// Adds a station without a due time. Returns its number, counted from 0.
+  /// Returns the number of a new station, from 0, that is not due.
   std::size_t add() {
     if (stations_ == leaves_) {
       grow();
     }
     return stations_++;
   }
-  /// Replaces the due time of a station; kNever: the station has none.
+  /// kNever: not due.
   void set(std::size_t station, VirtualTime when) {
     earliest_[leaves_ + station] = when;
     update_above(leaves_ + station);
   }
-  /// Returns the earliest due time; kNever if there is none.
   [[nodiscard]] VirtualTime next() const { return earliest_[1]; }
 
-  /// Calls `run` with the number of each station whose due time is not after `now`, until no station is due.
-  /// The next station is always the due station with the lowest number. Removes the due time of a station
-  /// before the call for this station. `run` may set due times of all stations, but it must not call
-  /// `run_due` or `next`.
+  /// Calls `run` for the due station with the lowest number, until none is due at `now`; clears its due time
+  /// first. `run` may set any due times, but must not call `run_due` or `next`.
   template <class Run>
   void run_due(VirtualTime now, Run run) {
     while (next() <= now) {
@@ -63,7 +59,6 @@ class DueTimes {
       earliest_[node] = earlier;
     }
   }
-  /// Doubles the number of leaves.
   void grow() {
     const std::vector<VirtualTime> before(earliest_.begin() + static_cast<std::ptrdiff_t>(leaves_),
                                           earliest_.end());
@@ -76,7 +71,7 @@ class DueTimes {
 
   std::size_t stations_ = 0;
   std::size_t leaves_ = 1;  ///< a power of two
-  /// Node n is above the nodes 2n and 2n + 1; the leaves are at the end. Node 0 is not used.
+  /// Node n is above nodes 2n and 2n + 1; the leaves are last. Node 0 is not used.
   std::vector<VirtualTime> earliest_{kNever, kNever};
 };
 

@@ -8,8 +8,7 @@ namespace ex9000::sim {
 
 namespace {
 
-/// In a simulated module, the wake timer wakes the main loop for all deadlines. The tick is necessary only
-/// for feeding the hardware watchdog, so a slow tick is sufficient.
+/// Slow: the wake timer serves all deadlines, and the tick only feeds the hardware watchdog.
 constexpr Duration kTick = milliseconds(400);
 
 }  // namespace
@@ -69,7 +68,7 @@ void SimulatedModule::say(const std::string& text) const {
   }
 }
 
-/// The cause, unless it is a request or a timer of the outputs.
+/// Empty if the cause is a request or an output timer.
 std::string SimulatedModule::why_outputs_change() const {
   if (!powered()) {
     return switched_on_ && !supply_interrupted_ ? ": reset" : ": no power";
@@ -103,7 +102,7 @@ void SimulatedModule::stop() {
   end_.hear_alone();
   mcu_->line.abort();
   wire_.abort();
-  // A memory job uses buffers in `mcu_`, so the job must end before these buffers are destroyed.
+  // First, because a memory job uses buffers in `mcu_`.
   memory_.cut();
   mcu_.reset();
   outputs_.drive(0);
@@ -136,8 +135,7 @@ void SimulatedModule::pulse_input(unsigned channel, std::uint32_t count) {
   react();
 }
 
-/// Makes the device process INIT* and the edges now. A real board does this after the next interrupt, at the
-/// latest after the next tick.
+/// Makes the device process INIT* and edges now; a real board does at the next interrupt or tick.
 void SimulatedModule::react() {
   if (powered()) {
     work();
@@ -178,8 +176,6 @@ void SimulatedModule::stop_tick() {
   settle();
 }
 
-/// Returns a blank image for factory settings, because the memory of a factory-fresh module is blank (wire.md
-/// D8).
 std::vector<std::uint8_t> SimulatedModule::memory_image(const Model& model, const Settings& settings) {
   std::vector<std::uint8_t> image(hal::doubles::Memory::kSize, 0xFF);
   if (settings != Settings::factory(model)) {
@@ -196,7 +192,7 @@ bool SimulatedModule::pending() const {
           (mcu_->silence_timer.next() != kNever || mcu_->line.sending() || !mcu_->device.module().at_rest()));
 }
 
-/// Passes the mode of the receiver and the time of the next `run` to the wires.
+/// Tells the wires the receiver's mode and the time of the next `run`.
 void SimulatedModule::settle() {
   if (mode() != listens_in_) {
     listens_in_ = mode();
@@ -326,7 +322,7 @@ void SimulatedModule::catch_up(const Heard& missed) {
   wait();
 }
 
-/// Runs the interrupt of the silence timer before the receive interrupt, see hal/one_shot_timer.hpp.
+/// The silence timer's interrupt comes before the receive interrupt, see hal/one_shot_timer.hpp.
 void SimulatedModule::receive_after_silence(std::uint8_t byte, ByteStatus status) {
   end_silence();
   receive(byte, status);
@@ -337,7 +333,7 @@ void SimulatedModule::work() {
   settle();
 }
 
-/// Runs the main loop until it has no work, unless `hang` has stopped the main loop. Takes no virtual time.
+/// Runs the main loop until it has no work, in no virtual time; not while it hangs.
 void SimulatedModule::turn() {
   if (hangs_until_ != VirtualTime(0)) {
     return;

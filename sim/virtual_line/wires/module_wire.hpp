@@ -1,4 +1,4 @@
-// Passes a module's replies to the wires, and simulates lost, late and changed replies and a wrong baud rate.
+// Between a module's UART and the wires: lost, late and changed replies, and a wrong baud rate.
 #pragma once
 
 #include <cstddef>
@@ -29,42 +29,37 @@ struct Reply {
   std::size_t delayed_by = 0;  ///< number of the fault that makes the reply late, from 1; 0: none
 };
 
-/// Passes on the bytes that a UART sends. Without a fault, the bytes and their times are unchanged.
+/// Without a fault, the bytes and their times are unchanged.
 class ModuleWire final : public Wire {
  public:
   ModuleWire(const VirtualClock& clock, WireEnd& wire) : clock_(clock), wire_(wire) {}
 
-  /// Called before the UART enables the driver. The function may change the reply, but must not reset the
-  /// module or switch off its power.
+  /// Before the UART enables its driver. May change the reply, but not reset the module or cut its supply.
   using Begins = std::function<void(Reply& reply)>;
-  /// Called when the UART disables the driver, even if the reply is lost or is not on the wires yet.
+  /// When the UART disables its driver, even if the reply is lost or is not on the wires yet.
   using Ends = std::function<void()>;
   void watch(Begins begins, Ends ends) {
     begins_ = std::move(begins);
     ends_ = std::move(ends);
   }
-  /// Makes the UART run at `baud` regardless of the firmware's setting; 0: the firmware's setting applies.
+  /// Overrides the firmware's rate; 0: no longer.
   void force_rate(std::uint32_t baud) { forced_ = baud; }
-  /// Returns `mode`, with the forced rate if there is one and the UART is on.
+  /// `mode` at the forced rate, if there is one and the UART is on.
   [[nodiscard]] SerialMode forced(SerialMode mode) const { return with_rate(forced_, mode); }
 
-  /// Returns whether a late reply is on the wires. The UART may already have sent it completely.
+  /// A late reply is on the wires; the UART may be done with it.
   [[nodiscard]] bool sends_late() const { return driving_late_; }
   [[nodiscard]] VirtualTime next() const { return late_.empty() ? kNever : late_.front().when; }
   void run();
-  /// Ends the delay of each waiting reply that `fault` (Reply::delayed_by) makes late. If the previous reply
-  /// also waits, the time between the two replies becomes the same as at the UART. If the previous reply does
-  /// not wait, the reply begins now or, if a late reply is on the wires, at the end of that late reply. A
-  /// reply that has begun on the wires keeps its delay.
+  /// Ends the delay of each waiting reply that `fault` (Reply::delayed_by) makes late. Behind another waiting
+  /// reply, it keeps the UART's distance; else it begins now, or after the late reply on the wires. A reply
+  /// that has begun on the wires keeps its delay.
   void end_delays(std::size_t fault);
-  /// Drops all bytes that are not on the wires yet, and disables the driver if a late reply is on the wires.
-  /// Call this when the module loses its supply or is reset.
+  /// At a reset or loss of supply: drops what is not on the wires yet; a late reply's driver goes off.
   void abort();
 
-  /// See Station::next_byte.
   std::optional<Character> next_byte();
 
-  // --- Wire ---
   Bytes replaced(Bytes bytes) override;
   void drive(bool on) override;
   void put(Bytes bytes, SerialMode mode) override;
@@ -84,8 +79,7 @@ class ModuleWire final : public Wire {
     std::size_t delayed_by;
   };
 
-  /// A reply is lost if `late_` has more entries than this when the reply begins, so that endless requests
-  /// cannot fill the computer's memory.
+  /// With more entries in `late_`, a new reply is lost: endless requests must not fill the memory.
   static constexpr std::size_t kMostLate = 65'536;
 
   void hand_on(What what, std::vector<std::uint8_t> bytes, SerialMode mode);
@@ -102,8 +96,7 @@ class ModuleWire final : public Wire {
   Begins begins_;
   Ends ends_;
   Reply reply_;  ///< the reply that the UART sends, if `begins_` is not null
-  /// The delay of the reply that the UART sends. May differ from `reply_.late_by`: the delay is longer if the
-  /// reply must wait for the end of a late one, and `end_delays` may shorten it.
+  /// Of the reply at the UART: longer than its `late_by` behind a late reply; `end_delays` may shorten it.
   VirtualTime delay_{0};
   std::uint32_t forced_ = 0;
   std::uint32_t forced_for_reply_ = 0;  ///< the forced rate for the whole reply

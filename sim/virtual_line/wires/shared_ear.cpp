@@ -61,8 +61,7 @@ void SharedEar::dissolve() {
   }
 }
 
-/// Returns whether the byte changes the state of a DCON receiver. The others need not be kept: between two
-/// frames those that do not begin one, and in a frame those after the longest one.
+/// A DCON receiver ignores bytes between frames that begin none, and those past the longest frame.
 bool SharedEar::matters(std::uint8_t byte) const {
   return heard_.frame.empty() ? kDconLeads.find(static_cast<char>(byte)) != std::string_view::npos
                               : heard_.frame.size() < kLongestDconFrame + 2U;
@@ -107,13 +106,12 @@ void SharedEar::end_silence() {
   }
 }
 
-/// The address as it stands in a frame.
+/// As it stands in a frame.
 std::uint32_t SharedEar::name_of(std::uint8_t address) const {
   return modbus() ? address : hex_digits(address);
 }
 
-/// Returns, in ascending order, at least the members for which the verdict on the frame may differ from that
-/// of the ear, or has an effect besides being counted.
+/// In ascending order, at least the members whose verdict may differ from the ear's, or does more than count.
 std::vector<std::size_t> SharedEar::concerned_by(Verdict verdict) const {
   std::vector<std::size_t> concerned;
   if (verdict == Verdict::Accepted || verdict == Verdict::HostOk || verdict == Verdict::NoRoom) {
@@ -122,8 +120,7 @@ std::vector<std::size_t> SharedEar::concerned_by(Verdict verdict) const {
     }
   } else if (verdict == Verdict::Foreign && heard_.frame.size() > 2) {
     const auto& frame = heard_.frame;
-    // Modbus: a byte 00 may be of the turn-around, and a silence may follow it. DCON: the address is after
-    // the delimiter.
+    // Modbus: a 00 may be of the turn-around, and a silence may follow it. DCON: after the delimiter.
     const auto second = std::find_if(frame.begin() + 1, frame.end(),
                                      [](std::uint16_t each) { return each != Heard::kSilence; });
     const std::uint32_t name = !modbus()       ? frame[1] | unsigned{frame[2]} << 8U
@@ -139,7 +136,7 @@ std::vector<std::size_t> SharedEar::concerned_by(Verdict verdict) const {
   return concerned;
 }
 
-/// Ends the frame. Members that it concerns leave first.
+/// Members that the frame concerns leave first.
 void SharedEar::judge(Verdict verdict) {
   for (const std::size_t station : concerned_by(verdict)) {
     leave_(station);

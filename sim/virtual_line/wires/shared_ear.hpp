@@ -22,7 +22,7 @@ using hal::doubles::kNever;
 using hal::doubles::VirtualClock;
 using hal::doubles::VirtualTime;
 
-/// How a module makes frames of bytes. Modules for which all but the address is equal can share an ear.
+/// How a module makes frames of bytes. Modules that differ only in the address can share an ear.
 struct Hearing {
   Protocol protocol = Protocol::Ascii;
   bool checksum = false;
@@ -31,9 +31,9 @@ struct Hearing {
   LineTiming timing;  ///< depends on `baud_code`
 };
 
-/// What has happened at an ear while a module shared it.
+/// What a member has missed.
 struct Heard {
-  /// The bytes of the frame that is not over, and kSilence for each time that its silence timer has expired.
+  /// In `frame`, which holds the bytes of the open frame: here its silence timer has expired.
   static constexpr std::uint16_t kSilence = 0x100;
 
   using Verdicts = std::array<std::uint32_t, static_cast<std::size_t>(Verdict::Overrun) + 1>;
@@ -44,31 +44,28 @@ struct Heard {
 };
 
 /// Assembles frames with the firmware's own assemblers, for members that differ only in their address. A
-/// frame that concerns no member is only counted: the members would be in the same state as the ear after it.
-/// Before any other frame is judged, the members that it concerns leave, catch up with what they have missed,
-/// and hear the end of the frame themselves.
+/// frame that concerns none is only counted: it would leave them in the ear's state. Before any other frame
+/// is judged, those it concerns leave, catch up, and hear its end themselves.
 class SharedEar {
  public:
-  /// Called for a member that a frame concerns; must call `remove`.
+  /// For a member that a frame concerns, and from `dissolve`; must call `remove`.
   using Leave = std::function<void(std::size_t station)>;
 
   SharedEar(const VirtualClock& clock, const Hearing& hearing, Leave leave);
 
   [[nodiscard]] bool hears_like(const Hearing& hearing) const;
-  /// Returns whether no frame is open, so that a station can become a member.
+  /// No frame is open, so that a station can join.
   [[nodiscard]] bool at_rest() const { return heard_.frame.empty() && heard_.silence_ends == kNever; }
-  /// Adds a station between two frames.
+  /// Only while `at_rest`.
   void add(std::size_t station, std::uint8_t address);
-  /// Removes a member, and returns what it has missed.
   Heard remove(std::size_t station);
   [[nodiscard]] std::size_t members() const { return members_.size(); }
-  /// Calls `leave` for each member.
   void dissolve();
 
-  /// Hears a byte without an error. A station that has left during this call must hear the byte itself.
+  /// A byte without an error. A station that leaves during the call must hear it itself.
   void hear(std::uint8_t byte);
   [[nodiscard]] VirtualTime silence_ends() const { return heard_.silence_ends; }
-  /// Call this at `silence_ends`.
+  /// At `silence_ends`.
   void end_silence();
 
  private:

@@ -10,13 +10,12 @@ namespace {
 
 constexpr std::int64_t kSecond = 1'000'000'000;
 
-/// Returns the level of the line, which is 0 if the level of at least one wave is 0.
+/// 0 while at least one wave is 0.
 bool level_of(const Waves& waves, VirtualTime at) {
   return std::all_of(waves.begin(), waves.end(), [at](const Wave& wave) { return wave.level(at); });
 }
 
-/// Returns the first time t with `from` <= t < `until` at which the line has `level`; nullopt if there is no
-/// such time. `from` must be before `until`.
+/// The first time from `from` to before `until` at which the line has `level`; `from` < `until`.
 std::optional<VirtualTime> find_level(const Waves& waves, bool level, VirtualTime from, VirtualTime until) {
   std::vector<VirtualTime> boundaries{from};
   for (const Wave& wave : waves) {

@@ -1,5 +1,4 @@
-// A UART receiver that samples the levels on the wires. Wires uses it for a station that cannot get a byte
-// unchanged, for example because the sender has another rate.
+// A UART that samples the wires, for a station that cannot get a byte whole, for example at another rate.
 #pragma once
 
 #include <cstdint>
@@ -16,17 +15,15 @@ namespace ex9000::sim {
 using hal::SerialMode;
 using hal::doubles::VirtualTime;
 
-/// The levels of a byte on the wires, from bit 0 on: start bit, 8 data bits with the lowest first, parity bit
-/// if the format has one, first stop bit. A second stop bit is idle time for all receivers.
+/// From bit 0: start bit, 8 data bits (lowest first), parity if any, first stop bit. A second one is idle.
 using Levels = std::uint16_t;
 constexpr Levels kIdleLevels = 0x7FF;
 
-/// Returns the format as receivers read it: they ignore a second stop bit.
+/// As receivers read it: they ignore a second stop bit.
 constexpr LineFormat as_received(LineFormat format) {
   return format == LineFormat::k8N2 ? LineFormat::k8N1 : format;
 }
 
-/// Returns whether stations in these modes get each other's bytes unchanged.
 constexpr bool hear_each_other(SerialMode a, SerialMode b) {
   return a.baud == b.baud && as_received(a.format) == as_received(b.format);
 }
@@ -39,10 +36,9 @@ constexpr bool has_odd_number_of_ones(std::uint8_t byte) {
   return odd;
 }
 
-/// The mask of the parity bit in Levels, if the format has a parity bit.
+/// Masks in Levels; not every format has parity.
 constexpr unsigned kParityBit = 1U << 9U;
 
-/// Returns the mask of the first stop bit in Levels.
 constexpr unsigned stop_bit(LineFormat format) { return 1U << (bits_received(format) - 1U); }
 
 constexpr Levels levels_of(std::uint8_t byte, LineFormat format = LineFormat::k8N1) {
@@ -50,16 +46,14 @@ constexpr Levels levels_of(std::uint8_t byte, LineFormat format = LineFormat::k8
   return static_cast<Levels>(stop_bit(format) | (parity ? kParityBit : 0U) | unsigned{byte} << 1U);
 }
 
-/// Returns `levels` with the parity bit inverted. Levels without a parity bit stay the same.
+/// No effect without a parity bit.
 constexpr Levels with_wrong_parity(Levels levels, LineFormat format) {
   return static_cast<Levels>(has_parity(format) ? levels ^ kParityBit : levels);
 }
 
-/// Returns the data bits in `levels`.
 constexpr std::uint8_t byte_of(Levels levels) { return static_cast<std::uint8_t>(levels >> 1U); }
 
-/// Returns what a UART reports for a character that has a start bit: Break if all bits are 0, FramingError if
-/// the first stop bit is missing, ParityError if the parity is wrong, otherwise Good.
+/// What a UART reports for a character that has a start bit.
 constexpr ByteStatus status_of(Levels levels, LineFormat format) {
   if ((levels & stop_bit(format)) == 0) {
     return levels == 0 ? ByteStatus::Break : ByteStatus::FramingError;
@@ -68,42 +62,39 @@ constexpr ByteStatus status_of(Levels levels, LineFormat format) {
   return right ? ByteStatus::Good : ByteStatus::ParityError;
 }
 
-/// A byte that a station sends: its value, its times, and its levels on the wires, which a disturbance may
-/// have changed.
+/// A byte on the wires. A disturbance may have changed its levels.
 struct Wave {
   /// `its_mode`: the bit rate on the wires, not 0, and the format as receivers read it.
   Wave(VirtualTime its_start, SerialMode its_mode, Levels its_levels)
       : start(its_start), mode(its_mode), levels(its_levels), end(boundary(bits())) {}
 
   [[nodiscard]] unsigned bits() const { return bits_received(mode.format); }
-  /// Returns the time at which bit `index` begins, or the end of the first stop bit if `index` is `bits()`.
+  /// When the bit begins; for `bits()`, the end of the first stop bit.
   [[nodiscard]] VirtualTime boundary(unsigned index) const;
-  /// Returns the level at the time `at`. true: the idle level, which is also the level of a 1. The level is
-  /// idle before the byte, after its first stop bit, and from `cut_off` on.
+  /// true: 1 or idle. Idle before the byte, after its first stop bit, and from `cut_off` on.
   [[nodiscard]] bool level(VirtualTime at) const;
 
   VirtualTime start;
   SerialMode mode;
   Levels levels;
   VirtualTime end;  ///< the end of the first stop bit
-  /// Time at which the driver was disabled during the byte; kNever: the driver was not disabled.
+  /// When the driver was disabled during the byte; kNever: it was not.
   VirtualTime cut_off = hal::doubles::kNever;
   std::size_t station = 0;
   SerialMode nominal;  ///< the nominal rate and the format in which the station sends
   std::uint8_t byte = 0;
   bool disturbed = false;  ///< the levels differ from those of `byte`
-  /// At least two drivers were enabled, another byte was on the wires, or the byte was cut off.
+  /// Another driver or byte was there too, or the byte was cut off.
   bool collided = false;
   bool over = false;  ///< the byte has ended; samplers may still read it
 
-  /// Returns whether the byte arrives unchanged at a receiver that has the same mode and has listened since
-  /// the start of the byte.
+  /// At a receiver in the same mode that has listened since the byte's start.
   [[nodiscard]] bool arrives_whole() const { return !collided && !disturbed; }
 };
 
 using Waves = std::vector<Wave>;
 
-/// Samples characters: waits for the level 0, then reads the middle of each bit.
+/// Waits for the level 0, then samples the middle of each bit.
 class UartSampler {
  public:
   struct Received {
@@ -111,18 +102,15 @@ class UartSampler {
     ByteStatus status;
   };
 
-  /// Samples the wires up to `until`, or up to the end of the next byte. Returns this byte if its first stop
-  /// bit ends at `until` or earlier, otherwise nullopt. If the result is a byte, the caller must call this
-  /// function again with the same `until`. `mode` has the bit rate on the wires, and must be the same in all
-  /// calls.
+  /// Samples up to `until`, or to the end of the next byte, which it returns if its first stop bit is over by
+  /// then; after a byte, call it again with the same `until`. `mode`: on the wires, the same in all calls.
   std::optional<Received> advance(const Waves& waves, SerialMode mode, VirtualTime until);
 
-  /// Returns whether the sampler is in the middle of a byte or waits for the line to become idle.
+  /// In the middle of a byte, or waiting for the line to become idle.
   [[nodiscard]] bool busy() const { return receiving_ || waits_for_idle_ || complete_; }
-  /// Returns when `advance` must be called again after a call with `now`: at the end of a byte whose first
-  /// stop bit has been sampled, otherwise half a bit after `now`.
+  /// The next call of `advance`: at the end of a byte whose stop bit is sampled, else in half a bit.
   [[nodiscard]] VirtualTime next(SerialMode mode, VirtualTime now) const;
-  /// Returns the time up to which the sampler has processed the wires.
+  /// The wires are processed up to here.
   [[nodiscard]] VirtualTime position() const { return position_; }
   void skip_to(VirtualTime position) { position_ = position; }
 

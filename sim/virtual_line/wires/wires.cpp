@@ -24,8 +24,7 @@ struct Wires::End final : WireEnd {
   Wires& wires;
   std::size_t index;
   bool driving = false;
-  /// When the next byte of `send` begins: `begun` bytes of `its_mode` after `since`, so that rounding errors
-  /// do not add up.
+  /// `begun` bytes of `its_mode` after `since`, so that rounding errors do not add up.
   VirtualTime next_start = kNever;
   VirtualTime since{0};
   std::size_t begun = 0;
@@ -37,16 +36,13 @@ Wires::Wires(VirtualClock& clock, std::uint32_t times_faster, std::size_t fewest
 
 Wires::~Wires() = default;
 
-/// Returns the bit rate in virtual time: `baud` multiplied by `times_faster_`, at most 500 Mbit/s. At
-/// this limit half a bit lasts 1 ns; a sampler makes no progress if half a bit is shorter. No module reaches
-/// this limit.
+/// At most 500 Mbit/s: with half a bit below 1 ns, a sampler makes no progress. No module gets there.
 std::uint32_t Wires::bit_rate(std::uint32_t baud) const {
   constexpr std::uint64_t kFastest = 500'000'000;
   return static_cast<std::uint32_t>(std::min(std::uint64_t{baud} * times_faster_, kFastest));
 }
 
-/// Returns the bit rate in virtual time and the format as receivers read it. A receiver gets a byte without
-/// sampling only if the result is the same for the mode of the sender and for the mode of the receiver.
+/// A receiver gets a byte without sampling only if this is equal for it and for the sender.
 SerialMode Wires::on_the_wires(SerialMode mode) const {
   return {bit_rate(mode.baud), as_received(mode.format)};
 }
@@ -95,7 +91,7 @@ void Wires::drive(End& end, bool on) {
   for (Wave& wave : waves_) {
     wave.collided = wave.collided || drivers_on_ > 1;
     if (!on && wave.station == end.index && wave.cut_off == kNever && wave.end > now) {
-      // The sender leaves the line idle for the rest of the byte, and the receivers sample the result.
+      // The sender leaves the rest of the byte idle, and the receivers sample the result.
       wave.collided = true;
       wave.cut_off = now;
     }
@@ -126,8 +122,8 @@ void Wires::note_starts() {
   }
 }
 
-/// Begins the bytes that are due. A byte that nothing can disturb arrives at once, with the clock at its end:
-/// no other byte is on the wires, all stations hear it, and nothing else happens before it ends.
+/// A byte that nothing can disturb arrives at once, with the clock at its end: no other byte is on the wires,
+/// all stations hear it, and nothing else happens before it ends.
 void Wires::start_bytes(VirtualTime until) {
   while (next_start_ <= clock_.virtual_now()) {
     std::size_t first = 0;
@@ -159,7 +155,6 @@ void Wires::start_bytes(VirtualTime until) {
   }
 }
 
-/// Returns a byte that begins now.
 Wave Wires::wave_of(const End& end, const Character& sent) {
   const auto [byte, mode, wrong_parity] = sent;
   const Levels right = levels_of(byte, mode.format);
@@ -221,8 +216,7 @@ bool Wires::has_other_listeners(SerialMode mode) const {
          (listeners_.size() == 1 && listeners_.begin()->first != std::pair(mode.baud, mode.format));
 }
 
-/// Returns whether the receiver has the mode of the byte, has listened since the start of the byte, and has
-/// sampled no part of it.
+/// Also false in another mode, or if the receiver has sampled a part of the byte.
 bool Wires::has_heard_from_the_start(const Receiver& receiver, const Wave& wave) {
   return wave.mode == receiver.mode && receiver.sampler.position() <= wave.start;
 }
@@ -235,7 +229,7 @@ bool Wires::has_to_sample(const Receiver& receiver) const {
          (receiver.sampler.busy() || !std::all_of(waves_.begin(), waves_.end(), gets_whole));
 }
 
-/// Starts the sampler of each receiver that cannot get every byte on the wires unchanged.
+/// For receivers that cannot get every byte on the wires unchanged.
 void Wires::begin_sampling() {
   const auto first = std::find_if(waves_.begin(), waves_.end(), [](const Wave& wave) { return !wave.over; });
   if (first == waves_.end()) {
@@ -249,9 +243,8 @@ void Wires::begin_sampling() {
   for (Receiver& receiver : receivers_) {
     if (receiver.group == nullptr && !receiver.samples && has_to_sample(receiver)) {
       receiver.samples = true;
-      // The sampler begins at the start of the first byte that has not ended, or at its own position if that
-      // is later. It does not have to sample older bytes: the receiver got them unchanged, has sampled them
-      // already, or did not listen.
+      // From the first byte that has not ended, or from its own position if later: the receiver got older
+      // bytes unchanged, has sampled them, or did not listen.
       receiver.sampler.skip_to(std::max(receiver.sampler.position(), first->start));
       next_sample_ = std::min(next_sample_, receiver.sampler.next(receiver.mode, clock_.virtual_now()));
     }
@@ -291,7 +284,7 @@ void Wires::run_samplers() {
   }
 }
 
-/// Marks the bytes that have ended, and delivers those that were not cut off.
+/// Delivers the bytes that have ended, unless they were cut off.
 void Wires::finish_bytes() {
   const VirtualTime now = clock_.virtual_now();
   next_byte_end_ = kNever;
@@ -348,7 +341,7 @@ void Wires::deliver(const Wave& over) {
   }
 }
 
-/// Lets stations share an ear from `first` on, the first byte after a gap.
+/// From `first` on, the first byte after a gap.
 void Wires::share(const Wave& first) {
   for (const std::size_t station : alone_) {
     Receiver& receiver = receivers_[station];
@@ -374,7 +367,7 @@ void Wires::share(const Wave& first) {
   }
 }
 
-/// Returns the group of stations that hear like `receiver`, which may have no members yet.
+/// It may have no members yet.
 Wires::Group& Wires::group_for(const Hearing& hearing, const Receiver& receiver) {
   for (const auto& group : groups_) {
     if (group->receiver.mode == receiver.mode && group->ear.hears_like(hearing)) {
@@ -423,7 +416,6 @@ void Wires::note_silences() {
   }
 }
 
-/// Removes the bytes that have ended and that no sampler has to read.
 void Wires::forget_waves() {
   if (next_sample_ == kNever && !carries()) {
     waves_.clear();

@@ -21,72 +21,59 @@ namespace ex9000::sim {
 using hal::SerialMode;
 using hal::doubles::VirtualClock;
 
-/// A byte that a station sends.
 struct Character {
   std::uint8_t byte;
   SerialMode mode;
   bool wrong_parity = false;  ///< if the format has a parity bit
 };
 
-/// A user of the wires. Some stations are devices on the two wires, for example a module or a master. Other
-/// stations do not send or receive; Wires only calls their `run`.
+/// A device on the wires, for example a module, or one that only wants its `run` called.
 class Station {
  public:
-  /// Wires calls this at the time that the station has set with WireEnd::run_at. Before the call, Wires
-  /// clears that time.
+  /// At the time that WireEnd::run_at has set, which is cleared first.
   virtual void run() = 0;
-  /// Wires calls this for each byte of WireEnd::send, at the start of the byte, and at the end of the last
-  /// one, when the result must be empty.
+  /// For WireEnd::send: at the start of each byte, and at the end of the last, when it must be empty.
   virtual std::optional<Character> next_byte() { return std::nullopt; }
-  /// Wires calls this after the first stop bit of a byte, if the station listens; `status` says whether the
-  /// byte has an error. A station also receives its own bytes, because both directions share the two wires.
+  /// After the first stop bit, if the station listens. Also its own bytes: both directions share the wires.
   virtual void receive(std::uint8_t /*byte*/, ByteStatus /*status*/) {}
-  /// Returns how the station hears, if it can share an ear now, because it is at rest between two frames.
+  /// How the station hears, if it can share an ear now: it rests between two frames.
   [[nodiscard]] virtual std::optional<Hearing> hearing() const { return std::nullopt; }
-  /// The station has shared an ear until now: brings it into the state in which it would be without that.
+  /// Ends sharing an ear: brings the station into the state that it would have without that.
   virtual void catch_up(const Heard& /*missed*/) {}
 
  protected:
   ~Station() = default;
 };
 
-/// A station's end of the wires.
 class WireEnd {
  public:
-  /// Enables or disables the station's driver. Disabling it ends `send` and cuts off the byte on the wires.
+  /// Disabling the driver ends `send` and cuts off the byte on the wires.
   virtual void drive(bool on) = 0;
-  /// Begins to send the bytes of Station::next_byte without gaps; the first start bit begins now.
+  /// Sends the bytes of Station::next_byte without gaps, from now on.
   virtual void send() = 0;
   /// Sends one byte from now on.
   virtual void put(Character sent) = 0;
-  /// Returns how long `bytes` bytes take if there is no gap between them.
+  /// Without gaps.
   [[nodiscard]] virtual VirtualTime takes(std::size_t bytes, SerialMode mode) const = 0;
-  /// Makes the station receive in this mode from now on; a rate of 0: the station does not listen. A receiver
-  /// that begins in the middle of a byte samples the rest of it.
+  /// A rate of 0: not at all. Inside a byte, the receiver samples the rest of it.
   virtual void listen(SerialMode mode) = 0;
-  /// Sets the time of the station's next `run`, in place of an earlier setting; kNever: Wires does not call
-  /// `run`.
+  /// Replaces the time of the next `run`; kNever: none.
   virtual void run_at(VirtualTime when) = 0;
-  /// Ends the sharing of an ear. Call this before the station changes in a way that concerns its hearing.
+  /// Ends sharing an ear. Before any change that concerns the station's hearing.
   virtual void hear_alone() = 0;
 
  protected:
   ~WireEnd() = default;
 };
 
-/// Wires notifies observers of events on the wires.
 class WireObserver {
  public:
-  /// Called after the driver of `station` is enabled or disabled. `station` counts from 0 in the order of
-  /// attachment.
+  /// `station` counts from 0 in the order of attachment.
   virtual void driver(std::size_t /*station*/, bool /*on*/, VirtualTime /*now*/) {}
-  /// Called when `station` begins to send a byte and receivers get the levels `arrives` instead of the
-  /// correct levels of the byte: the byte has wrong parity, or the disturbance has changed it.
+  /// A byte begins and receivers get `arrives`, not its correct levels: wrong parity, or a disturbance.
   virtual void changed(std::size_t /*station*/, Levels /*arrives*/) {}
-  /// Called at the end of the first stop bit of a byte that began at `start` and whose last stop bit ends at
-  /// `end`. Not called if the driver of `station` was disabled before the end of this stop bit. `byte` is the
-  /// byte that was sent. `collided`: during this byte, at least two drivers were enabled, or another byte was
-  /// on the wires.
+  /// At the end of the first stop bit, unless the driver was disabled before; `end` is that of the last stop
+  /// bit. `byte`: as sent. `collided`: another driver was enabled or another byte on the wires.
   virtual void byte(std::size_t station, std::uint8_t byte, SerialMode mode, bool collided, VirtualTime start,
                     VirtualTime end) = 0;
 
@@ -94,7 +81,7 @@ class WireObserver {
   ~WireObserver() = default;
 };
 
-/// Changes the bytes that the receivers get, as noise does.
+/// Changes what receivers get, as noise does.
 class Disturbance {
  public:
   struct Sent {
@@ -103,63 +90,52 @@ class Disturbance {
     VirtualTime ends;  ///< the end of the first stop bit
     bool contended;    ///< at least two drivers are enabled
   };
-  /// Returns the levels that all receivers get instead of those of `sent`.
+  /// The levels that all receivers get.
   virtual Levels disturbed(const Sent& sent) = 0;
 
  protected:
   ~Disturbance() = default;
 };
 
-/// A half-duplex line. A byte lasts ten or eleven bit times at the rate of its sender. A receiver with the
-/// same rate and parity gets the byte unchanged after its first stop bit, if the byte has its correct levels
-/// and does not collide. Otherwise the receiver samples the levels on the wires in its own mode, and may get
-/// framing errors, parity errors, breaks or wrong bytes. If several stations send at the same time, the level
-/// of the line is 0 while at least one of them sends a 0.
+/// A half-duplex line. A byte lasts ten or eleven bit times of its sender. A receiver with the same rate and
+/// parity gets it unchanged after its first stop bit, if it has its correct levels and does not collide. Else
+/// the receiver samples the wires in its own mode, and may get framing errors, parity errors, breaks or wrong
+/// bytes. The line is 0 while at least one sender sends a 0.
 ///
-/// `times_faster` multiplies all nominal rates of the line, up to 500 Mbit/s on the wires. Below this limit,
-/// the factor does not change which stations understand each other.
+/// `times_faster` multiplies all nominal rates, up to 500 Mbit/s on the wires; below that, it does not change
+/// which stations understand each other.
 class Wires {
  public:
-  /// An ear for fewer than these costs more than it saves.
+  /// An ear for fewer costs more than it saves.
   static constexpr std::size_t kFewestToShare = 3;
 
-  /// `fewest_to_share`: at least this number of stations share an ear; the number makes no difference that
-  /// stations or observers can notice.
+  /// At least `fewest_to_share` stations share an ear. Neither stations nor observers can notice the number.
   explicit Wires(VirtualClock& clock, std::uint32_t times_faster = 1,
                  std::size_t fewest_to_share = kFewestToShare);
   Wires(const Wires&) = delete;
   Wires& operator=(const Wires&) = delete;
   ~Wires();
 
-  /// Adds a station, which does not listen yet. `station` must live as long as Wires is used. The returned
-  /// end of the wires is valid until Wires is destroyed.
+  /// It does not listen yet. Whatever is attached, observes or disturbs must live as long as Wires is used.
   WireEnd& attach(Station& station);
-  /// Adds an observer. `observer` must live as long as Wires is used.
   void observe(WireObserver& observer) { observers_.push_back(&observer); }
-  /// Lets `disturbance` change the bytes that are sent from now on, in place of an earlier disturbance.
-  /// `disturbance` must live as long as Wires is used.
+  /// Replaces the earlier one, for bytes sent from now on.
   void disturb(Disturbance& disturbance) { disturbance_ = &disturbance; }
 
-  /// Returns the time of the next event of Wires or of a station; kNever if there is none.
+  /// kNever: no event.
   [[nodiscard]] VirtualTime next() const {
     return std::min(std::min(next_wire_event(), next_start_), std::min(next_silence_, due_times_.next()));
   }
-  /// Sets the clock to the time `next`, unless the clock is already later. Then processes all events that are
-  /// due, and further bytes that end not after `until` and before all other events. `next` must not be
-  /// kNever.
+  /// Moves the clock to `next`, never back; processes what is due then, and bytes that end by `until` and
+  /// before all other events. `next` must not be kNever.
   void run_next(VirtualTime until = kNever);
-  /// Processes all events up to and including the time `until`. Then sets the clock to `until`, unless the
-  /// clock is already later.
+  /// Processes all events up to and including `until`, and moves the clock there, never back.
   void run_until(VirtualTime until);
   void run_for(VirtualTime duration) { run_until(clock_.virtual_now() + duration); }
 
-  /// Returns whether at least one byte is on the wires.
   [[nodiscard]] bool carries() const { return carried_ != 0; }
-  /// Returns whether a byte is on the wires or a driver is enabled.
   [[nodiscard]] bool busy() const { return carries() || drivers_on_ != 0; }
-  /// Returns whether a shared ear waits for the end of a silence.
   [[nodiscard]] bool waits_for_silence() const { return next_silence_ != kNever; }
-  /// Returns whether all stations that listen have the rate and the parity of `mode`.
   [[nodiscard]] bool all_hear(SerialMode mode) const { return !has_other_listeners(on_the_wires(mode)); }
   VirtualClock& clock() { return clock_; }
 
@@ -167,7 +143,6 @@ class Wires {
   struct End;
   struct Group;
 
-  /// The receiver of a station.
   struct Receiver {
     Station* station = nullptr;
     SerialMode mode = {};  ///< on the wires; a rate of 0: the station does not listen
@@ -176,7 +151,7 @@ class Wires {
     Group* group = nullptr;  ///< whose ear hears for the station; null: the station hears alone
   };
 
-  /// Stations that share an ear, because they have heard the same since they began to listen.
+  /// They have heard the same since they began to listen.
   struct Group {
     Group(const VirtualClock& clock, const Hearing& hearing, SharedEar::Leave leave)
         : ear(clock, hearing, std::move(leave)) {}

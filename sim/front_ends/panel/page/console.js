@@ -5,14 +5,13 @@ import {hexByte, make} from "/element.js";
 const mostReplies = 50;
 const intervals = [["200", "0.2 s"], ["1000", "1 s"], ["5000", "5 s"]];
 const everyModule = "all";
-/// The maximum number of bits, and the maximum number of registers, that one request can read.
+/// The most bits, and the most registers, that one request can read.
 const mostBits = 2000;
 const mostWords = 125;
 
 let models = null;
 
-/// Resolves to a map from the name of each model to its description, as `ex9000-sim describe --format json` prints it.
-/// If the request fails, resolves to an empty map.
+/// A map from the name of each model to its description (`describe --format json`); empty if the request fails.
 function described() {
   models ??= fetch("/models.json").then((response) => response.json()).then((all) =>
     new Map(all.models.map((model) => [model.model, model]))).catch(() => {
@@ -25,7 +24,7 @@ function described() {
 const isDcon = (text) => /^[$#%@~]/.test(text);
 const hexWord = (value) => value.toString(16).toUpperCase().padStart(4, "0");
 
-/// Returns {label, request} for each row of a model's register map and each function from 01 to 06 of this row.
+/// {label, request} for each row of a model's register map and each function from 01 to 06 of this row.
 function modbusItems(model) {
   return model.modbus_registers.flatMap(({first, last, functions, meaning}) => functions.flatMap((code) => {
     const span = first === last ? hexWord(first) : `${hexWord(first)}–${hexWord(last)}`;
@@ -37,7 +36,7 @@ function modbusItems(model) {
   }));
 }
 
-/// Returns {label, request} for each DCON command of a model. `address` replaces AA in the requests.
+/// {label, request} for each DCON command of a model. `address` replaces AA.
 function dconItems(model, address) {
   return model.dcon_commands.map(({command, meaning}) => ({
     label: `${command}: ${meaning}`,
@@ -46,9 +45,8 @@ function dconItems(model, address) {
 }
 
 export class Console {
-  /// `several`: whether there are several lines. `index`: the position of the line, from 0. `modules`: {position,
-  /// model} of each module on the line. `states`: the state of each module, by position. `ask(request)` sends a
-  /// request, see `send` in live.js.
+  /// `several`: there are several lines. `index`: of the line, from 0. `modules`: {position, model} of each. `states`:
+  /// theirs, by position. `ask(request)`: see `send` in live.js.
   constructor(line, {several, index}, modules, states, ask) {
     this.index = index;
     this.modules = modules;
@@ -73,8 +71,7 @@ export class Console {
       make("summary", {}, make("h3", {}, several ? line.name : "Send a request")), form, this.replies);
   }
 
-  /// Fills the lists when the user opens the console, because addresses and protocols can change before that. Stops
-  /// polling when the user closes the console.
+  /// Fills the lists now, because addresses and protocols can change before. Polling stops when the console is closed.
   open() {
     if (!this.element.open) {
       this.stop();
@@ -108,7 +105,7 @@ export class Console {
     }
   }
 
-  /// Returns the text to send. Adds a checksum to a DCON command if the chosen module expects a checksum.
+  /// With a checksum after a DCON command if the chosen module expects one.
   get request() {
     const text = this.text.value.trim();
     if (!isDcon(text) || this.module.value === everyModule || !this.plate?.checksum) {
@@ -138,8 +135,7 @@ export class Console {
     this.replies.scrollTop = this.replies.scrollHeight;
   }
 
-  /// While polling is switched on, sends the request after `delay` ms. After each reply or error, waits for the chosen
-  /// interval and sends the request again.
+  /// While polling is on, sends after `delay` ms, and again at the chosen interval after each reply or error.
   schedule(delay) {
     clearTimeout(this.timer);
     if (!this.poll.checked) {
@@ -151,7 +147,6 @@ export class Console {
     }, delay);
   }
 
-  /// Stops polling.
   stop() {
     this.poll.checked = false;
     this.schedule(0);

@@ -1,11 +1,9 @@
 // The values of a module: the present, power-on and safe value of each output, the settings, and the bytes of all
-// stored copies. The elements are created once and then only updated, so that the page keeps the scroll position and
-// the selected text.
+// stored copies. The elements are created once and only updated, to keep the scroll position and the selected text.
 
 import {bit, hexByte, make, setAttribute, setText} from "/element.js";
 
-/// Returns [name, textOf] of each row in the list of settings. `textOf(settings, plate, hostWatchdog)` returns the text
-/// of the row. `inputs` contains the label of each input.
+/// [name, textOf] of each row, with `textOf(settings, plate, hostWatchdog)`. `inputs`: the label of each input.
 function settingRows(inputs) {
   const listed = (labels) => labels.filter(Boolean).join(", ") || "none";
   const rowsOfInputs = [
@@ -48,7 +46,7 @@ export class Drawer {
         ...this.copies.map(({caption, bytes}) => make("div", {class: "copy"}, caption, bytes))));
   }
 
-  /// Shows the state. Does nothing while the drawer is closed, or before the plate and the stored copies have arrived.
+  /// Does nothing while the drawer is closed, or before the plate and the stored copies have arrived.
   draw() {
     const {plate, stored, hostWatchdog} = this.state;
     if (!this.element.open || !stored || !plate) {
@@ -84,7 +82,6 @@ export class Drawer {
   }
 }
 
-/// Returns where the shown settings come from.
 function originOfSettings(stored) {
   if (stored.current !== null) {
     return "Settings in EEPROM";

@@ -1,4 +1,4 @@
-// Functions that create and update elements, and that convert values. An update does nothing if the value is the same.
+// Creates and updates elements, and converts values. An update does nothing if the value is the same.
 
 export function make(tag, attributes = {}, ...children) {
   const element = document.createElement(tag);

@@ -4,9 +4,8 @@ import {make, setAttribute, setText} from "/element.js";
 import {Switch} from "/switch.js";
 
 export class Faults {
-  /// `several`: whether there are several lines. `unfolded`: whether the lists of several lines are open at
-  /// first. `usual`: the initial list of faults. `modules`: {position, model} of each module on the line.
-  /// `tell(command)` carries out a command and resolves to {ok, text}.
+  /// `several`: there are several lines. `unfolded`: their lists are open at first. `usual`: the faults in the list at
+  /// first. `modules`: {position, model} of each. `tell(command)` resolves to {ok, text}.
   constructor(line, {several, unfolded, usual}, modules, tell) {
     this.prefix = several ? `line ${line.name} ` : "";
     this.tell = tell;
@@ -40,8 +39,7 @@ export class Faults {
     }}, text, whose, make("button", {type: "submit"}, "Add"));
   }
 
-  /// Adds a fault to the list if it is not there yet, and returns its entry. The list keeps a fault that has ended, so
-  /// that the user can switch it on again.
+  /// Returns the entry of the fault, which stays after the fault has ended, so that the user can switch it on again.
   learn(text, module) {
     const shown = module === null ? text : `module ${module + 1}: ${text}`;
     if (!this.known.has(shown)) {
@@ -54,8 +52,7 @@ export class Faults {
     return this.known.get(shown);
   }
 
-  /// Switches a fault on or off. Actions run one after the other, because a fault has no number until it has been
-  /// switched on.
+  /// One after the other, because a fault has no number until it has been switched on.
   turn(text, module, on) {
     this.turned = this.turned.then(() => on ? this.begin(text, module) : this.end(this.learn(text, module).numbers));
     return this.turned;

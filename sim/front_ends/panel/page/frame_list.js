@@ -1,5 +1,4 @@
-// The list of frames and notes. Only the visible entries and some around them have a row, because there may be many
-// more entries than fit on the screen.
+// The list of frames and notes. Only the visible entries and some around them have a row: there may be many more.
 
 import {make, setAttribute, setText} from "/element.js";
 
@@ -8,7 +7,7 @@ const spareRows = 8;
 const seconds = (microseconds) => (microseconds / 1e6).toFixed(6);
 
 export class FrameList {
-  /// `rows` is the scrolling element. `filler` is an element inside it that is as high as all entries together.
+  /// `rows` scrolls. `filler` is an element inside it, as high as all entries together.
   constructor(rows, filler) {
     this.rows = rows;
     this.filler = filler;
@@ -35,8 +34,7 @@ export class FrameList {
     this.stale = true;
   }
 
-  /// Call this when `count` entries at the top were removed. Moves the scroll position, so that the visible entries
-  /// stay the same, unless the list follows the newest entry.
+  /// After `count` entries at the top were removed: the visible ones stay, unless the list follows the newest entry.
   dropped(count) {
     if (!this.follows && count) {
       this.rows.scrollTop -= count * this.height;
@@ -86,8 +84,7 @@ export class FrameList {
     return row;
   }
 
-  /// Puts the row at its position in the document, because screen readers and searches follow the order of the
-  /// document, not the order on the screen.
+  /// In the document, because screen readers and searches follow its order, not the order on the screen.
   place(row, position) {
     const there = this.filler.children[position];
     if (there !== row) {

@@ -1,5 +1,4 @@
-// An input of a module: its counter, its latches, and its LED. The LED is a button that switches, holds or pulses the
-// input.
+// An input of a module: its counter, its latches, and its LED, a button that switches, holds or pulses the input.
 
 import {make, setAttribute, setText, terminal} from "/element.js";
 import {Switch} from "/switch.js";
@@ -27,8 +26,7 @@ export class Input {
 
   command(on) { return `input ${this.channel} ${on ? "on" : "off"}`; }
 
-  /// Inverts the level until `release` is called. If the page disconnects before it calls `release`, the simulator
-  /// restores the level.
+  /// Inverts the level until `release`, or until the page disconnects: then the simulator restores it.
   press() {
     if (this.held === null) {
       this.held = this.level.on;
@@ -44,7 +42,7 @@ export class Input {
     }
   }
 
-  /// Call this when the connection is lost, because the simulator then releases a held input.
+  /// When the connection is lost, because the simulator then releases a held input.
   lost() { this.held = null; }
 
   listenToPointer(button) {
@@ -59,8 +57,8 @@ export class Input {
     for (const over of ["pointerup", "pointercancel", "lostpointercapture", "blur"]) {
       button.addEventListener(over, () => this.release());
     }
-    // A click without a pointer, for example from a screen reader, has a `detail` of 0. Such a click cannot hold the
-    // input, so it switches or pulses the input.
+    // A click without a pointer, as from a screen reader, has a `detail` of 0. It cannot hold, so it switches or
+    // pulses.
     const isPointers = (event) => event.detail > 0;
     button.addEventListener("click", (event) => {
       if (isPointers(event) && heldByPointer) {

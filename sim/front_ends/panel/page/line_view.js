@@ -2,14 +2,12 @@
 
 import {hexByte, make} from "/element.js";
 
-/// The largest number of modules for which the page opens lines by itself, because a browser needs seconds to create
-/// thousands of plates.
+/// With more modules, the page opens no lines by itself: a browser needs seconds to create thousands of plates.
 export const mostUnfolded = 64;
 
 export class LineView {
-  /// `modules`: {position, model} of each module. `count` selects the size of the plates: one, some or many. `open`:
-  /// whether the line is open at first. `states`: the state of each module, by position. `plateOf(position)` returns
-  /// the plate of a module. The first call for a module creates its plate.
+  /// `modules`: {position, model} of each. `count`: the size of the plates: one, some or many. `open`: at first.
+  /// `states`: of the modules, by position. `plateOf(position)` creates the plate at its first call.
   constructor(line, modules, count, open, states, plateOf) {
     this.line = line;
     this.modules = modules;
@@ -23,15 +21,15 @@ export class LineView {
     this.show(modules, open);
   }
 
-  /// Shows the plates of the found modules if the line is open. A plate is created when it is shown for the first time.
+  /// If the line is open. A plate is created when it is shown for the first time.
   fill() {
     if (this.element.open) {
       this.plates.replaceChildren(...this.found.map(({position}) => this.plateOf(position).element));
     }
   }
 
-  /// Returns the modules that match all of `words`, which must be in lower case. A word matches a module if it is part
-  /// of the line's name, or of the module's number, model, address or name.
+  /// The modules that match all of `words`, in lower case. A word may be part of the line's name, or of a module's
+  /// number, model, address or name.
   matches(words) {
     const its = this.line.name.toLowerCase();
     const contains = (text) => words.every((word) => text.includes(word));
@@ -44,7 +42,7 @@ export class LineView {
     return `${position + 1} ${model} ${address} ${stored?.settings.name ?? ""}`.toLowerCase();
   }
 
-  /// Shows only the plates of the modules in `found`, and hides the line if `found` is empty. Opens or folds the line.
+  /// Shows only the plates of `found`, and hides the line if that is empty.
   show(found, open) {
     this.found = found;
     this.element.hidden = !found.length;

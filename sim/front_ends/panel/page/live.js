@@ -2,16 +2,14 @@
 
 const firstWait = 100;
 const longestWait = 1000;
-/// The time without a message after which the connection counts as lost, in ms. If nothing changes, the simulator sends
-/// a message about once a second.
+/// In ms: without a message for so long, the connection counts as lost. If nothing changes, one comes each second.
 const patience = 3500;
-/// The code with which the server closes the connection if too many pages are open.
+/// The server closes the connection with this code if too many pages are open.
 const tooMany = 1013;
 
 export class Live {
-  /// `take(message)` gets each message. When the page has shown the changes in a message, the page must call `answer`
-  /// with each reply in the message. `lost(why)` is called with "gone" or "tooMany" when a connection is lost or cannot
-  /// be established, and with "" when the first message of a connection arrives.
+  /// `take(message)` gets each message; when the page has shown it, it must call `answer` with each reply in it.
+  /// `lost(why)`: "gone" or "tooMany" when a connection is lost or cannot be established, "" at its first message.
   constructor(take, lost) {
     this.take = take;
     this.lost = lost;
@@ -37,8 +35,7 @@ export class Live {
     socket.onclose = (event) => this.gone(socket, event.code === tooMany ? "tooMany" : "gone");
   }
 
-  /// Restarts the timeout. The timeout is necessary because the socket stays open if the simulator does not respond or
-  /// if the connection is broken.
+  /// Restarts the timeout: the socket stays open if the simulator does not respond or the connection is broken.
   listen(socket) {
     clearTimeout(this.silence);
     this.silence = setTimeout(() => {
@@ -67,13 +64,12 @@ export class Live {
     this.wait = Math.min(2 * this.wait, longestWait);
   }
 
-  /// Sends a command of the control socket; resolves to {ok, text}. `undo` is another command, or undefined. If
-  /// `command` succeeds and the page disconnects before it has sent `undo`, the simulator carries out `undo`.
+  /// A command of the control socket; resolves to {ok, text}. The simulator carries out `undo`, another command or
+  /// undefined, if `command` succeeds and the page disconnects before it has sent `undo`.
   tell(command, undo) { return this.send({do: command, undo}); }
 
-  /// Sends a request of the page and resolves to the reply. For a request {line, address, ask}, which the simulator
-  /// sends on a line, the reply is {ok, text, meaning, delay}. `delay` is in us. `meaning` and `delay` may be
-  /// undefined.
+  /// Resolves to the reply. That to a request for a line, {line, address, ask}, is {ok, text, meaning, delay}, with
+  /// `delay` in us; the last two may be undefined.
   send(request) {
     if (this.socket?.readyState !== WebSocket.OPEN) {
       return Promise.resolve({ok: false, text: "error: there is no connection to the simulator"});

@@ -1,5 +1,4 @@
-// The page of the panel. It shows the state and the traffic that the messages of the simulator contain, and it sends
-// the user's commands and requests.
+// The page of the panel. It shows what the simulator's messages contain, and sends the user's commands and requests.
 
 import {Console} from "/console.js";
 import {setText} from "/element.js";
@@ -18,8 +17,7 @@ let speed = 1;
 let plates = [];
 let states = [];
 let lines = [];
-/// For each line: `showed` is the time of its clock in us, and `when` is the time in ms at which the page received
-/// `showed`.
+/// For each line, the time of its clock in us (`showed`), and the time in ms at which it arrived (`when`).
 let clocks = [];
 let fresh = [];
 let due = false;
@@ -84,8 +82,8 @@ function begin(hello) {
   }, now);
 }
 
-/// Shows only the modules that match the words in the field `find`. Opens the lines of these modules, or folds the
-/// lines if more than `mostUnfolded` modules match. Hides the faults and the console of a line without such modules.
+/// Shows only the modules that match the words in `find`, and opens their lines, or folds them if more than
+/// `mostUnfolded` match. Hides the faults and the console of a line without any.
 function find() {
   const words = at("find").value.toLowerCase().split(/\s+/).filter(Boolean);
   const found = lines.map(({view}) => view.matches(words));
@@ -128,7 +126,7 @@ function take(message) {
   }
 }
 
-/// Shows the new messages, and draws the countdowns and the traffic. Called once per repaint.
+/// Once per repaint: new messages, countdowns and traffic.
 function repaint(when) {
   fresh.splice(0).forEach(show);
   plates.forEach((plate) => plate.tick(now(plate.layout.line)));
@@ -136,7 +134,7 @@ function repaint(when) {
   requestAnimationFrame(repaint);
 }
 
-/// The text for each reason why the page is not connected.
+/// Why the page is not connected.
 const reasons = {
   gone: "Not connected to the simulator; trying again. The page shows the last known state.",
   tooMany: "Too many pages are open. This page connects when another page is closed.",
@@ -152,8 +150,7 @@ function lost(why) {
   }
 }
 
-/// The header of the page. If the window is wider than 640 px, the stylesheet uses the header's height for the
-/// positions of the element `lost` and of scroll targets.
+/// If the window is wider than 640 px, the stylesheet needs its height to place `lost` and scroll targets.
 const header = document.querySelector(".top");
 const measure = () => document.documentElement.style.setProperty("--top", `${header.offsetHeight}px`);
 new ResizeObserver(measure).observe(header);

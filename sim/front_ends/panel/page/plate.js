@@ -1,5 +1,4 @@
-// A module's face plate: its terminals, LEDs, readouts and switches, and the folded list of its settings and values
-// (see drawer.js).
+// A module's face plate: its terminals, LEDs, readouts and switches, and the folded list of its values (drawer.js).
 
 import {Drawer} from "/drawer.js";
 import {bit, hexByte, make, setAttribute, setText, terminal} from "/element.js";
@@ -9,10 +8,9 @@ import {Switch} from "/switch.js";
 const edgeTerminals = ["DATA+", "DATA−", "+VS", "GND"];
 
 export class Plate {
-  /// `position` counts from 0. `state` contains the parts of the module's state that have arrived, and the caller
-  /// updates it. `tell(command, undo)` carries out a command of this module, see `tell` in live.js. `command` and
-  /// `undo` do not contain the module's number. `way()` returns what a click without Shift or Alt does to an
-  /// input: toggle, hold or pulse.
+  /// `position`: from 0. `state`: the parts that have arrived; the caller updates it. `tell(command, undo)`: see
+  /// live.js, but without the module's number. `way()`: what a click without Shift or Alt does to an input: toggle,
+  /// hold or pulse.
   constructor(layout, position, state, tell, way) {
     this.layout = layout;
     this.state = state;
@@ -56,8 +54,7 @@ export class Plate {
         ...edge.map((label) => make("li", {}, make("span", {class: "screw"}), label))));
   }
 
-  /// Creates the list of the outputs or of the inputs; returns "" if there are none. More than eight terminals use two
-  /// rows; blank items fill the last row.
+  /// Outputs or inputs; "" if there are none. More than eight terminals use two rows; blank items fill the last one.
   strip(className, name, channels) {
     if (!channels.length) {
       return "";
@@ -81,10 +78,10 @@ export class Plate {
     return {label, led, left, item: terminal(label, led, left)};
   }
 
-  /// Call this when the connection is lost.
+  /// When the connection is lost.
   lost() { this.inputs.forEach((input) => input.lost()); }
 
-  /// Shows the parts of the state in `news`, which may be empty. `state` must contain these parts too.
+  /// The parts in `news`, which may be empty. `state` must contain them too.
   show(news) {
     if (news.plate) {
       this.showPlate(news.plate);
@@ -126,7 +123,7 @@ export class Plate {
     this.inputs.forEach((input, channel) => input.show(bit(plate.inputs, channel)));
   }
 
-  /// Updates the readout and the countdown of the host watchdog. `now` is the time of the line's clock in us.
+  /// The readout and the countdown of the host watchdog. `now`: the time of the line's clock in us.
   tick(now) {
     const {plate, hostWatchdog} = this.state;
     if (!hostWatchdog) {

@@ -14,9 +14,8 @@ const scaleHeight = 20;
 const inWords = (gap) => gap >= 1e6 ? `${(gap / 1e6).toFixed(2)} s` : `${(gap / 1000).toFixed(1)} ms`;
 
 export class Strip {
-  /// `frame` is the element around `canvas`; it scrolls if it is too small for the lanes in `canvas`. The value of
-  /// the element `span` is the length of the visible time in us. Frames for which `matches(entry)` is false are drawn
-  /// pale.
+  /// `frame`: around `canvas`; scrolls if it is too small for the lanes. `span`: an element, whose value is the visible
+  /// time in us. Frames for which `matches(entry)` is false are pale.
   constructor(frame, canvas, span, matches) {
     this.frame = frame;
     this.canvas = canvas;
@@ -34,7 +33,7 @@ export class Strip {
     this.measure();
   }
 
-  /// Creates a lane for each of `lines`. `now(index)` returns the time, in us, of the line at position `index`.
+  /// A lane for each of `lines`. `now(index)`: the time of the line in us.
   begin(lines, now) {
     this.lines = lines;
     this.now = now;
@@ -82,7 +81,7 @@ export class Strip {
     return this.colours[name];
   }
 
-  /// Draws after a change, and repeatedly while the strip is not paused and contains entries. Called once per repaint.
+  /// Once per repaint. Draws after a change, and repeatedly while the strip is not paused and contains entries.
   draw(when, entries) {
     const wait = unmoving.matches ? slowestUnmoving : slowest;
     if (this.lines.length && !(when - this.drawn < wait) && (this.stale || (!this.paused && !this.empty))) {
@@ -95,7 +94,7 @@ export class Strip {
   drawAll(entries) {
     const width = this.canvas.clientWidth;
     const span = Number(this.span.value);
-    // Only the lanes in the visible area are drawn, and the scale is at the bottom of this area.
+    // Only the visible lanes are drawn, with the scale at the bottom.
     const top = this.frame.scrollTop;
     const bottom = Math.min(this.canvas.clientHeight, top + this.frame.clientHeight) - scaleHeight;
     this.pen.clearRect(0, 0, width, this.canvas.clientHeight);
@@ -165,8 +164,7 @@ export class Strip {
     this.pen.fillText(line.name, 4, top + 12);
   }
 
-  /// Call this for the entries of a lane from the last to the first, because `lane.before` must be the frame that
-  /// follows the entry.
+  /// From the last entry of a lane to the first: `lane.before` must be the frame that follows the entry.
   drawEntry(entry, lane) {
     if (entry.note || entry.missed) {
       this.pen.fillStyle = this.colour("note");
@@ -198,7 +196,7 @@ export class Strip {
     pen.globalAlpha = 1;
   }
 
-  /// Writes the length of the gap before the next frame if there is enough room.
+  /// The length of the gap before the next frame, if there is room.
   drawGap(entry, next, {x, top}) {
     const gap = next ? next.began - entry.ended : 0;
     if (gap > 0 && x(next.began) - x(entry.ended) > 48) {

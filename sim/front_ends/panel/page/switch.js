@@ -3,7 +3,7 @@
 import {make, setAttribute} from "/element.js";
 
 export class Switch {
-  /// `ask(on)` requests the change, and resolves when the page has shown the result or when the request has failed.
+  /// `ask(on)` resolves when the page has shown the change, or when the request has failed.
   constructor(name, className, ask, ...children) {
     this.ask = ask;
     this.asked = 0;
@@ -11,15 +11,14 @@ export class Switch {
       "aria-label": name}, ...children);
   }
 
-  /// Creates a switch with a visible knob that a click moves.
+  /// With a visible knob that a click moves.
   static withKnob(name, className, ask) {
     const knob = new Switch(name, className, ask, make("span", {class: "knob", "aria-hidden": "true"}));
     knob.element.addEventListener("click", () => knob.set(!knob.on));
     return knob;
   }
 
-  /// Returns the requested state while a request is in progress, otherwise the shown state. Two quick clicks therefore
-  /// switch twice.
+  /// The requested state while a request is in progress, so that two quick clicks switch twice; else the shown one.
   get on() { return this.asked ? this.wanted : this.element.getAttribute("aria-checked") === "true"; }
 
   async set(on) {

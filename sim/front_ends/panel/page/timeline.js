@@ -1,30 +1,27 @@
-// Stores and searches the traffic of the lines, and shows it as a strip on a time scale and as a list of frames and
+// The traffic of the lines: stores and searches it, and shows it as a strip on a time scale and as a list of frames and
 // notes. A pause stops the strip and the list, but not the traffic.
 
 import {setAttribute, setText} from "/element.js";
 import {FrameList} from "/frame_list.js";
 import {Strip} from "/strip.js";
 
-/// When there are more than `trimmedFrom` entries, the oldest are removed until `mostKept` remain. Removing them one
-/// by one would be slower.
+/// Beyond `trimmedFrom` entries, the oldest are removed until `mostKept` remain: one by one would be slower.
 const mostKept = 1700;
 const trimmedFrom = 2000;
-/// The corresponding limits for entries that wait during a pause. These limits are lower, so that older entries remain
-/// in the list when the waiting entries are added.
+/// The same for entries that wait during a pause; less, so that older entries remain in the list when these are added.
 const mostWaiting = 1000;
 const waitingTrimmedFrom = 1200;
-/// The minimum time between two drawings of the list by `draw`, in ms. Without this limit, the traffic of a busy line
-/// would cause a drawing at each repaint.
+/// The minimum time between two drawings of the list, in ms: a busy line would cause one at each repaint.
 const slowest = 30;
 
-/// `framesIn` returns the number of frames in `entries`, and `rowsIn` returns the number of frames and notes. The
-/// number of frames among entries that did not arrive is not known. `framesIn` counts all these entries as frames.
+/// The number of frames in `entries`, and of frames and notes. Entries that did not arrive all count as frames, because
+/// it is not known how many are.
 const framesIn = (entries) =>
   entries.reduce((count, entry) => count + (entry.frames ?? entry.missed ?? (entry.note ? 0 : 1)), 0);
 const rowsIn = (entries) => entries.reduce((count, entry) => count + (entry.missed ?? 1), 0);
 const rowsOfFrames = (entries) => entries.filter(({note, missed}) => !note && !missed).length;
 
-/// Inserts an entry by its time, because entries may arrive late.
+/// By its time: entries may arrive late.
 function insert(list, entry) {
   let at = list.length;
   while (at > 0 && list[at - 1].began > entry.began) {
@@ -45,9 +42,8 @@ export class Timeline {
     this.begin([], null, null);
   }
 
-  /// Starts with an empty list. `lines` is an array of {name}. The functions `who` and `now` get the position of a line
-  /// in this array. `who(line, station)` returns the name of a sender, and `who(line)` returns the name of the line.
-  /// `now(line)` returns the time of the line in us.
+  /// With an empty list. `lines`: an array of {name}; the functions get a position in it. `who(line, station)`: the
+  /// name of a sender; `who(line)`: of the line. `now(line)`: its time in us.
   begin(lines, who, now) {
     this.who = who;
     this.entries = [];
@@ -71,12 +67,11 @@ export class Timeline {
     this.stale = true;
   }
 
-  /// Adds entries. `frames` is the member `frames` of a message.
+  /// `frames`: that of a message.
   add(frames) {
     const fresh = [];
     for (const {line, entries} of frames) {
-      // After a lost connection, entries may arrive twice or be missing. Entries are also missing if there are more
-      // than the simulator sends in one message.
+      // After a lost connection, entries may arrive twice or be missing; also if they are too many for one message.
       const next = this.next.get(line) ?? entries[0].number;
       const missed = entries[0].number - next;
       if (missed > 0) {
@@ -96,8 +91,7 @@ export class Timeline {
     }
   }
 
-  /// Adds entries during a pause. If too many entries wait, replaces the oldest ones by one entry for each line to
-  /// which they belong. This entry states how many frames and notes of the line were left out.
+  /// If too many entries wait, replaces the oldest by one for each line, which states how many were left out.
   addWhilePaused(fresh) {
     this.pending.push(...fresh);
     if (this.pending.length > waitingTrimmedFrom) {
@@ -160,7 +154,7 @@ export class Timeline {
     setText(this.tally, `${of}${kept}${frames}${waiting}`);
   }
 
-  /// Draws the changes. Called once per repaint.
+  /// Once per repaint.
   draw(when) {
     if (this.stale) {
       this.strip.stale = true;
