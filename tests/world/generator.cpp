@@ -191,10 +191,22 @@ Step Generator::fault(unsigned what, std::size_t index, const Plant& plant) {
   }
 }
 
-/// Any fault that this run does not leave out.
-Step Generator::any_fault(std::size_t index, const Plant& plant) {
+/// Any fault that this run does not leave out. A memory that fails works again later, and then a reset shows
+/// what it holds.
+void Generator::disturb(std::size_t index, const Plant& plant) {
   const Fault& one = kFaults[random_.below(static_cast<unsigned>(std::size(kFaults)))];
-  return (left_out_ >> one.what & 1U) == 0 ? fault(one.what, index, plant) : Wait{Time(0)};
+  if ((left_out_ >> one.what & 1U) != 0) {
+    return;
+  }
+  if (one.what != kMemory) {
+    plan_.push_back(fault(one.what, index, plant));
+    return;
+  }
+  plan_.emplace_back(MemoryFails{index, true});
+  plan_.emplace_back(Wait{milliseconds(random_.below(500))});
+  plan_.emplace_back(MemoryFails{index, false});
+  plan_.emplace_back(Wait{milliseconds(random_.below(3000))});
+  plan_.emplace_back(Reset{index});
 }
 
 /// At the expiry of the host watchdog, a request arrives or a fault happens.
@@ -204,7 +216,7 @@ void Generator::aim_at(Time expiry, std::size_t index, const Plant& plant) {
   const Time before = microseconds(random_.below(random_.once_in(2) ? 20'000 : 150'000));
   if (random_.once_in(4)) {
     plan_.emplace_back(Wait{std::max(Time(0), left - milliseconds(10) + before)});
-    plan_.push_back(any_fault(index, plant));
+    disturb(index, plant);
     return;
   }
   Send request = send(index, target);
@@ -227,7 +239,7 @@ void Generator::ask(std::size_t index, const Plant& plant) {
   plan_.emplace_back(request);
   if (target.would_store(request.bytes) && random_.once_in(3)) {
     plan_.emplace_back(Wait{time_of(request) + microseconds(random_.below(90'000))});
-    plan_.push_back(any_fault(index, plant));
+    disturb(index, plant);
   }
   for (unsigned waits = 1 + random_.below(2); waits != 0; --waits) {
     plan_.emplace_back(Wait{often(kEarly, 8)      ? Time(microseconds(random_.below(6000)))
