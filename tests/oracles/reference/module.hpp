@@ -180,7 +180,6 @@ class Module {
   [[nodiscard]] bool runs_modbus() const { return runs_modbus_; }
   [[nodiscard]] bool checksum() const { return checksum_; }
   [[nodiscard]] unsigned address() const { return address_; }
-  [[nodiscard]] bool init_mode() const { return init_mode_; }
   [[nodiscard]] bool init_asserted() const { return init_asserted_; }
   /// Returns whether a reset would start or end INIT mode, or would change the protocol, address, baud rate,
   /// line format or checksum in force.
