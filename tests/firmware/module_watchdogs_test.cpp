@@ -73,6 +73,21 @@ TEST(HostWatchdog, ExpiresNeverEarlyAndAtMostAMillisecondLateForEveryTimeoutValu
   }
 }
 
+/// wire.md D6: the safe value stays even if a store ends after the expiry and its command drives outputs.
+TEST(HostWatchdog, AnExpiryDuringAStoreKeepsTheSafeValue) {
+  unsigned stored = 0;
+  for (int early = 0; early < 40; ++early) {
+    ModuleBench bench("EX9042D-M,baud=115200");
+    bench.ask(ModuleBench::Bytes{1, 0x06, 0x01, 0xE8, 0x00, 0x05});
+    bench.ask(ModuleBench::Bytes{1, 0x05, 0x01, 0x04, 0xFF, 0x00});
+    bench.run(milliseconds(250 - early));
+    bench.ask(ModuleBench::Bytes{1, 0x05, 0x00, 0xA0, 0xFF, 0x00});
+    EXPECT_EQ(bench.module().outputs(), 0) << early;
+    stored += bench.module().module().state().settings.power_on_value;
+  }
+  EXPECT_GT(stored, 30U);
+}
+
 TEST(HostWatchdog, ReportsItsExpiryTime) {
   ModuleBench bench("EX9043D");
   const auto expiry = [&bench] { return bench.module().module().host_watchdog_expiry(); };
