@@ -73,7 +73,8 @@ bool Possible::futures(Time since, Time now, std::vector<Possible>& after) const
   if (module_.runs_modbus() && !open_.empty()) {
     const Time limit = frame_limit();
     if (limit - kExact <= now) {
-      for (const Possible& next : frame_ends({limit - kExact, limit + kExact})) {
+      const Moment judged{limit - kExact, limit + kExact};
+      for (const Possible& next : frame_ends(judged, judged)) {
         after.push_back(next);
       }
       stays = stays && now <= limit + kExact;
@@ -212,10 +213,9 @@ Time Possible::first_judged_by() const {
 
 /// When the reply to the first frame must have begun.
 Time Possible::first_by(bool stores) const {
-  const Time limit = stores ? Time(kStores) : Time(kReplies);
-  return std::max(
-             {waiting_[0].judged.latest, free_, hangs_until_, waiting_[0].last + module_.reply_delay()}) +
-         limit + (timeout_unsaved_ ? Time(kStores) : Time(0));
+  const Time from =
+      std::max({waiting_[0].judged.latest, free_, hangs_until_, waiting_[0].last + module_.reply_delay()});
+  return from + (stores ? Time(kStores) : Time(kReplies));
 }
 
 void Possible::execute(Time since, Time now, std::vector<Possible>& after) const {
@@ -233,12 +233,11 @@ void Possible::execute(Time since, Time now, std::vector<Possible>& after) const
     Possible next = *this;
     next.module_ = module;
     next.overtaken_.reset();
+    next.overtaken_store_ = {};
     next.waiting_.erase(next.waiting_.begin());
     next.free_ = now;
     if (saves) {
       next.save();
-      next.unreadable_ = next.stores_again_ = false;
-      next.ghosts_.clear();
     }
     if (!reply.empty()) {
       const Time earliest = module_.runs_modbus() ? first.judged.earliest : first.last + gap() - kExact;
@@ -267,7 +266,8 @@ void Possible::execute(Time since, Time now, std::vector<Possible>& after) const
     }
     if ((answer.stores || stores_again) && memory_fails_until_ >= now) {
       reference::Module refusing = module_;
-      const reference::Answer refused = refusing.on_frame_without_store(first.bytes, first.bad, when);
+      const reference::Answer refused =
+          refusing.on_frame_without_store(first.bytes, first.bad, when, overtaken_);
       refusing.doubt_memory();
       done(refusing, refused, true, false);
       after.back().ghosts_.push_back(module.stored());

@@ -50,12 +50,12 @@ Time Possible::frame_limit() const {
 }
 
 /// The open frame is complete.
-std::vector<Possible> Possible::frame_ends(Moment judged) const {
+std::vector<Possible> Possible::frame_ends(Moment received, Moment judged) const {
   Possible next = *this;
   const Waiting frame{open_, bad_, last_ + stop_bits_left(), judged};
   next.open_.clear();
   next.bad_.clear();
-  const bool concerns = next.module_.on_receipt(frame.bytes, frame.bad, judged);
+  const bool concerns = next.module_.on_receipt(frame.bytes, frame.bad, received);
   const std::string text(frame.bytes.begin(), frame.bytes.end());
   const bool host_ok =
       module_.runs_modbus()
@@ -65,27 +65,27 @@ std::vector<Possible> Possible::frame_ends(Moment judged) const {
                 reference::word(frame.bytes, frame.bytes.size() - 4) <= 1
           : text.substr(0, 3) == "~**";
   if (concerns && host_ok) {
-    next.module_.on_frame(frame.bytes, frame.bad, judged);
+    next.module_.on_frame(frame.bytes, frame.bad, received);
   }
   const bool executed = concerns && !host_ok && !hung_;
   // wire.md 8: while a command is executed, at least one more frame is kept. Broadcasts that change
   // nothing need no room.
-  const std::size_t others = waiting_.size() + (due_ || sending_ || hangs(judged.earliest) ? 1 : 0);
+  const std::size_t others = waiting_.size() + (due_ || sending_ || hangs(received.earliest) ? 1 : 0);
   const bool may_be_lost = executed && others >= 2;
-  std::vector<Possible> received{next};
+  std::vector<Possible> each_way{next};
   // A lost frame need not restart the host watchdog. A main loop that hung may see the end of the timeout
   // later than a frame that came too late.
   const auto& expiry = module_.expiry();
   if (expiry && next.module_.expiry()) {
-    if (expiry->latest < judged.earliest) {
-      received[0].module_.keep_expiry(*expiry);
-    } else if (may_be_lost || expiry->earliest <= judged.latest) {
-      received.push_back(next);
-      received.back().module_.keep_expiry(*expiry);
+    if (expiry->latest < received.earliest) {
+      each_way[0].module_.keep_expiry(*expiry);
+    } else if (may_be_lost || expiry->earliest <= received.latest) {
+      each_way.push_back(next);
+      each_way.back().module_.keep_expiry(*expiry);
     }
   }
   std::vector<Possible> after;
-  for (Possible& each : received) {
+  for (Possible& each : each_way) {
     if (may_be_lost) {
       after.push_back(each);
       after.back().module_.lose_frame();
@@ -133,7 +133,8 @@ std::vector<Possible> Possible::hear(std::uint8_t byte, bool good, Time end) con
   if (byte != '\r' || !good) {
     return {next};
   }
-  return next.frame_ends({end, end + stop_bits_left() + gap() + kExact});
+  const Time due = end + stop_bits_left() + gap();
+  return next.frame_ends({end, end + kExact}, {due - kExact, due + kExact});
 }
 
 std::vector<Possible> Possible::reply(const Bytes& bytes, Time begins) const {
@@ -147,7 +148,8 @@ std::vector<Possible> Possible::reply(const Bytes& bytes, Time begins) const {
   next.skipping_ = false;
   // wire.md D9
   if (module_.runs_modbus() && !open_.empty() && is_whole()) {
-    return next.frame_ends({begins, frame_limit() + kExact});
+    const Moment judged{begins, frame_limit() + kExact};
+    return next.frame_ends(judged, judged);
   }
   std::vector<Possible> after{next};
   if (!open_.empty()) {  // wire.md does not say whether the dropped frame counts

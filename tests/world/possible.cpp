@@ -11,12 +11,15 @@ namespace ex9000::world {
 
 namespace {
 
-void add_missing(std::vector<reference::Stored>& to, const std::vector<reference::Stored>& from) {
+/// Returns whether that adds anything.
+bool add_missing(std::vector<reference::Stored>& to, const std::vector<reference::Stored>& from) {
+  const std::size_t before = to.size();
   for (const reference::Stored& each : from) {
     if (std::find(to.begin(), to.end(), each) == to.end()) {
       to.push_back(each);
     }
   }
+  return to.size() != before;
 }
 
 }  // namespace
@@ -31,6 +34,8 @@ void Possible::save() {
   older_ = {saved_};
   saved_ = module_.stored();
   timeout_unsaved_.reset();
+  unreadable_ = stores_again_ = false;
+  ghosts_.clear();
 }
 
 std::vector<reference::Stored> Possible::may_be_stored() const {
@@ -75,6 +80,7 @@ std::vector<Possible> Possible::power_off() const {
     next.hangs_until_ = Time::min();
     next.replied_ = Time::min();
     next.overtaken_.reset();
+    next.overtaken_store_ = {};
     next.waiting_.clear();
     next.due_.reset();
     next.timeout_unsaved_.reset();
@@ -121,7 +127,11 @@ void Possible::init(bool asserted, Time now) {
   }
 }
 
-void Possible::memory_fails(bool fails, Time now) { memory_fails_until_ = fails ? kNever : now + kStores; }
+void Possible::memory_fails(bool fails, Time now) {
+  if (fails || memory_fails_until_ == kNever) {
+    memory_fails_until_ = fails ? kNever : now + kStores;
+  }
+}
 
 bool Possible::is_like(const Possible& other) const {
   const auto state = [](const Possible& p) {
@@ -148,8 +158,8 @@ bool Possible::widen(const Possible& other) {
     changed = changed || mine < its;
     mine = std::max(mine, its);
   };
-  add_missing(ghosts_, other.ghosts_);
-  add_missing(older_, other.older_);
+  changed = add_missing(ghosts_, other.ghosts_) || changed;
+  changed = add_missing(older_, other.older_) || changed;
   if (due_) {
     cover(due_->begins, other.due_->begins);
   }

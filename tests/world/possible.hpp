@@ -92,7 +92,7 @@ class Possible {
   [[nodiscard]] Time stop_bits_left() const;
   [[nodiscard]] Time gap() const;
   [[nodiscard]] bool is_whole() const;
-  [[nodiscard]] std::vector<Possible> frame_ends(Moment judged) const;
+  [[nodiscard]] std::vector<Possible> frame_ends(Moment received, Moment judged) const;
   [[nodiscard]] Time frame_limit() const;
   void save();
   void come_up(Time since, Time now, std::vector<Possible>& after) const;

@@ -212,9 +212,10 @@ void Module::settle_input(unsigned channel) {
 
 // --- whole frames ---
 
-Answer Module::on_frame_without_store(const Bytes& bytes, const std::vector<bool>& bad, Moment when) {
+Answer Module::on_frame_without_store(const Bytes& bytes, const std::vector<bool>& bad, Moment when,
+                                      std::optional<unsigned> overtaken) {
   Module trial = *this;
-  Answer answer = trial.on_frame(bytes, bad, when);
+  Answer answer = trial.on_frame(bytes, bad, when, overtaken);
   counts_ = trial.counts_;
   answer.stores = false;
   if (!answer.reply.empty()) {

@@ -131,9 +131,13 @@ class Module {
   void doubt_memory() { doubts_memory_ = true; }
   [[nodiscard]] bool may_have_spoilt_blank_memory() const { return doubts_memory_ && blank_memory_; }
   /// Stores the settings in force although no setting has changed (wire.md 8).
-  void store_again() { stores_ += 1; }
+  void store_again() {
+    stores_ += 1;
+    blank_memory_ = false;
+  }
   /// The same, but the store of the settings fails (wire.md 8).
-  Answer on_frame_without_store(const Bytes& bytes, const std::vector<bool>& bad, Moment when);
+  Answer on_frame_without_store(const Bytes& bytes, const std::vector<bool>& bad, Moment when,
+                                std::optional<unsigned> overtaken);
   /// The frame is complete: counts it. Returns whether it concerns this module, so that it must be executed.
   /// `when`: its end.
   bool on_receipt(const Bytes& bytes, const std::vector<bool>& bad, Moment when);
