@@ -72,6 +72,12 @@ def _opened(file: bytes) -> ELFFile:
     return opened
 
 
+def text_of(path: Path, section: str) -> str:
+    """Returns the content of a section of an object file, or "" if the object has no such section."""
+    found = _opened(path.read_bytes()).get_section_by_name(section)
+    return found.data().decode() if found else ""
+
+
 class Elf:
     """The sections and symbols of an image."""
 

@@ -58,7 +58,7 @@ class UnsuitableFiles(unittest.TestCase):
     @staticmethod
     def printed(image: Path) -> str:
         with contextlib.redirect_stderr(io.StringIO()) as errors:
-            assert main.main([str(image), "unit.ci"]) == 1
+            assert main.main([str(image), "unit.o"]) == 1
         return errors.getvalue()
 
 

@@ -11,9 +11,10 @@ from pathlib import Path
 _HERE = Path(__file__).resolve().parent
 _TOOL = _HERE.parents[1] / "toolchain" / "check-image"
 _COMPILE = (
-    "arm-none-eabi-g++ -std=c++17 -mcpu=cortex-m3 -mthumb -Os -ffreestanding -fno-exceptions -fno-rtti"
+    f"{_TOOL.with_name('with-call-graph')} arm-none-eabi-g++ -std=c++17 -mcpu=cortex-m3 -mthumb -Os"
+    " -ffreestanding -fno-exceptions -fno-rtti"
     " -ffunction-sections -fdata-sections -fno-threadsafe-statics -fno-unwind-tables"
-    " -fno-asynchronous-unwind-tables -fcallgraph-info=su,da -fdump-tree-optimized-lineno"
+    " -fno-asynchronous-unwind-tables"
 ).split()
 _LINK = "arm-none-eabi-g++ -mcpu=cortex-m3 -mthumb -nostdlib -Wl,--gc-sections,--no-warn-rwx-segments".split()
 

@@ -14,14 +14,14 @@ from check_image.disabled_interrupts import DisabledInterrupts
 from check_image.linked_graph import LinkedGraph
 from check_image.stack import EXCEPTION_FRAME, Unbounded, WorstCase, worst_case
 from check_image.vectors import BadVectors, Vectors
-from elf_file import Elf, NotAnImage
+from elf_file import Elf, NotAnImage, text_of
 
 _TOP_SYMBOLS = 20
 
 
 @dataclass(frozen=True)
 class Units:
-    """The content of the files that the compiler writes next to the object files: call graphs and dumps."""
+    """The call graphs and the dumps that with-call-graph has put into the object files."""
 
     records: list[call_graph.Record]
     call_sites: dict[tuple[str, str], set[call_sites.CallSite]]
@@ -54,8 +54,8 @@ def _parse(arguments: list[str]) -> argparse.Namespace:
         type=Path,
         nargs="+",
         help=(
-            "the compiler's call graphs (.ci), or the object files next to them; check-image treats an object file"
-            " without a call graph as assembler code"
+            "the object files, from toolchain/with-call-graph; check-image treats an object file without a call graph"
+            " as assembler code"
         ),
     )
     parser.add_argument(
@@ -116,18 +116,14 @@ def _check(options: argparse.Namespace) -> int:
 def _read_units(paths: list[Path]) -> Units:
     units = Units([], {})
     for path in paths:
-        graph = path.with_suffix(".ci") if path.suffix in (".o", ".obj") else path
-        if graph != path and not graph.exists():
-            continue
         try:
-            units.records.extend(call_graph.parse(graph.read_text()))
+            units.records.extend(call_graph.parse(text_of(path, ".call_graph")))
         except call_graph.NotACallGraph as line:
             raise call_graph.NotACallGraph(
-                f"{graph}: unexpected line '{line}'; compile with GCC 12 and -fcallgraph-info=su"
+                f"{path}: unexpected line '{line}' in the call graph; compile with GCC 12 and with-call-graph"
             ) from line
-        for dump in graph.parent.glob(graph.stem + ".*t.optimized"):
-            for place, sites in call_sites.parse(dump.read_text()).items():
-                units.call_sites.setdefault(place, set()).update(sites)
+        for place, sites in call_sites.parse(text_of(path, ".call_sites")).items():
+            units.call_sites.setdefault(place, set()).update(sites)
     return units
 
 
