@@ -67,7 +67,8 @@ class Module {
   [[nodiscard]] bool led_lit() const { return led_.lit(); }
   /// A reply that does not end jams the line: past its deadline, no feed until its end (wire.md section 6).
   bool feed_watchdog(Time now) {
-    return module_watchdog_.main_loop_alive() && !(cycle_.replying() && reply_deadline_.reached(now));
+    const bool jammed = cycle_.replying() && reply_deadline_.reached(now);
+    return module_watchdog_.main_loop_alive() && !jammed;
   }
 
   /// The settings are loaded and the mode (INIT or normal) is selected: call `listen` with the times of the
