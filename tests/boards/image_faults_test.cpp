@@ -17,6 +17,7 @@
 #include "tests/qemu/signals.hpp"
 #include "tests/qemu/timed_module.hpp"
 #include "tests/support/child_process.hpp"
+#include "tests/support/in_repository.hpp"
 
 namespace ex9000::rig {
 namespace {
@@ -233,7 +234,8 @@ TEST_F(FaultyImage, UsesAtMostTheStackThatCheckImageComputes) {
   const auto used = static_cast<unsigned long>(ram.end() - untouched);
   const std::string image = image_of(model_);
   const std::string unit = EX9000_IMAGES "/boards/CMakeFiles/EX9043D-M.dir/Unity/unity_0_cxx.cxx.obj";
-  const system::Finished checked = system::run({EX9000_CHECK_IMAGE, image, unit});
+  const system::Finished checked =
+      system::run({in_repository("toolchain/check-image"), image, in_repository(unit)});
   std::smatch worst;
   ASSERT_TRUE(std::regex_search(checked.output, worst, std::regex(R"((\d+) stack at worst)")))
       << checked.error;

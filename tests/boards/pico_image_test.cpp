@@ -196,7 +196,7 @@ TEST_F(PicoImage, AModuleStartsAfterAResetOfOnlyTheProcessor) {
 TEST_F(PicoImage, TheStatusLedOfAPicoWUsesAPinThatTheRadioDoesNotUse) {
   constexpr std::uint32_t kLedOfPicoW = 1U << 22;
   constexpr std::uint32_t kRadio = 1U << 23 | 1U << 24 | 1U << 25 | 1U << 29;
-  bench_.begin_with(EX9000_BUILD_FOLDER "/pico-w/EX9055D.bin");
+  bench_.begin_with("build/pico-w/EX9055D.bin");
   bench_.power(true);
   bench_.run_for(kComingUp);
   EXPECT_EQ(ask("$01M"), "!019055\r");

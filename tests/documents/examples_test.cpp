@@ -26,6 +26,7 @@
 #include "tests/support/child_process.hpp"
 #include "tests/support/directory.hpp"
 #include "tests/support/free_port.hpp"
+#include "tests/support/in_repository.hpp"
 #include "tests/support/left_out.hpp"
 #include "tests/support/simulator_process.hpp"
 
@@ -56,7 +57,7 @@ std::vector<std::string> documents() {
 /// that sim/run passes on. Throws std::runtime_error if sim/run starts no simulator.
 std::string command_of_sim_run() {
   const std::string program = "exec \"$here/build/host/sim/ex9000-sim\" ";
-  std::ifstream file(EX9000_PROJECT "/sim/run");
+  std::ifstream file("sim/run");
   for (std::string line; std::getline(file, line);) {
     if (line.rfind(program, 0) == 0) {
       const std::string arguments = line.substr(program.size());
@@ -68,7 +69,7 @@ std::string command_of_sim_run() {
 
 std::vector<Section> sections_of(const std::string& document) {
   std::vector<Section> result(1, {document, {}});
-  std::ifstream file(std::string(EX9000_PROJECT "/") + document);
+  std::ifstream file(document);
   bool inside = false;
   for (std::string line; std::getline(file, line);) {
     if (line.rfind("```", 0) == 0) {
@@ -135,7 +136,7 @@ class Shell {
 void paste(const Section& section) {
   const Directory directory;
   for (const std::string folder : {"boards", "build"}) {
-    std::filesystem::create_symlink(EX9000_PROJECT "/" + folder, directory / folder);
+    std::filesystem::create_symlink(in_repository(folder), directory / folder);
   }
   std::unique_ptr<ChildProcess> simulator;
   Shell shell;
@@ -223,7 +224,7 @@ void add_codes(const std::string& cell, std::set<std::string>& codes) {
 std::set<std::string> rows() {
   std::set<std::string> rows;
   for (const std::string& document : documents()) {
-    std::ifstream file(std::string(EX9000_PROJECT "/") + document);
+    std::ifstream file(document);
     for (std::string line; std::getline(file, line);) {
       if (line.rfind("| `", 0) == 0) {
         add_codes(line.substr(0, line.find(" | ")), rows);

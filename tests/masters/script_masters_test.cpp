@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/in_repository.hpp"
 #include "tests/support/left_out.hpp"
 #include "tests/support/simulator_process.hpp"
 
@@ -21,10 +22,10 @@ struct Master {
   friend std::ostream& operator<<(std::ostream& out, const Master& master) { return out << master.library; }
 };
 
-const std::string kScripts = EX9000_MASTERS;
+const std::string kScripts = in_repository("tests/masters");
 /// Uses Debian's Python, even if PATH contains another one, because pymodbus is a package of Debian.
 const Master kPymodbus{"pymodbus", {"/usr/bin/python3", kScripts + "/pymodbus_master.py"}};
-const std::string kModules = std::string("NODE_PATH=") + EX9000_NODE_MODULES;
+const std::string kModules = "NODE_PATH=" + in_repository("build/node-red/node_modules");
 const Master kModbusSerial{"modbus-serial", {"env", kModules, "node", kScripts + "/modbus_serial_master.js"}};
 const Master kJsmodbus{"jsmodbus", {"env", kModules, "node", kScripts + "/jsmodbus_master.js"}};
 

@@ -5,6 +5,7 @@
 #include "sim/virtual_line/wires/module.hpp"
 #include "tests/qemu/signals.hpp"
 #include "tests/qemu/uart_registers.hpp"
+#include "tests/support/in_repository.hpp"
 #include "tests/support/line_control.hpp"
 
 namespace ex9000::rig {
@@ -16,7 +17,7 @@ std::string text_of(const std::vector<std::uint8_t>& bytes) { return {bytes.begi
 }  // namespace
 
 std::string image_of(const Model& model) {
-  return std::string(EX9000_IMAGES) + "/" + std::string(model.designation) + ".elf";
+  return in_repository(EX9000_IMAGES "/" + std::string(model.designation) + ".elf");
 }
 
 EmulatedBoard::EmulatedBoard(const Model& model, const Settings* settings) : model_(model) {

@@ -9,6 +9,7 @@
 #include "sim/files_and_ports/files/file_descriptor.hpp"
 #include "tests/qemu/processor.hpp"
 #include "tests/qemu/uart_registers.hpp"
+#include "tests/support/in_repository.hpp"
 
 namespace ex9000::rig {
 
@@ -52,7 +53,7 @@ std::vector<std::string> command_of(const std::string& image, const std::string&
           "-semihosting-config",  // AlarmClock's interrupt code halts the machine with a semihosting call
           "enable=on,target=gdb",
           "-plugin",
-          EX9000_GATE ",socket=gate,address=" + std::to_string(Emulator::kGate),
+          in_repository(EX9000_GATE) + ",socket=gate,address=" + std::to_string(Emulator::kGate),
           "-chardev",
           "socket,id=gdb,path=gdb",
           "-gdb",

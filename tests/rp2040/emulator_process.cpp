@@ -20,8 +20,8 @@ namespace ex9000::pico {
 
 namespace {
 
-constexpr const char* kModules = "NODE_PATH=" EX9000_RP2040_MODULES;
-constexpr const char* kProgram = EX9000_RP2040_EMULATOR;
+constexpr const char* kModules = "NODE_PATH=build/rp2040js/node_modules";
+constexpr const char* kProgram = "tests/rp2040/emulator.js";
 
 /// Returns the environment of the emulator: the environment of this process, but with NODE_PATH set to the
 /// folder that contains the npm package rp2040js.

@@ -61,7 +61,7 @@ Bytes memory_with(const Model& model, const Settings& settings) {
 
 std::string image_of(const Model& model, Memory memory) {
   const char* preset = memory == Memory::Flash ? "/pico/" : "/pico-eeprom/";
-  return EX9000_BUILD_FOLDER + (preset + std::string(model.designation)) + ".bin";
+  return "build" + (preset + std::string(model.designation)) + ".bin";
 }
 
 void PicoBench::begin_with(const std::string& file) {

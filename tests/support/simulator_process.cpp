@@ -2,6 +2,8 @@
 
 #include <stdexcept>
 
+#include "tests/support/in_repository.hpp"
+
 namespace ex9000::system {
 
 namespace {
@@ -14,8 +16,8 @@ std::vector<std::string> command_of(const std::vector<std::string>& arguments, c
 
 }  // namespace
 
-std::string simulator_path() { return EX9000_SIMULATOR; }
-std::string shipped_simulator_path() { return EX9000_SHIPPED_SIMULATOR; }
+std::string simulator_path() { return in_repository(EX9000_SIMULATOR); }
+std::string shipped_simulator_path() { return in_repository("build/host/sim/ex9000-sim"); }
 
 SimulatorProcess::SimulatorProcess(const std::vector<std::string>& arguments, const std::string& program)
     : process_(command_of(arguments, program), directory_.path()) {

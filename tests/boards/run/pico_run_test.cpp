@@ -9,7 +9,7 @@ namespace {
 
 TEST(PicoRun, AnImageWithAnEepromStoresItsSettingsInTheEepromFile) {
   const Directory directory;
-  const std::string image = EX9000_IMAGES "-eeprom/EX9043D.elf";
+  const std::string image = in_repository(EX9000_IMAGES "-eeprom/EX9043D.elf");
   const Arguments options{"--eeprom", directory / "eeprom"};
   EXPECT_EQ(RunningImage::of_file(image, options).ask("~01OPUMP"), "!01");
   EXPECT_EQ(bytes_of_file(directory / "eeprom").size(), 8192U);

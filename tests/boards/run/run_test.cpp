@@ -204,9 +204,9 @@ TEST(Run, RefusesAFileThatIsNotAnImageForThisBoard) {
   expect_refusal(directory, {"/usr/bin/python3"}, {"/usr/bin/python3: the file is not an ELF file for Arm"});
   write_file(directory / "cut.elf", bytes_of_file(image_of("EX9042D")).substr(0, 40));
   expect_refusal(directory, {"cut.elf"}, {"cut.elf: the file is incomplete", "build the image again"});
-  expect_refusal(directory, {EX9000_IMAGES "/EX9042D.bin"},
+  expect_refusal(directory, {in_repository(EX9000_IMAGES "/EX9042D.bin")},
                  {"EX9042D.bin: the file is not an ELF file", "MODEL.elf"});
-  expect_refusal(directory, {EX9000_OTHER_IMAGES "/EX9042D.elf"},
+  expect_refusal(directory, {in_repository(EX9000_OTHER_IMAGES "/EX9042D.elf")},
                  {"EX9042D.elf: the image is for another board", EX9000_PRESET});
 }
 

@@ -17,6 +17,7 @@
 #include "tests/support/child_process.hpp"
 #include "tests/support/directory.hpp"
 #include "tests/support/hang.hpp"
+#include "tests/support/in_repository.hpp"
 #include "tests/support/terminal.hpp"
 
 namespace ex9000::system {
@@ -24,11 +25,13 @@ namespace ex9000::system {
 namespace fs = std::filesystem;
 using Arguments = std::vector<std::string>;
 
-inline const std::string kRun = EX9000_RUN;
+inline const std::string kRun = in_repository(EX9000_RUN);
 /// The time that a master waits for a reply, long enough for a busy machine.
 inline constexpr std::chrono::seconds kMasterReplyTimeout{10};
 
-inline std::string image_of(const std::string& model) { return EX9000_IMAGES "/" + model + ".elf"; }
+inline std::string image_of(const std::string& model) {
+  return in_repository(EX9000_IMAGES "/" + model + ".elf");
+}
 inline bool has(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }

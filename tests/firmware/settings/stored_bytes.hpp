@@ -85,7 +85,7 @@ inline StoredBytes read_stored_bytes(const std::filesystem::path& path) {
 inline std::vector<StoredBytes> all_stored_bytes() {
   constexpr std::size_t kAtLeast = 19;
   std::vector<StoredBytes> all;
-  for (const auto& entry : std::filesystem::directory_iterator(EX9000_STORED_BYTES)) {
+  for (const auto& entry : std::filesystem::directory_iterator("tests/firmware/settings/stored_bytes")) {
     all.push_back(read_stored_bytes(entry.path()));
     if (all.back().model == nullptr) {
       throw std::runtime_error(

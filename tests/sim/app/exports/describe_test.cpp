@@ -48,7 +48,7 @@ TEST(Describe, FormatsForAnyModelDescribeOneModelOrAll) {
 }
 
 TEST(Describe, RegistersMdHasTheDescriptionOfAllModels) {
-  std::ifstream file(EX9000_REGISTERS);
+  std::ifstream file("firmware/registers.md");
   std::ostringstream text;
   text << file.rdbuf();
   const std::string generated = " describe -->\n" + described("", "markdown") + "<!-- end of ";

@@ -20,6 +20,7 @@
 
 #include "firmware/model/model.hpp"
 #include "tests/support/hang.hpp"
+#include "tests/support/in_repository.hpp"
 #include "tests/support/simulator_process.hpp"
 #include "tests/support/socket_client.hpp"
 
@@ -325,7 +326,8 @@ TEST(Program, AStaleLinkToTheTerminalOfAnotherSimulatorIsTakenOver) {
 
 TEST(Program, RunsFromItsInstallPrefix) {
   const Directory directory;
-  const Finished installed = run({"cmake", "--install", EX9000_BUILD, "--prefix", directory.path()});
+  const Finished installed =
+      run({"cmake", "--install", in_repository(EX9000_BUILD), "--prefix", directory.path()});
   EXPECT_EQ(installed.status, 0) << installed.error;
   EXPECT_EQ(run({directory.path() + "/bin/ex9000-sim", "--version"}, "/").output, "ex9000-sim D01.00\n");
 }
