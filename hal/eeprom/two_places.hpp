@@ -72,7 +72,7 @@ class TwoPlaces {
   static constexpr std::uint8_t kReads = 3;
 
   void begin_job() {
-    switch (job_.kind) {  // not covered: the enumeration has no other value
+    switch (job_.kind) {
       case MemoryJob::Kind::Load:
         newest_ = kNoPlace;
         bad_ = unread_ = silent_ = false;

@@ -147,7 +147,7 @@ class RecordLog {
   bool proceed(Time now) {
     const Step step = step_;
     step_ = step == Step::Scanning ? step : Step::Free;
-    switch (step) {  // not covered: the cases are complete
+    switch (step) {
       case Step::Starting:
         suspend_erase();
         return true;
