@@ -131,7 +131,8 @@ class FlashChip {
       const place = `flash: ${kind} at 0x${address.toString(16)}`;
       throw new Error(`${place}: has ${bytes.length} data bytes; expected ${expected}`);
     }
-    this.run({ kind, address, bytes, sector: Math.floor(address / SECTOR), left: this.times[kind], begun: this.time.now });
+    const sector = Math.floor(address / SECTOR);
+    this.run({ kind, address, bytes, sector, left: this.times[kind], begun: this.time.now });
   }
 
   run(operation) {
