@@ -276,14 +276,22 @@ void Possible::execute(Time since, Time now, std::vector<Possible>& after) const
   });
 }
 
+/// wire.md 6: the LED is steady, flashes at 2 Hz, or flashes twice for 0.1 s every 2 s.
 bool Possible::may_be_lit(Time since, Time now) const {
-  if (!module_.powered() || start_ != Start::Over || hangs(now) || tick_stopped_) {
-    return true;
-  }
-  // Two flashes every 2 s, or flashes at 2 Hz.
-  const Time longest = module_.led_flashes() ? Time(milliseconds(300)) : Time(milliseconds(2100));
-  return !(module_.led_flashes() || unreadable_) ||
+  const Time longest = module_.led_flashes() ? milliseconds(300) : milliseconds(150);
+  return !led_is_known(now) || !(module_.led_flashes() || unreadable_) ||
          now - std::max({since, flashes_since_, hangs_until_}) <= longest;
+}
+
+bool Possible::may_be_dark(Time since, Time now) const {
+  const Time longest = module_.led_flashes() ? milliseconds(300)
+                       : unreadable_         ? milliseconds(1800)
+                                             : milliseconds(20);
+  return !led_is_known(now) || now - std::max({since, flashes_since_, free_, hangs_until_}) <= longest;
+}
+
+bool Possible::led_is_known(Time now) const {
+  return module_.powered() && start_ == Start::Over && !hangs(now) && !tick_stopped_;
 }
 
 }  // namespace ex9000::world

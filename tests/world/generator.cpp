@@ -191,6 +191,20 @@ Step Generator::fault(unsigned what, std::size_t index, const Plant& plant) {
   }
 }
 
+/// Plans a fault and what belongs to it: INIT* may bounce, and something may happen during a start, which
+/// takes 10 to 30 ms.
+void Generator::add(unsigned what, std::size_t index, const Plant& plant) {
+  plan_.push_back(fault(what, index, plant));
+  if (what == kInit && random_.once_in(3)) {
+    plan_.emplace_back(Wait{microseconds(random_.below(12'000))});
+    plan_.emplace_back(Init{index, plant.likely(index).module().init_asserted()});
+  }
+  if ((what == kReset || what == kPower) && random_.once_in(4)) {
+    plan_.emplace_back(Wait{microseconds(random_.below(30'000))});
+    disturb(index, plant);
+  }
+}
+
 /// Any fault that this run does not leave out. A memory that fails works again later, and then a reset shows
 /// what it holds.
 void Generator::disturb(std::size_t index, const Plant& plant) {
@@ -199,7 +213,7 @@ void Generator::disturb(std::size_t index, const Plant& plant) {
     return;
   }
   if (one.what != kMemory) {
-    plan_.push_back(fault(one.what, index, plant));
+    add(one.what, index, plant);
     return;
   }
   plan_.emplace_back(MemoryFails{index, true});
@@ -253,7 +267,11 @@ void Generator::decide(const Plant& plant) {
       aim_ ? *std::exchange(aim_, {}) : random_.below(static_cast<unsigned>(plant.size()));
   const reference::Module& module = plant.likely(index).module();
   if (!plant.powered(index) && random_.once_in(3)) {
-    plan_.emplace_back(Power{index, true});
+    add(kPower, index, plant);
+    return;
+  }
+  if (random_.once_in(8000)) {  // the clock of the firmware wraps after 71 minutes
+    plan_.emplace_back(Wait{std::chrono::minutes(1 + random_.below(120))});
     return;
   }
   for (const Fault& each : kFaults) {
@@ -272,7 +290,7 @@ void Generator::decide(const Plant& plant) {
           }
         }
       }
-      plan_.push_back(fault(each.what, index, plant));
+      add(each.what, index, plant);
       return;
     }
   }

@@ -26,6 +26,7 @@ class Generator {
   Send send(std::size_t index, const Possible& target);
   static Time time_of(const Send& send);
   Step fault(unsigned what, std::size_t index, const Plant& plant);
+  void add(unsigned what, std::size_t index, const Plant& plant);
   void disturb(std::size_t index, const Plant& plant);
   void aim_at(Time expiry, std::size_t index, const Plant& plant);
   void ask(std::size_t index, const Plant& plant);

@@ -47,7 +47,7 @@ void Judge::pass(Time now) {
   std::vector<Possible> after;
   const auto stays = [&](const Possible& state) {
     return state.futures(since_, now, after) && state.outputs() == outputs_ &&
-           (!lit_ || state.may_be_lit(lit_since_, now));
+           (lit_ ? state.may_be_lit(lit_since_, now) : state.may_be_dark(lit_since_, now));
   };
   if (std::all_of(all_.begin(), all_.end(), stays) && after.empty()) {
     since_ = now;
@@ -134,7 +134,7 @@ void Judge::power(bool on, Time now) {
   if (on) {
     each(now, [&](Possible& each) { each.power_on(now); });
   } else {
-    fork(now, "power off", [](const Possible& each) { return each.power_off(); });
+    fork(now, "power off", [&](const Possible& each) { return each.power_off(now); });
     outputs_ = 0;
   }
 }

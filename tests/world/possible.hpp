@@ -41,7 +41,7 @@ class Possible {
 
   void store(const reference::Stored& stored);
   /// After `off` or a reset, the memory has the content of one of the results.
-  [[nodiscard]] std::vector<Possible> power_off() const;
+  [[nodiscard]] std::vector<Possible> power_off(Time now) const;
   void power_on(Time now);
   [[nodiscard]] std::vector<Possible> reset(unsigned reason, Time now) const;
   /// `time` 0: until a reset.
@@ -77,8 +77,9 @@ class Possible {
   [[nodiscard]] bool may_be_dark() const {
     return !module_.powered() || start_ != Start::Over || module_.led_flashes() || unreadable_;
   }
-  /// Returns whether the LED may have been lit since `since`.
+  /// Return whether the LED may have been lit, or dark, since `since`.
   [[nodiscard]] bool may_be_lit(Time since, Time now) const;
+  [[nodiscard]] bool may_be_dark(Time since, Time now) const;
   /// For people.
   [[nodiscard]] std::string text() const;
 
@@ -95,12 +96,13 @@ class Possible {
   [[nodiscard]] std::vector<Possible> frame_ends(Moment received, Moment judged) const;
   [[nodiscard]] Time frame_limit() const;
   void save();
+  [[nodiscard]] bool led_is_known(Time now) const;
   void come_up(Time since, Time now, std::vector<Possible>& after) const;
   void execute(Time since, Time now, std::vector<Possible>& after) const;
   [[nodiscard]] bool first_stores() const;
   [[nodiscard]] Time first_judged_by() const;
   [[nodiscard]] Time first_by(bool stores) const;
-  [[nodiscard]] std::vector<reference::Stored> may_be_stored() const;
+  [[nodiscard]] std::vector<reference::Stored> may_be_stored(Time now) const;
 
   reference::Module module_;
   enum class Start { Begins, InputsCount, Driven, Over };
