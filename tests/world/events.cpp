@@ -178,7 +178,9 @@ void Possible::come_up(Time since, Time now, std::vector<Possible>& after) const
 std::vector<Possible> Possible::listen(unsigned rate, LineFormat format, Time now) const {
   std::vector<Possible> after;
   for (const bool init : {false, true}) {
-    if (start_ == Start::Driven && (init_changes_ || init == module_.init_asserted())) {
+    // wire.md D13: INIT* was not stable for 10 ms within 50 ms of the reset.
+    const bool may_seem_released = !init && init_changed_ >= reset_at_;
+    if (start_ == Start::Driven && (init_changes_ || init == module_.init_asserted() || may_seem_released)) {
       Possible next = *this;
       next.start_ = Start::Over;
       next.free_ = now;

@@ -134,7 +134,7 @@ void Judge::power(bool on, Time now) {
   if (on) {
     each(now, [&](Possible& each) { each.power_on(now); });
   } else {
-    fork(now, "power off", [&](const Possible& each) { return each.power_off(now); });
+    fork(now, "power off", [](const Possible& each) { return each.power_off(); });
     outputs_ = 0;
   }
 }

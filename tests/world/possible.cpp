@@ -38,16 +38,9 @@ void Possible::save() {
   ghosts_.clear();
 }
 
-std::vector<reference::Stored> Possible::may_be_stored(Time now) const {
+std::vector<reference::Stored> Possible::may_be_stored() const {
   std::vector<reference::Stored> all{saved_};
-  // wire.md 8 and D15: what a store has left may count if power fails during the next one, or until the
-  // module has withdrawn it.
-  const bool works = start_ == Start::Over && !hung_ && !tick_stopped_ && !unreadable_ && !loads_older_;
-  const bool stores = timeout_unsaved_ || (stores_again_ && !waiting_.empty()) || first_stores();
-  if (!works || stores || memory_fails_until_ == kNever ||
-      now <= std::max({memory_fails_until_, free_, hangs_until_}) + kRetry + 2 * kStores) {
-    add_missing(all, ghosts_);
-  }
+  add_missing(all, ghosts_);
   if (timeout_unsaved_) {
     add_missing(all, {module_.stored()});
   }
@@ -62,9 +55,9 @@ std::vector<reference::Stored> Possible::may_be_stored(Time now) const {
   return all;
 }
 
-std::vector<Possible> Possible::power_off(Time now) const {
+std::vector<Possible> Possible::power_off() const {
   std::vector<Possible> after;
-  const std::vector<reference::Stored> all = may_be_stored(now);
+  const std::vector<reference::Stored> all = may_be_stored();
   for (const reference::Stored& stored : all) {
     Possible next = *this;
     next.module_.power(false, {});
@@ -106,7 +99,7 @@ std::vector<Possible> Possible::reset(unsigned reason, Time now) const {
   if (reason == kResetByWatchdog && !hung_ && !tick_stopped_) {
     return {};
   }
-  std::vector<Possible> after = power_off(now);
+  std::vector<Possible> after = power_off();
   for (Possible& next : after) {
     next.power_on(now);
     next.module_.reset({now, now}, reason);
@@ -125,6 +118,7 @@ void Possible::hang(Time time, Time now) {
 void Possible::tick_stops(Time now) { tick_stopped_ = now; }
 
 void Possible::init(bool asserted, Time now) {
+  init_changed_ = now;
   if (init_changes_ && init_changes_->asserted == asserted) {
     return;
   }

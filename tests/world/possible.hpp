@@ -41,7 +41,7 @@ class Possible {
 
   void store(const reference::Stored& stored);
   /// After `off` or a reset, the memory has the content of one of the results.
-  [[nodiscard]] std::vector<Possible> power_off(Time now) const;
+  [[nodiscard]] std::vector<Possible> power_off() const;
   void power_on(Time now);
   [[nodiscard]] std::vector<Possible> reset(unsigned reason, Time now) const;
   /// `time` 0: until a reset.
@@ -102,7 +102,7 @@ class Possible {
   [[nodiscard]] bool first_stores() const;
   [[nodiscard]] Time first_judged_by() const;
   [[nodiscard]] Time first_by(bool stores) const;
-  [[nodiscard]] std::vector<reference::Stored> may_be_stored(Time now) const;
+  [[nodiscard]] std::vector<reference::Stored> may_be_stored() const;
 
   reference::Module module_;
   enum class Start { Begins, InputsCount, Driven, Over };
@@ -113,6 +113,7 @@ class Possible {
     Time when;
   };
   std::optional<InitChange> init_changes_;
+  Time init_changed_ = Time::min();  ///< the last change at the terminal
   // The frame that is not over.
   Bytes open_;
   std::vector<bool> bad_;
