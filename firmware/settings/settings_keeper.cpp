@@ -76,15 +76,15 @@ void SettingsKeeper::save(const Settings& settings, Time now) {
   may_differ_ = true;  // even if the save succeeds, because the host watchdog may expire during it
 }
 
-/// If the memory has no good record but is not blank, loads again first. The save fails if the memory does
-/// not answer. If a record is readable now, the new one gets a later sequence number.
+/// If the last load has found something bad, loads again first, because the newest record may be readable now
+/// and must not be overwritten. The save fails if the memory does not answer.
 void SettingsKeeper::begin_saving(const Settings& settings, std::uint8_t attempts) {
   saving_ = settings;
   attempts_ = attempts;
-  if (memory_.source == SettingsSource::NoneGood) {
-    step_ = Step::LoadAgain;
-  } else {
+  if (memory_.source == SettingsSource::Good || memory_.source == SettingsSource::Blank) {
     begin_writing();
+  } else {
+    step_ = Step::LoadAgain;
   }
 }
 

@@ -204,7 +204,7 @@ class TwoPlaces {
     } else {
       found_ = bad_ ? SettingsSource::NoneGood : SettingsSource::Blank;
     }
-    finish(newest_ != kNoPlace || !unread_);
+    finish(!unread_);
   }
 
   // --- saving ---

@@ -215,8 +215,8 @@ Time Possible::first_judged_by() const {
 
 /// When the reply to the first frame must have begun.
 Time Possible::first_by(bool stores) const {
-  const Time from =
-      std::max({waiting_[0].judged.latest, free_, hangs_until_, waiting_[0].last + module_.reply_delay()});
+  const Time from = std::max({waiting_[0].judged.latest, free_, replied_ + gap(), hangs_until_,
+                              waiting_[0].last + module_.reply_delay()});
   return from + (stores ? Time(kStores) : Time(kReplies));
 }
 
