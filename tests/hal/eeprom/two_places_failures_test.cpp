@@ -197,5 +197,37 @@ TEST(TwoPlacesFailures, AfterAnUnreadableResetASaveFailsWhileAPlaceDoesNotAnswer
   EXPECT_TRUE(Boot(memory).stored() == numbered(5));
 }
 
+/// The newest record (place 1, sequence number 8) is not read at a reset, so the older one is in force.
+void put_two_of_which_the_newest_is_unread(FakeEeprom& memory) {
+  put(memory, 0, numbered(5), 7);
+  put(memory, 1, numbered(6), 8);
+  memory.good_jobs = 1;
+  memory.failing_reads = kAttempts;
+}
+
+// The settings of both records are stored, so a failed save must destroy neither.
+TEST(TwoPlacesFailures, ASaveFailsWithoutAWriteWhileTheNewestRecordDoesNotAnswer) {
+  FakeEeprom memory;
+  put_two_of_which_the_newest_is_unread(memory);
+  Boot run(memory);
+  ASSERT_TRUE(run.stored() == numbered(5));
+  put_two_of_which_the_newest_is_unread(memory);
+  EXPECT_FALSE(run.save(numbered(9)));
+  run.pass(milliseconds(1000), numbered(5));
+  EXPECT_TRUE(memory.writes.empty());
+  EXPECT_TRUE(Boot(memory).stored() == numbered(6));
+}
+
+TEST(TwoPlacesFailures, ASaveThatFailsLeavesTheNewestRecordThatTheResetCouldNotRead) {
+  FakeEeprom memory;
+  put_two_of_which_the_newest_is_unread(memory);
+  Boot run(memory);
+  memory.unanswered_writes = kAttempts;  // but not the one that withdraws the record
+  EXPECT_FALSE(run.save(numbered(9)));
+  EXPECT_TRUE(Boot(memory).stored() == numbered(6));
+  EXPECT_TRUE(run.save(numbered(9)));
+  EXPECT_TRUE(Boot(memory).stored() == numbered(9));
+}
+
 }  // namespace
 }  // namespace ex9000
