@@ -34,7 +34,7 @@ struct Runtime {
     board.inputs.make_inputs();
   }
 
-  static void start_module(ResetReason reason) {
+  static void start_module(ResetReason reason, std::uint32_t serial_number = 0) {
     SilenceTimer::start();
     LineEndTimer::start();
     WakeTimer::start();
@@ -42,7 +42,7 @@ struct Runtime {
     const Time begin = device.board().clock.now();
     while (!(hal::kPullsSettle < device.board().clock.now().since(begin))) {
     }
-    device.start(reason);
+    device.start(reason, serial_number);
   }
 
   // --- interrupts ---

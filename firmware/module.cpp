@@ -16,7 +16,7 @@ constexpr Duration kClockResolution(1);  // an event may be this much later than
 
 }  // namespace
 
-void Module::start(std::uint16_t input_levels, Time now, ResetReason reason) {
+void Module::start(std::uint16_t input_levels, Time now, ResetReason reason, std::uint32_t serial_number) {
   const auto levels = static_cast<std::uint16_t>(input_levels & state_.model().input_mask());
   edges_.begin(levels);
   edges_.time_edges(true);  // the settings, which are not known yet, may contain filters
@@ -24,6 +24,7 @@ void Module::start(std::uint16_t input_levels, Time now, ResetReason reason) {
   init_timeout_.set(now + kInitTimeout);
   second_began_ = now;
   state_.statistics.reset_reason = reason;
+  state_.board_serial_number = serial_number;
 }
 
 StatusLed::Pattern Module::led_pattern_due() const {

@@ -31,7 +31,9 @@ class Module {
   Module& operator=(const Module&) = delete;
 
   /// Once, at reset, before any interrupt but the tick is enabled. `input_levels`: 1 = +4 to +30 V.
-  void start(std::uint16_t input_levels, Time now, ResetReason reason = ResetReason::Unknown);
+  /// `serial_number`: of the board; 0: none.
+  void start(std::uint16_t input_levels, Time now, ResetReason reason = ResetReason::Unknown,
+             std::uint32_t serial_number = 0);
 
   // --- interrupts ---
 

@@ -29,8 +29,9 @@ class Device {
   constexpr Device(const Model& model, const Board& board) : board_(board), module_(model) {}
 
   /// Once, after the tick has started, before the other interrupts are enabled.
-  void start(ResetReason reason) {
-    module_.start(board_.inputs.start(), board_.clock.now(), reason);
+  /// `serial_number`: 0x0D00xxxx, from a unique number of the board; 0: the board has none.
+  void start(ResetReason reason, std::uint32_t serial_number = 0) {
+    module_.start(board_.inputs.start(), board_.clock.now(), reason, serial_number);
     board_.watchdog.feed();
   }
 

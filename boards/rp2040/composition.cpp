@@ -1,6 +1,7 @@
 // The composition of an image for a board with an RP2040: connects the drivers to the pins of the board, the
 // module to the drivers, and the interrupts to their handlers. The folder of the board is in the include
 // path.
+#include <array>
 #include <cstdint>
 
 #include "board.hpp"
@@ -8,7 +9,9 @@
 #include "boards/image.hpp"
 #include "boards/rp2040/memory.hpp"
 #include "boards/runtime.hpp"
+#include "firmware/line/crc16.hpp"
 #include "firmware/model/built.hpp"
+#include "firmware/settings/settings.hpp"
 #include "hal/at24c/at24c.hpp"
 #include "hal/cortex_m/interrupts.hpp"
 #include "hal/cortex_m/system_tick.hpp"
@@ -110,6 +113,11 @@ constexpr unsigned kInterrupts = 26;
 __attribute__((section(".vectors"), used)) constexpr auto kVectors =
     start_up::vectors<kInterrupts>(on_system_tick, kServed);
 
+std::uint32_t serial_number() {
+  const std::array<std::uint8_t, 8> id = Flash::unique_id();
+  return serial_number_of(static_cast<std::uint16_t>(crc16({id.data(), id.size()}).value()));
+}
+
 /// For the order, see Runtime.
 void start() {
   const ResetReason reason = Watchdog::reset_reason();
@@ -121,8 +129,9 @@ void start() {
   // This follows the clocks, because a UART without a clock would stay in reset.
   Resets::restart(kUsesI2c ? Block::Uart0 | Block::I2c0 : 0U | Block::Uart0);
   Gpio::make_peripheral(kUartPins.mask(), Function::Uart);
+  const std::uint32_t number = serial_number();
   Settings::start(board.memory);
-  Run::start_module(reason);
+  Run::start_module(reason, number);
   Interrupts::enable(start_up::numbers_of(kServed));
 }
 

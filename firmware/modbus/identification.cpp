@@ -21,10 +21,12 @@ enum ObjectId : std::uint8_t {
   kProductName = 4,
   kModelName = 5,
   kUserApplicationName = 6,
+  kSerialNumber = 0x80,  // ours: private objects begin here
 };
 
 constexpr bool exists(std::uint8_t object, std::uint8_t last) {
-  return object <= last && object != kVendorUrl;
+  return object <= last && object != kVendorUrl &&
+         (object <= kUserApplicationName || object == kSerialNumber);
 }
 
 void put_object(const State& state, std::uint8_t object, Reply& reply) {
@@ -44,6 +46,11 @@ void put_object(const State& state, std::uint8_t object, Reply& reply) {
       break;
     case kProductName:
       reply.put(state.model().description);
+      break;
+    case kSerialNumber:
+      for (unsigned bits = 32; bits != 0; bits -= 8) {
+        reply.put_hex(static_cast<std::uint8_t>(state.serial_number() >> (bits - 8)));
+      }
       break;
     default:
       reply.put(state.settings.name.bytes());
@@ -85,7 +92,9 @@ Refusal read_device_identification(Exchange& exchange) {
   if (code < kBasic || code > kOneObject) {
     return Refusal::WrongValue;
   }
-  const std::uint8_t last_of_level = code == kBasic ? kRevision : kUserApplicationName;
+  const std::uint8_t last_of_level = code == kBasic       ? kRevision
+                                     : code == kOneObject ? kSerialNumber
+                                                          : kUserApplicationName;
   if (!exists(object, last_of_level)) {
     if (code == kOneObject) {
       return Refusal::UnknownObject;

@@ -71,6 +71,9 @@ void answer(Exchange& exchange) {
   Reply& reply = exchange.reply;
   const std::uint8_t function = frame[1];
   exchange.broadcast = frame[0] == kBroadcast;
+  if (!exchange.broadcast && frame[0] != exchange.state.in_force.address) {
+    return;  // a write has changed the address since the frame was received (wire.md D16)
+  }
   const FunctionRow* row = find(exchange.model(), function);
   if (exchange.broadcast && (row == nullptr || row->at_broadcast == AtBroadcast::Ignored)) {
     return;

@@ -23,12 +23,22 @@ constexpr Functions kWriteRegisters = kWriteSingleRegister;
 constexpr Functions kReadRegisters = kReadHoldingRegisters | kReadInputRegisters;
 
 /// How many coils, discrete inputs or registers a row has.
-enum class Width : std::uint8_t { One = 1, Two = 2, Eight = 8, PerOutput, PerInput, PairPerInput };
+enum class Width : std::uint8_t {
+  One = 1,
+  Two = 2,
+  Eight = 8,
+  Twelve = 12,
+  Sixteen = 16,
+  Twenty = 20,
+  PerOutput,
+  PerInput,
+  PairPerInput
+};
 
 constexpr unsigned kLargestWidth = 32;
 
 constexpr unsigned width_of(Width width, const Model& model) {
-  if (width <= Width::Eight) {
+  if (width <= Width::Twenty) {
     return static_cast<unsigned>(width);
   }
   if (width == Width::PerOutput) {

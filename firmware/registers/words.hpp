@@ -116,6 +116,48 @@ inline std::uint16_t read_tally(const Exchange& exchange, unsigned index) {
   return count_of(exchange, static_cast<Tally>(index));
 }
 
+inline std::uint16_t read_own_address(const Exchange& exchange, unsigned /*index*/) {
+  return exchange.state.in_force.address;
+}
+
+inline Refusal write_own_address(const State& state, unsigned index, std::uint16_t value, Outcome& outcome) {
+  outcome.request(Effect::TakeAddress);
+  return write_address(state, index, value, outcome);
+}
+
+inline std::uint16_t read_serial_number(const Exchange& exchange, unsigned index) {
+  return word_of(exchange.state.serial_number(), index);
+}
+
+/// A request writes both words or none: a number with only one of them is not possible.
+inline Refusal write_serial_number(const State& /*state*/, unsigned index, std::uint16_t value,
+                                   Outcome& outcome) {
+  constexpr unsigned kBitsOfAWord = 16;
+  constexpr std::uint32_t kHalf = 0xFFFF'0000;
+  std::optional<std::uint32_t>& number = outcome.change().serial_number;
+  const std::uint32_t high = index == 0 || !number ? kHalf : *number << kBitsOfAWord;
+  number = high | value;
+  return Refusal::None;
+}
+
+/// One character in each register, without the `EX` and the `-` of the designation.
+inline std::uint16_t read_model(const Exchange& exchange, unsigned index) {
+  constexpr std::size_t kFamily = 2;
+  unsigned at = 0;
+  for (const char character : exchange.model().designation.substr(kFamily)) {
+    if (character != '-' && at++ == index) {
+      return static_cast<std::uint8_t>(character);
+    }
+  }
+  return 0;
+}
+
+inline std::uint16_t read_version_text(const Exchange& /*exchange*/, unsigned index) {
+  return index < kFirmwareVersion.size() ? static_cast<std::uint8_t>(kFirmwareVersion[index]) : 0;
+}
+
+inline std::uint16_t read_zero(const Exchange& /*exchange*/, unsigned /*index*/) { return 0; }
+
 inline constexpr WordRegister kWordRegisters[] = {
     {"counters",
      "input counters",
@@ -209,6 +251,29 @@ inline constexpr WordRegister kWordRegisters[] = {
      "they wrap",
      "",
      {0x0308, Width::Eight, Needs::Nothing, kReadRegisters, kExtension, read_tally, nullptr}},
+    // --- identity, at the addresses of Wiren Board's modules ---
+    {"own-address",
+     "address in force; a new one is in force after the reply, and stored",
+     "1 to 247; not by broadcast",
+     {0x0080, Width::One, Needs::Nothing, kReadRegisters | kWriteRegisters, kConfiguration, read_own_address,
+      write_own_address}},
+    {"model-text",
+     "model without EX and -, for example 9042DM; one character in each register",
+     "",
+     {0x00C8, Width::Twenty, Needs::Nothing, kReadRegisters, kPlain, read_model, nullptr}},
+    {"version-text",
+     "firmware version; one character in each register",
+     "",
+     {0x00FA, Width::Sixteen, Needs::Nothing, kReadRegisters, kPlain, read_version_text, nullptr}},
+    {"serial-number",
+     "serial number, 32 bits, high word first; 0: none",
+     "0x0D000000 to 0x0D00FFFF, or 0 for that of the board; both words together; not by broadcast",
+     {0x010E, Width::Two, Needs::Nothing, kReadRegisters | kWriteRegisters,
+      kExtension | kConfiguration | kLong, read_serial_number, write_serial_number}},
+    {"boot-loader-text",
+     "version of the boot loader; 0: there is none",
+     "",
+     {0x014A, Width::Eight, Needs::Nothing, kReadRegisters, kPlain, read_zero, nullptr}},
     // Documentation only: the receiver detects a host OK.
     {"host-ok",
      "host OK: a request to read this register, with quantity 0 or 1, restarts the host watchdog "

@@ -38,6 +38,8 @@ struct Diagnostics {
 struct State {
   explicit constexpr State(const Model& model) : chosen(model) {}
 
+  std::uint32_t board_serial_number = 0;  ///< 0: the board has none
+
   ChosenModel chosen;
   Settings settings;
   InForce in_force;
@@ -50,6 +52,10 @@ struct State {
   Diagnostics diagnostics;
   Statistics statistics;
 
+  /// 0: the module has none.
+  [[nodiscard]] std::uint32_t serial_number() const {
+    return settings.serial_number != 0 ? settings.serial_number : board_serial_number;
+  }
   [[nodiscard]] constexpr const Model& model() const { return chosen.get(); }
   [[nodiscard]] bool speaks_modbus() const {
     // not covered: kBuiltModbus is a constant

@@ -90,6 +90,7 @@ class Decoder {
     require(value <= Protocol::ModbusRtu);
   }
   void decode(std::uint16_t& value) { value = from_.low_byte_first_16(0); }
+  void decode(std::uint32_t& value) { value = from_.low_byte_first_32(0); }
   void decode(InputFilters& value) {
     for (unsigned channel = 0; channel < kMaxInputs; ++channel) {
       value.set(channel, from_.low_byte_first_16(std::size_t{2} * channel));

@@ -42,9 +42,11 @@ bool Settings::possible_for(const Model& model) const {
   const bool outputs_fit = ((power_on_value | safe_value) & ~model.output_mask()) == 0;
   const bool inputs_fit =
       (inverted_inputs & ~model.input_mask()) == 0 && input_filters.are_possible(model.inputs);
+  const bool serial_number_fits =
+      serial_number == 0 || serial_number == serial_number_of(static_cast<std::uint16_t>(serial_number));
   return is_baud_code(baud_code) && (format & ~kFormatMask) == 0 && protocol_fits && watchdog_fits &&
          name.is_possible(model.longest_name) && outputs_fit && inputs_fit &&
-         response_delay <= kLongestResponseDelay;
+         response_delay <= kLongestResponseDelay && serial_number_fits;
 }
 
 bool operator==(const Settings& a, const Settings& b) {

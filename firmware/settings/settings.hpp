@@ -91,6 +91,14 @@ class InputFilters {
 };
 
 constexpr std::uint8_t kLongestResponseDelay = 30;  // in ms
+
+/// The high word of every serial number. The numbers of a board or of a user differ in the low word.
+constexpr std::uint16_t kSerialNumberFamily = 0x0D00;
+constexpr std::uint32_t serial_number_of(std::uint16_t low) {
+  constexpr unsigned kBitsOfAWord = 16;
+  return std::uint32_t{kSerialNumberFamily} << kBitsOfAWord | low;
+}
+
 constexpr std::uint8_t kFactoryAddress = 1;
 constexpr std::uint8_t kFactoryWatchdogTimeout = 0xFF;
 
@@ -111,6 +119,7 @@ struct SettingsOf {
   As<std::uint16_t> inverted_inputs{};  ///< register 0x0250; bit n is input channel n
   As<bool> fed_by_requests{};           ///< register 0x0251: each request restarts the host watchdog
   As<std::uint8_t> response_delay{};    ///< register 0x0252, in ms
+  As<std::uint32_t> serial_number{};    ///< registers 0x010E and 0x010F; 0: that of the board
 };
 
 /// Calls `f` for each setting, with it of all `settings`, in the order of a record (record.hpp). Append new
@@ -132,6 +141,7 @@ template <class F, class... Some>
   f(settings.inverted_inputs...);
   f(settings.fed_by_requests...);
   f(settings.response_delay...);
+  f(settings.serial_number...);
 }
 
 template <class Value>

@@ -2,6 +2,7 @@
 // 2.19.6.2 (pins of the flash); W25Q16JV data sheet, 8.1 and 8.2 (instructions).
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 
@@ -20,15 +21,25 @@ class Flash {
  public:
   /// Once, first. Resumes a suspended operation; a reset of the MCU ends none, so the flash may be busy.
   static void start() {
-    constexpr std::uint32_t kDivider = 4;  // must be even; 125 MHz / 4 = 31.25 MHz; Read Data allows 50 MHz
-    constexpr Bits<Control> kBytesBothWays(7U << 16U);
-    select(false);
-    kEnable.write({});
-    kBaud.write(Bits<Baud>(kDivider));
-    kControl.write(kBytesBothWays);
-    kSlave.write(Bits<Slave>(1));
-    kEnable.write(Bits<Enable>(1));
+    open();
     resume();  // has no effect if nothing is suspended
+  }
+
+  /// The number that no other chip has. Call it before `start`, because a busy flash does not answer.
+  static std::array<std::uint8_t, 8> unique_id() {
+    constexpr unsigned kDummies = 4;
+    std::array<std::uint8_t, 8> id{};
+    open();
+    select(true);
+    exchange(kReadUniqueId);
+    for (unsigned i = 0; i < kDummies; ++i) {
+      exchange(0);
+    }
+    for (std::uint8_t& byte : id) {
+      byte = exchange(0);
+    }
+    select(false);
+    return id;
   }
 
   static void start_erase(std::uint32_t address) {
@@ -92,6 +103,7 @@ class Flash {
   static constexpr std::uint8_t kReadStatus = 0x05;
   static constexpr std::uint8_t kWriteEnable = 0x06;
   static constexpr std::uint8_t kSectorErase = 0x20;
+  static constexpr std::uint8_t kReadUniqueId = 0x4B;
   static constexpr std::uint8_t kSuspend = 0x75;
   static constexpr std::uint8_t kResume = 0x7A;
   static constexpr std::uint8_t kBusyBit = 0x01;
@@ -114,6 +126,17 @@ class Flash {
     while (!kStatus.read().has(kReceived)) {
     }
     return static_cast<std::uint8_t>(kData.read().value());
+  }
+
+  static void open() {
+    constexpr std::uint32_t kDivider = 4;  // must be even; 125 MHz / 4 = 31.25 MHz; Read Data allows 50 MHz
+    constexpr Bits<Control> kBytesBothWays(7U << 16U);
+    select(false);
+    kEnable.write({});
+    kBaud.write(Bits<Baud>(kDivider));
+    kControl.write(kBytesBothWays);
+    kSlave.write(Bits<Slave>(1));
+    kEnable.write(Bits<Enable>(1));
   }
 
   static void command(std::uint8_t code) {

@@ -58,6 +58,7 @@ std::string status(const SimulatedModule& module) {
   const InForce& in_force = state.in_force;
   std::ostringstream rest;
   rest << " power=on address=" << hex_byte_text(in_force.address)
+       << " serial=" << hex_long_text(state.serial_number())
        << " protocol=" << (in_force.protocol == Protocol::Ascii ? "ascii" : "modbus")
        << " baud=" << baud_rate(in_force.baud_code)
        << " format=" << line_format_text(line_format(in_force.baud_code))

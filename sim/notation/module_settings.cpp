@@ -75,6 +75,11 @@ const std::vector<Setting<ModuleSpec>> module_settings{
      }},
     {"name", Form::Text, "TEXT", "the name that $AAM reads (default: the model's)",
      [](ModuleSpec& spec, const std::string& value) { given(spec).name = parse_name(*spec.model, value); }},
+    {"serial", Form::Text, "HHHH",
+     "the low word of the board's serial number (default: from line and position)",
+     [](ModuleSpec& spec, const std::string& value) {
+       spec.serial_number = serial_number_of(parse_hex_word(value));
+     }},
     {"init", Form::Flag, "on|off", "on ties INIT* to GND: ASCII at address 00, 9600 baud (default: off)",
      [](ModuleSpec& spec, const std::string& value) { spec.init_asserted = parse_on_off(value); }},
     {"eeprom", Form::Text, "FILE",

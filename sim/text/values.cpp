@@ -137,6 +137,10 @@ std::string hex_word_text(unsigned value) {
   return hex_byte_text(value >> 8U & 0xFFU) + hex_byte_text(value & 0xFFU);
 }
 
+std::string hex_long_text(std::uint32_t value) {
+  return hex_word_text(value >> 16U) + hex_word_text(value & 0xFFFFU);
+}
+
 std::string hex_text(const std::vector<std::uint8_t>& bytes, std::string_view separator) {
   std::string text;
   for (const std::uint8_t byte : bytes) {

@@ -41,6 +41,8 @@ std::optional<std::uint64_t> whole_number(const std::string& text, std::uint64_t
 /// Upper-case hex: two digits for the lowest 8 bits, four for the lowest 16, two for each byte.
 std::string hex_byte_text(unsigned value);
 std::string hex_word_text(unsigned value);
+/// 8 hex digits, for a serial number.
+std::string hex_long_text(std::uint32_t value);
 std::string hex_text(const std::vector<std::uint8_t>& bytes, std::string_view separator = "");
 
 }  // namespace ex9000::sim

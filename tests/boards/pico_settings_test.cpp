@@ -38,6 +38,8 @@ constexpr nanoseconds kBit(1'000'000'000 / kBaud);
 constexpr microseconds kSilence{1750};
 
 constexpr std::uint8_t kAddress = 1;
+/// 0D00 and the CRC-16 of the unique id that tests/rp2040/flash_chip.js has (extensions.md, identity).
+constexpr std::uint32_t kNumberOfThePico = 0x0D008A5D;
 constexpr unsigned kInputs = 8;
 
 /// Returns the request that stores a timeout of the host watchdog. The reply has the same bytes.
@@ -285,14 +287,15 @@ TEST_P(PicoAfterAnUpdate, HasAllSettingsThatEarlierFirmwareHasStored) {
     bench.set_baud(baud_rate(stored.settings.baud_code));
     bench.power(true);
     bench.run_for(kComingUp);
-    SettingsReader reader(*stored.model, FrameFormat::of(stored.settings), [&bench](const Bytes& frame) {
+    const auto exchange = [&bench](const Bytes& frame) {
       bench.run_for(milliseconds(5));
       bench.send(frame);
       Bytes reply = bench.receive(1, milliseconds(50));
       const Bytes rest = bench.receive(256, milliseconds(5));
       reply.insert(reply.end(), rest.begin(), rest.end());
       return reply;
-    });
+    };
+    SettingsReader reader(*stored.model, FrameFormat::of(stored.settings), exchange, kNumberOfThePico);
     const auto found = reader.read(stored.settings.format);
     ASSERT_TRUE(found) << stored.file << ": the module does not reply";
     EXPECT_TRUE(*found == stored.settings) << stored.file;

@@ -7,6 +7,8 @@ const PAGE = 256;
 const SECTOR = 4096;
 const SUSPEND = 20_000; // ns, the largest tSUS, and the shortest time from a resume to the next suspend
 
+const UNIQUE_ID = [0xe4, 0x61, 0x64, 0x10, 0x43, 0x8e, 0x2a, 0x31]; // arbitrary
+
 class FlashChip {
   // `content` has 2 MiB; this object changes it. `times` contains the durations { erase, program } in nanoseconds.
   constructor(time, content, times = { erase: 45e6, program: 400e3 }) {
@@ -65,6 +67,9 @@ class FlashChip {
     if (command === 0x05) {
       return (this.busy ? 1 : 0) | (this.writeEnabled ? 2 : 0);
     }
+    if (command === 0x4b && this.bytes.length > 5) {
+      return UNIQUE_ID[(this.bytes.length - 6) % UNIQUE_ID.length];
+    }
     if (command === 0x03 && this.bytes.length > 4) {
       const address = (this.address() + this.bytes.length - 5) % SIZE;
       if (this.isSuspended(address) && this.suspended.begun === this.forgotten?.begun) {
@@ -86,6 +91,7 @@ class FlashChip {
     case undefined:
     case 0x03:
     case 0x05:
+    case 0x4b:
       break;
     case 0x06:
       this.writeEnabled = true;

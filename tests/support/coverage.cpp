@@ -66,11 +66,14 @@ std::string register_id(const char* kind, const Register& row, unsigned function
 }
 
 /// Returns the codes of `functions`. Function 0x10 is allowed for the same rows as 0x06.
-std::vector<unsigned> functions_of(registers::Functions functions) {
+/// `pairs`: 06 cannot write a value of 32 bits.
+std::vector<unsigned> functions_of(registers::Functions functions, bool pairs = false) {
   std::vector<unsigned> codes;
   for (unsigned code = 1; code < 16; ++code) {
     if ((functions >> code & 1U) != 0) {
-      codes.push_back(code);
+      if (code != 6 || !pairs) {
+        codes.push_back(code);
+      }
       if (code == 6) {
         codes.push_back(0x10);
       }
@@ -183,7 +186,7 @@ std::set<std::string> Coverage::missing() const {
     }
   }
   for (const auto& row : registers::kWordRegisters) {
-    for (const unsigned function : functions_of(row.row.functions)) {
+    for (const unsigned function : functions_of(row.row.functions, row.row.has(registers::kLong))) {
       wanted.insert(register_id("register", row, function));
     }
   }

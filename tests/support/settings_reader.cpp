@@ -15,6 +15,7 @@ constexpr unsigned kFilters = 0x0240;
 constexpr unsigned kInversion = 0x0250;
 constexpr unsigned kFeed = 0x0251;
 constexpr unsigned kDelay = 0x0252;
+constexpr unsigned kSerialNumber = 0x010E;
 
 std::uint16_t word(const std::vector<std::uint8_t>& reply, std::size_t at) {
   return static_cast<std::uint16_t>(reply.at(at) << 8U | reply.at(at + 1));
@@ -98,6 +99,8 @@ std::optional<Settings> SettingsReader::read_ascii() {
   settings.inverted_inputs = model_.inputs != 0 ? extension(kInversion) : std::uint16_t{0};
   settings.fed_by_requests = extension(kFeed) != 0;
   settings.response_delay = static_cast<std::uint8_t>(extension(kDelay));
+  const std::string number = ask("~X" + reference::hex(kSerialNumber, 4)).substr(3);
+  settings.serial_number = stored(static_cast<std::uint32_t>(std::stoul(number, nullptr, 16)));
   return settings;
 }
 
@@ -140,6 +143,8 @@ std::optional<Settings> SettingsReader::read_modbus(std::uint8_t format) {
   settings.inverted_inputs = model_.inputs != 0 ? extension(kInversion) : std::uint16_t{0};
   settings.fed_by_requests = extension(kFeed) != 0;
   settings.response_delay = static_cast<std::uint8_t>(extension(kDelay));
+  const Bytes number = ask(Bytes{0x03, 0x01, 0x0E, 0x00, 0x02});
+  settings.serial_number = stored(std::uint32_t{word(number, 3)} << 16U | word(number, 5));
   return settings;
 }
 

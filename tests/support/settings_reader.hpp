@@ -35,8 +35,13 @@ class SettingsReader {
   /// Sends a frame and returns the reply. Returns an empty vector if there is no reply.
   using Exchange = std::function<Bytes(const Bytes& frame)>;
 
-  SettingsReader(const Model& model, FrameFormat frame_format, Exchange exchange)
-      : model_(model), frame_format_(frame_format), exchange_(std::move(exchange)) {}
+  /// `number_of_board`: the serial number that the module has if none is stored.
+  SettingsReader(const Model& model, FrameFormat frame_format, Exchange exchange,
+                 std::uint32_t number_of_board = 0)
+      : model_(model),
+        frame_format_(frame_format),
+        exchange_(std::move(exchange)),
+        number_of_board_(number_of_board) {}
 
   /// Reads the settings. Returns nullopt if the first reply is missing or has a wrong length. Throws
   /// std::out_of_range or std::invalid_argument if a later reply is missing or lacks a number. No Modbus
@@ -54,10 +59,14 @@ class SettingsReader {
  private:
   std::optional<Settings> read_ascii();
   std::optional<Settings> read_modbus(std::uint8_t format);
+  [[nodiscard]] std::uint32_t stored(std::uint32_t number) const {
+    return number == number_of_board_ ? 0 : number;
+  }
 
   const Model& model_;
   FrameFormat frame_format_;
   Exchange exchange_;
+  std::uint32_t number_of_board_;
 };
 
 /// Returns the value of the two hex digits at position `at`. Throws std::out_of_range or

@@ -152,6 +152,9 @@ std::vector<StoringCommand> modbus_commands(const Model& model) {
         settings.address = kNewAddress;
         settings.baud_code = 0x08;
       });
+  add("06 address in force", needs_nothing, {0x06, 0x00, 0x80, 0x00, kNewAddress}, take_address);
+  add("10 serial number", needs_nothing, {0x10, 0x01, 0x0E, 0x00, 0x02, 0x04, 0x0D, 0x00, 0x3C, 0x96},
+      [](Settings& settings, std::uint16_t) { settings.serial_number = 0x0D003C96; });
   add("06 response delay", needs_nothing, {0x06, 0x02, 0x52, 0x00, kNewDelay},
       [](Settings& settings, std::uint16_t) { settings.response_delay = kNewDelay; });
   add("06 no response delay", needs_a_delay, {0x06, 0x02, 0x52, 0x00, 0x00},

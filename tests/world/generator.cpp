@@ -72,7 +72,7 @@ Member Generator::member() {
   if (!row->both_protocols && random_.once_in(2)) {
     row = any_row();
   }
-  Member member{row, random_.once_in(4), {}};
+  Member member{row, random_.once_in(4), {}, random_.once_in(4) ? 0 : 0x0D000000 + random_.below(0x10000)};
   const reference::Module module(*member.row);
   member.stored = module.stored();
   if (member.blank) {
@@ -98,6 +98,7 @@ Member Generator::member() {
   for (unsigned channel = 0; channel < member.row->inputs; ++channel) {
     stored.filters[channel] = filters && random_.once_in(2) ? random_.below(200) : 0;
   }
+  stored.serial_number = random_.once_in(4) ? 0x0D000000 + random_.below(0x10000) : 0;
   stored.inversion = random_.once_in(4) ? random_.below(0x10000) & ((1U << member.row->inputs) - 1) : 0;
   return member;
 }

@@ -123,6 +123,12 @@ void Judge::fork(Time now, const std::string& what,
   replace(std::move(next), now, what);
 }
 
+void Judge::set_serial_number_of_board(unsigned number) {
+  for (Possible& each : all_) {
+    each.module().set_serial_number_of_board(number);
+  }
+}
+
 void Judge::store(const reference::Stored& stored) {
   for (Possible& each : all_) {
     each.store(stored);

@@ -23,6 +23,7 @@ class Judge {
 
   // --- what happens to the module ---
 
+  void set_serial_number_of_board(unsigned number);
   void store(const reference::Stored& stored);
   void power(bool on, Time now);
   void reset(unsigned reason, Time now);

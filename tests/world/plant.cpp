@@ -11,6 +11,7 @@ namespace {
 
 sim::ModuleSpec spec_of(const Member& member) {
   sim::ModuleSpec spec = sim::factory_fresh(sim::model_called(member.row->designation));
+  spec.serial_number = member.serial_number;
   if (member.blank) {
     return spec;
   }
@@ -31,6 +32,7 @@ sim::ModuleSpec spec_of(const Member& member) {
   }
   settings.inverted_inputs = static_cast<std::uint16_t>(stored.inversion);
   settings.fed_by_requests = stored.restarted_by_requests != 0;
+  settings.serial_number = stored.serial_number;
   settings.response_delay = static_cast<std::uint8_t>(stored.delay);
   return spec;
 }
@@ -48,6 +50,7 @@ struct Plant::Subject final : sim::Station, sim::WireObserver {
         station(its_index + 1),
         judge(*setup.members[its_index].row, [this](const std::string& text) { object(text); }) {
     const Member& member = setup.members[its_index];
+    judge.set_serial_number_of_board(member.serial_number);
     if (!member.blank) {
       judge.store(member.stored);
     }

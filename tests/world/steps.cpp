@@ -91,6 +91,8 @@ std::string text_of(const Setup& setup) {
     add("0251", stored.restarted_by_requests);
     add("delay", stored.delay);
     add("inversion", stored.inversion);
+    text += ", serial number " + reference::hex(stored.serial_number, 8) + " of the board " +
+            reference::hex(member.serial_number, 8);
     for (unsigned channel = 0; channel < member.row->inputs; ++channel) {
       text += (channel == 0 ? ", filters " : " ") + std::to_string(stored.filters[channel]);
     }

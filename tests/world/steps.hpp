@@ -77,6 +77,7 @@ struct Member {
   const reference::ModelRow* row;
   bool blank;  ///< the memory is blank, so `stored` has the factory settings
   reference::Stored stored;
+  unsigned serial_number;  ///< of the board
 };
 
 struct Setup {

@@ -16,6 +16,12 @@ using Kind = PortSetup::Kind;
 void add_defaults(Setup& setup) {
   for (std::size_t i = 0; i < setup.lines.size(); ++i) {
     LineSetup& line = setup.lines[i];
+    for (std::size_t position = 0; position < line.modules.size(); ++position) {
+      constexpr std::size_t kMostOnALine = 0x100;
+      std::uint32_t& number = line.modules[position].serial_number;
+      const auto low = static_cast<std::uint16_t>(i * kMostOnALine + position + 1);
+      number = number != 0 ? number : serial_number_of(low);
+    }
     if (line.name.empty() && !setup.file.empty()) {
       line.name = "line" + std::to_string(i + 1);
     }

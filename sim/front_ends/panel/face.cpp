@@ -52,6 +52,7 @@ Message plate_of(const SimulatedModule& module) {
     const InForce& in_force = state->in_force;
     plate.update({{"initMode", in_force.init_mode},
                   {"address", in_force.address},
+                  {"serialNumber", hex_long_text(state->serial_number())},
                   {"baud", baud_rate(in_force.baud_code)},
                   {"format", line_format_text(line_format(in_force.baud_code))},
                   {"protocol", protocol_text(in_force.protocol)},

@@ -28,6 +28,7 @@ Line::Line(const std::vector<ModuleSpec>& modules, LineKind kind, Master::Receiv
     SimulatedModule& module = *modules_.back();
     module.store(spec.settings);
     module.set_init(spec.init_asserted);
+    module.set_serial_number(spec.serial_number);
   }
 }
 

@@ -1,6 +1,7 @@
 // A module of a line, as the command line or a bus file describes it.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,7 @@ struct ModuleSpec {
   Settings settings;            ///< stored before power-on; an existing EEPROM file replaces them
   bool settings_given = false;  ///< at least one setting was given explicitly
   bool init_asserted = false;
+  std::uint32_t serial_number = 0;  ///< of the board; 0: from line and position, or none without a setup
   std::string eeprom;  ///< path of the EEPROM file; empty: settings are lost when the simulator ends
   std::vector<InputProgram> inputs;
   std::vector<Fault> faults;

@@ -94,7 +94,7 @@ void SimulatedModule::start(ResetReason reason) {
   mcu_.emplace(*this);
   mcu_->line.release_late(driver_late_by_);
   mcu_->tick.start();
-  mcu_->device.start(reason);
+  mcu_->device.start(reason, serial_number_);
   turn();
 }
 

@@ -95,6 +95,8 @@ TEST(Record, EndsAfterTheLastExtensionThatDiffersFromItsFactoryValue) {
   EXPECT_EQ(record_of(stored).size(), kRecordSize + 36);
   stored.settings.fed_by_requests = false;
   EXPECT_EQ(record_of(stored).size(), kRecordSize + 36);
+  stored.settings.serial_number = 0x0D000000;
+  EXPECT_EQ(record_of(stored).size(), kRecordSize + 40);
   Stored of_inputs{Settings::factory(model("EX9052D-M")), 1};
   of_inputs.settings.input_filters.set(0, 1);
   EXPECT_EQ(record_of(of_inputs, model("EX9052D-M")).size(), kRecordSize + 32);

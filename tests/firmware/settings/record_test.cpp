@@ -97,10 +97,12 @@ TEST(Record, HasTheDocumentedLayoutOfTheExtensions) {
   stored.settings.inverted_inputs = 0x8001;
   stored.settings.fed_by_requests = true;
   stored.settings.response_delay = 30;
-  Record expected{1, 55, 1, 0, 1, 6, 0, 0, 0xFF, 0, 0, '9', '0', '5', '3', 0, 0, 0, 4, 0, 0, 0, 0};
-  expected.insert(expected.end(), {0xD0, 0x07});                           // filter of input 0
-  expected.resize(expected.size() + 28);                                   // inputs 1 to 14
-  expected.insert(expected.end(), {3, 0, 0x01, 0x80, 1, 30, 0, 0, 0, 0});  // input 15, other settings, check
+  stored.settings.serial_number = 0x0D001234;
+  Record expected{1, 59, 1, 0, 1, 6, 0, 0, 0xFF, 0, 0, '9', '0', '5', '3', 0, 0, 0, 4, 0, 0, 0, 0};
+  expected.insert(expected.end(), {0xD0, 0x07});                       // filter of input 0
+  expected.resize(expected.size() + 28);                               // inputs 1 to 14
+  expected.insert(expected.end(), {3, 0, 0x01, 0x80, 1, 30});          // input 15, other settings
+  expected.insert(expected.end(), {0x34, 0x12, 0, 0x0D, 0, 0, 0, 0});  // serial number, check
   EXPECT_EQ(record_of(stored, sixteen_inputs), with_check(sixteen_inputs, expected));
   expect_round_trip(sixteen_inputs, stored);
 }

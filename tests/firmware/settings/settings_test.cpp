@@ -397,5 +397,16 @@ TEST_F(Possible, TheResponseDelayIsAtMost30Ms) {
   EXPECT_FALSE(possible());
 }
 
+TEST_F(Possible, ASerialNumberIs0D00AndAnyWordOrZeroForThatOfTheBoard) {
+  for (const std::uint32_t number : {0U, 0x0D000000U, 0x0D00FFFFU}) {
+    settings_.serial_number = number;
+    EXPECT_TRUE(possible()) << number;
+  }
+  for (const std::uint32_t number : {1U, 0x0CFFFFFFU, 0x0D010000U, 0xFFFF0000U, 0xFFFFFFFFU}) {
+    settings_.serial_number = number;
+    EXPECT_FALSE(possible()) << number;
+  }
+}
+
 }  // namespace
 }  // namespace ex9000

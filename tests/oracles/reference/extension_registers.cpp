@@ -10,6 +10,7 @@ namespace ex9000::reference {
 std::vector<ExtensionRow> extension_rows(const ModelRow& model) {
   const unsigned inputs = model.inputs;
   return {
+      {Extension::SerialNumber, "0x010E", 0x010E, 2, true, true, 0xFFFF},
       {Extension::InputFilters, "0x0240", 0x0240, inputs, true, false, 2000},
       {Extension::Inversion, "0x0250", 0x0250, inputs != 0 ? 1U : 0U, true, false, (1U << inputs) - 1},
       {Extension::Setting, "0x0251", 0x0251, 1, true, false, 1, &Stored::restarted_by_requests},
@@ -54,6 +55,8 @@ unsigned Module::extension_value(unsigned address) {
       return stored_.inversion;
     case Extension::Setting:
       return stored_.*row.setting;
+    case Extension::SerialNumber:
+      return serial_number();
     case Extension::WideCounters:
       return wide_counters_[(address - row.first) / 2];
     case Extension::TimedOutputs:
@@ -97,6 +100,10 @@ void Module::set_extension(unsigned address, unsigned value) {
       break;
     case Extension::Setting:
       set().*row.setting = value;
+      break;
+    case Extension::SerialNumber:
+      stored_.serial_number = address == row.first ? value << 16 | (set().serial_number & 0xFFFFU)
+                                                   : (set().serial_number & 0xFFFF0000U) | value;
       break;
     case Extension::TimedOutputs:
       set_timed_output(address - row.first, value);
@@ -145,6 +152,9 @@ std::string Module::extension_command(const std::string& body) {
   }
   if (!row.written) {
     throw Refused{"~AAXRRRRVVVV to a read-only register"};
+  }
+  if (row.row == Extension::SerialNumber) {
+    throw Refused{"~AAX writes one word of the serial number"};
   }
   const unsigned value = *digits & 0xFFFFU;
   if (value > row.highest) {

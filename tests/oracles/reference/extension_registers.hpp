@@ -13,6 +13,7 @@ enum class Extension {
   InputFilters,
   Inversion,
   Setting,  ///< a stored number without another effect when it is written
+  SerialNumber,
   WideCounters,
   TimedOutputs,
   Version,

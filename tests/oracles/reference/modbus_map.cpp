@@ -76,19 +76,38 @@ CoilRow listed_coils(const ModelRow& model, unsigned first, unsigned quantity, u
   return row;
 }
 
+/// The identity registers that are only read: extensions.md.
+struct TextRow {
+  unsigned first;
+  unsigned count;
+};
+constexpr TextRow kModelText{0x00C8, 20};
+constexpr TextRow kVersionText{0x00FA, 16};
+constexpr TextRow kBootLoaderText{0x014A, 8};
+
+bool is_in(TextRow row, unsigned address) { return address >= row.first && address < row.first + row.count; }
+
+/// One character in each register.
+unsigned character(const std::string& text, unsigned index) {
+  return index < text.size() ? static_cast<unsigned char>(text[index]) : 0;
+}
+
 /// Returns whether the table lists this register for this model and this function.
 bool register_listed(const ModelRow& model, unsigned address, unsigned function) {
   const bool counter = address < model.inputs;
   const bool code = address == 0x01E2 || address == 0x01E3;
   const bool setting = address == 0x01E4 || address == 0x01E5 || address == 0x01E8;
+  const bool own_address = address == 0x0080;
+  const bool text =
+      is_in(kModelText, address) || is_in(kVersionText, address) || is_in(kBootLoaderText, address);
   const ExtensionRow extension = extension_row(model, address);
   switch (function) {
     case 0x03:
-      return counter || code || setting || extension.row != Extension::None;
+      return counter || code || setting || own_address || text || extension.row != Extension::None;
     case 0x04:
-      return counter || extension.row != Extension::None;
+      return counter || own_address || text || extension.row != Extension::None;
     default:
-      return setting || extension.written;
+      return setting || own_address || extension.written;
   }
 }
 
@@ -174,7 +193,20 @@ unsigned Module::register_value(unsigned address) {
       return stored_.baud_code;
     case 0x01E8:
       return stored_.timeout;
+    case 0x0080:
+      return address_;
     default:
+      if (is_in(kModelText, address)) {
+        std::string text = std::string(row_->designation).substr(2);
+        text.erase(std::remove(text.begin(), text.end(), '-'), text.end());
+        return character(text, address - kModelText.first);
+      }
+      if (is_in(kVersionText, address)) {
+        return character("D01.00", address - kVersionText.first);
+      }
+      if (is_in(kBootLoaderText, address)) {
+        return 0;
+      }
       return address < 16 ? counters_[address] : extension_word(address);
   }
 }
@@ -322,9 +354,10 @@ void Module::judge_registers(unsigned first, const std::vector<unsigned>& values
   for (unsigned i = 0; i < values.size(); ++i) {
     const unsigned value = values[i];
     switch (first + i) {
+      case 0x0080:
       case 0x01E4:
         if (value < 1 || value > 247) {
-          throw Exception{0x03, "register 0x01E4 03"};
+          throw Exception{0x03, "register " + register_name(*row_, first + i) + " 03"};
         }
         break;
       case 0x01E5:
@@ -348,6 +381,12 @@ void Module::judge_registers(unsigned first, const std::vector<unsigned>& values
         break;
     }
   }
+  if (extension_row(*row_, first).row == Extension::SerialNumber) {
+    const bool both = first == 0x010E && values.size() == 2;
+    if (!both || (values[0] != 0x0D00 && (values[0] | values[1]) != 0)) {
+      throw Exception{0x03, "register 0x010E 03"};
+    }
+  }
   if (extension_row(*row_, first).row == Extension::TimedOutputs && refuses_outputs()) {
     throw Exception{0x04, "register 0x0280 04"};
   }
@@ -358,6 +397,9 @@ void Module::set_registers(unsigned first, const std::vector<unsigned>& values) 
     switch (first + i) {
       case 0x01E4:
         set().address = values[i];  // takes effect at the next reset
+        break;
+      case 0x0080:
+        address_ = set().address = values[i];
         break;
       case 0x01E5:
         set().baud_code = values[i];  // takes effect at the next reset
@@ -376,7 +418,7 @@ void Module::set_registers(unsigned first, const std::vector<unsigned>& values) 
 /// Returns whether the module ignores a broadcast that writes registers from `first` on. The result is the
 /// same for all registers that one request can write.
 bool Module::broadcast_ignored(unsigned first) {
-  if (first == 0x01E4 || first == 0x01E5) {
+  if (first == 0x0080 || first == 0x01E4 || first == 0x01E5) {
     return true;
   }
   if (extension_row(*row_, first).row == Extension::TimedOutputs) {

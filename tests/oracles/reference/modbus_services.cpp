@@ -82,6 +82,11 @@ Bytes Module::device_identification(const Bytes& frame) {
   }
   const std::string texts[] = {"OpenEX9000",   row_->designation, "D01.00",    "",
                                row_->in_words, row_->designation, stored_.name};
+  if (asked == 0x04 && object == 0x80) {  // extensions.md: the serial number
+    Bytes reply = {frame[0], 0x2B, 0x0E, 0x04, 0x82, 0x00, 0x00, 0x01, 0x80, 0x08};
+    append_text(reply, hex(serial_number(), 8));
+    return reply;
+  }
   const auto present = [](unsigned id) { return id <= 0x06 && id != 0x03; };
   unsigned last = asked == 0x01 ? 0x02 : 0x06;
   if (asked == 0x04) {

@@ -77,12 +77,14 @@ struct Stored {
   unsigned delay = 0;                  ///< the response delay in ms
   std::array<unsigned, 16> filters{};  ///< the filter times of the inputs, in ms
   unsigned inversion = 0;              ///< bit n is input n
+  unsigned serial_number = 0;          ///< 0: that of the board
 };
 
 inline bool operator==(const Stored& a, const Stored& b) {
   const auto members = [](const Stored& s) {
     return std::tie(s.address, s.baud_code, s.format, s.modbus, s.name, s.power_on, s.safe, s.enabled,
-                    s.timeout, s.timed_out, s.restarted_by_requests, s.delay, s.filters, s.inversion);
+                    s.timeout, s.timed_out, s.restarted_by_requests, s.delay, s.filters, s.inversion,
+                    s.serial_number);
   };
   return members(a) == members(b);
 }
@@ -108,6 +110,8 @@ class Module {
     stored_ = stored;
     blank_memory_ = false;
   }
+  /// 0: the board has none.
+  void set_serial_number_of_board(unsigned number) { serial_number_of_board_ = number; }
   /// Switches the supply. `when`: the reset.
   void power(bool on, Moment when);
   /// Resets the module. Has no effect while the supply is off. `reason`: the value of register 0x0301.
@@ -303,7 +307,12 @@ class Module {
   std::string delay_command(const std::string& body);
   std::string extension_command(const std::string& body);
 
+  [[nodiscard]] unsigned serial_number() const {
+    return stored_.serial_number != 0 ? stored_.serial_number : serial_number_of_board_;
+  }
+
   const ModelRow* row_;
+  unsigned serial_number_of_board_ = 0;
   Stored stored_;
   bool blank_memory_ = true;  ///< nothing has been stored yet
 

@@ -29,7 +29,7 @@ export class LineView {
   }
 
   /// The modules that match all of `words`, in lower case. A word may be part of the line's name, or of a module's
-  /// number, model, address or name.
+  /// number, model, address, serial number or name.
   matches(words) {
     const its = this.line.name.toLowerCase();
     const contains = (text) => words.every((word) => text.includes(word));
@@ -38,8 +38,8 @@ export class LineView {
 
   textOf({position, model}) {
     const {plate, stored} = this.states[position];
-    const address = plate?.listening ? hexByte(plate.address) : "";
-    return `${position + 1} ${model} ${address} ${stored?.settings.name ?? ""}`.toLowerCase();
+    const known = plate?.listening ? `${hexByte(plate.address)} ${plate.serialNumber}` : "";
+    return `${position + 1} ${model} ${known} ${stored?.settings.name ?? ""}`.toLowerCase();
   }
 
   /// Shows only the plates of `found`, and hides the line if that is empty.

@@ -32,6 +32,7 @@ export class Plate {
     this.reset = make("button", {type: "button", class: "reset", "aria-label": name("reset"),
       onclick: () => this.tell("reset")}, "Reset");
     this.address = this.readout("Address");
+    this.serialNumber = this.readout("Serial number");
     this.baud = this.readout("Baud");
     this.protocol = this.readout("Protocol");
     this.hostWatchdog = this.readout("Host watchdog", "wide");
@@ -43,7 +44,8 @@ export class Plate {
       make("div", {class: "head"},
         make("div", {class: "title"}, make("h3", {}, this.layout.model), this.name),
         make("div", {class: "lamp"}, this.led, this.ledText)),
-      make("div", {class: "readouts"}, this.address.box, this.baud.box, this.protocol.box, this.hostWatchdog.box),
+      make("div", {class: "readouts"}, this.address.box, this.baud.box, this.protocol.box,
+        this.hostWatchdog.box, this.serialNumber.box),
       this.strip("outputs", "Outputs", this.outputs), this.strip("inputs", "Inputs", this.inputs),
       make("div", {class: "controls"},
         make("span", {class: "control"}, make("span", {"aria-hidden": "true"}, "Power"), this.power.element),
@@ -109,6 +111,7 @@ export class Plate {
     setText(this.ledText, plate.initMode ? `${supply}, INIT mode` : supply);
     const on = plate.listening;
     setText(this.address.value, on ? hexByte(plate.address) : "––");
+    setText(this.serialNumber.value, on ? plate.serialNumber : "––");
     setText(this.baud.value, on ? `${plate.baud} ${plate.format}` : "––");
     const ascii = plate.checksum ? "ASCII+Σ" : "ASCII";
     setText(this.protocol.value, !on ? "––" : plate.protocol === "modbus" ? "RTU" : ascii);

@@ -22,8 +22,8 @@ TEST(Face, ShowsTheActiveSettingsAndTheLed) {
   ModuleBench bench("EX9042D@2A,baud=19200,format=8E1,checksum=on,name=PUMPS");
   EXPECT_EQ(face_of(bench)["plate"], Message::parse(R"({
     "switch": true, "powered": true, "init": false, "listening": true, "initMode": false, "address": 42,
-    "baud": 19200, "format": "8E1", "protocol": "ascii", "checksum": true, "led": "on", "outputs": 0,
-    "inputs": 0, "timers": [0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0], "resets": 0})"));
+    "serialNumber": "00000000", "baud": 19200, "format": "8E1", "protocol": "ascii", "checksum": true,
+    "led": "on", "outputs": 0, "inputs": 0, "timers": [0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0], "resets": 0})"));
   EXPECT_EQ(face_of(bench)["stored"]["settings"]["name"], "PUMPS");
 }
 
