@@ -94,6 +94,7 @@ void Module::apply(const Settings& settings, Time now) {
   }
   state_.settings = settings;
   receiver_.restart_by_requests(settings.fed_by_requests);
+  receiver_.answer_to_number(state_.serial_number());
   if (settings.timeout_status) {
     state_.outputs = settings.safe_value;  // this value may be new (wire.md D6)
   }
@@ -185,7 +186,7 @@ void Module::dispatch(Time now) {
     return;
   }
   const Frame& request = receiver_.queue().waiting();
-  const Outcome& outcome = cycle_.judge(request.bytes(), now);
+  const Outcome& outcome = cycle_.judge(request, now);
   if (!state_.in_force.init_mode && state_.settings.response_delay != 0) {
     cycle_.hold_reply_until(request.received + receiver_.timing().rest_of_stop_bit +
                             milliseconds(state_.settings.response_delay) + kClockResolution);

@@ -42,7 +42,11 @@ class Module {
   Duration on_byte(std::uint8_t byte, ByteStatus status, const Clock& clock) {
     return receiver_.on_byte(byte, status, clock);
   }
-  Duration on_silence(Time now) { return receiver_.on_silence(now); }
+  /// Then send what `take_burst` returns. `line_low`: a start bit is on the line.
+  Duration on_silence(Time now, bool line_low) {
+    return receiver_.on_silence(now, line_low, !receiver_.queue().has_frame() && cycle_.at_rest());
+  }
+  Bytes take_burst() { return receiver_.take_burst(); }
   /// When the last stop bit has been sent and the driver is off. Needs no `step`.
   void on_reply_sent(Time now) {
     receiver_.on_own_driver_off(now);
@@ -70,7 +74,7 @@ class Module {
   /// A reply that does not end jams the line: past its deadline, no feed until its end (wire.md section 6).
   bool feed_watchdog(Time now) {
     const bool jammed = cycle_.replying() && reply_deadline_.reached(now);
-    return module_watchdog_.main_loop_alive() && !jammed;
+    return module_watchdog_.main_loop_alive() && !jammed && !receiver_.arbitration().jams(now);
   }
 
   /// The settings are loaded and the mode (INIT or normal) is selected: call `listen` with the times of the
@@ -101,6 +105,8 @@ class Module {
     return listening() && cycle_.phase() == RequestCycle::Phase::Idle && !cycle_.replying() &&
            !receiver_.queue().has_frame();
   }
+  /// A bus scan is under way, in which the module may still win.
+  [[nodiscard]] bool arbitrates() const { return receiver_.arbitration().active(); }
   [[nodiscard]] const Outcome& outcome() const { return cycle_.outcome(); }
   [[nodiscard]] bool settings_unreadable() const { return keeper_.unreadable(); }
 

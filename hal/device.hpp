@@ -47,11 +47,16 @@ class Device {
       wake_for_frame();
     }
   }
-  /// When the silence timer expires: a silence is over, or the turn-around time of an ASCII frame.
+  /// When the silence timer expires: a silence is over, the turn-around time of an ASCII frame, or a window
+  /// of an arbitration.
   void on_silence() {
-    const Duration more = module_.on_silence(board_.clock.now_in_interrupt());
+    const Duration more = module_.on_silence(board_.clock.now_in_interrupt(), board_.line.low());
     if (!(more == Duration())) {
       board_.silence_timer.restart(more);
+    }
+    const Bytes burst = module_.take_burst();
+    if (burst.size != 0) {
+      board_.line.send_in_interrupt(burst);
     }
     wake_for_frame();
   }

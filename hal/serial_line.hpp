@@ -13,7 +13,11 @@
 //         From the main loop, only while not `sending()`. The driver is on before the first start bit and off
 //         within a character time after the last stop bit has left the shift register. The data register is
 //         empty earlier: its flag must not turn the driver off. `bytes`: not empty, valid while `sending`.
+//     void send_in_interrupt(Bytes bytes)
+//         As `send`, from the interrupt of the silence timer. The main loop must not call `send` meanwhile.
 //     bool sending() const    The driver is on. For interrupts and the main loop.
+//     bool low() const
+//         A start bit is on the line, from another sender. false if the board cannot tell. For interrupts.
 //
 // On a board, also:
 //     void start()            Turns the driver off. Once, before `open`.

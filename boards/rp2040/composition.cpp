@@ -44,7 +44,8 @@ using Tick = SystemTick<kHertz / kMegahertz>;
 using SilenceTimer = OneShotTimer<0>;
 using LineEndTimer = OneShotTimer<1>;
 using WakeTimer = OneShotTimer<2>;
-using Line = hal::pl011::Uart<kUart0, kHertz, hal::DriverEnablePin<kDriverEnable>, LineEndTimer>;
+constexpr Pin kReceive{kUartPins.first_pin + 1U};
+using Line = hal::pl011::Uart<kUart0, kHertz, hal::Transceiver<kDriverEnable, kReceive>, LineEndTimer>;
 using Watchdog = HardwareWatchdog<kClock.crystal / kMegahertz>;
 
 /// The memory that stores the settings: its driver, and the functions that start the driver and handle its

@@ -18,11 +18,18 @@ constexpr std::size_t kLongestFrame = kBuiltModbus ? 256 : 32;
 
 struct Frame {
   std::uint16_t offset = 0;  ///< index of the first byte; 1 after a turn-around byte
-  std::uint16_t size = 0;    ///< number of bytes from `offset` on, without checksum, CRC and CR
-  Time received;             ///< when the UART reported the last byte
+  /// Addressed by serial number: the last byte of the number is the first byte of the frame.
+  bool by_serial_number = false;
+  std::uint16_t size = 0;  ///< number of bytes from `offset` on, without checksum, CRC and CR
+  Time received;           ///< when the UART reported the last byte
   std::array<std::uint8_t, kLongestFrame + 1> storage{};
 
   [[nodiscard]] Bytes bytes() const { return {storage.data() + offset, size}; }
+  /// To which the frame is addressed, high byte first; empty: to an address.
+  [[nodiscard]] Bytes serial_number() const {
+    constexpr std::uint16_t kBefore = 3;
+    return by_serial_number ? Bytes{storage.data() + (offset - kBefore), kBefore + 1U} : Bytes();
+  }
 };
 
 /// Two buffers in turn: one frame waits for the main loop while the next is assembled. The main loop drops a

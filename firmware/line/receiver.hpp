@@ -3,7 +3,9 @@
 
 #include <cstdint>
 
+#include "firmware/bytes.hpp"
 #include "firmware/crossing.hpp"
+#include "firmware/line/arbitration.hpp"
 #include "firmware/line/dcon_assembler.hpp"
 #include "firmware/line/frame_queue.hpp"
 #include "firmware/line/host_oks.hpp"
@@ -34,12 +36,15 @@ class Receiver {
   /// `clock.now_in_interrupt()`: the present time; only a CR in DCON needs it. LineTiming takes into account
   /// the part of the stop bits that is left when the UART reports a byte. Restart the silence timer with the
   /// returned time and call `on_silence` when it has passed; leave the timer alone if it is 0. In Modbus it
-  /// is never 0; in DCON it is the turn-around time after the CR of an accepted frame, else 0.
+  /// is 0 only during an arbitration; in DCON it is the turn-around time after the CR of an accepted frame,
+  /// else 0.
   template <class Clock>
   Duration on_byte(std::uint8_t byte, ByteStatus status, const Clock& clock);
 
   /// When the time from `on_byte` or `on_silence` has passed. Returns the next such time; 0: none.
-  Duration on_silence(Time now);
+  /// `line_low`, `at_rest`: see Arbitration::on_time. Then send what `take_burst` returns.
+  Duration on_silence(Time now, bool line_low, bool at_rest);
+  Bytes take_burst() { return arbitration_.take_burst(); }
 
   /// When the module's own driver is off again; no `on_byte` while it is on. Drops an incomplete frame,
   /// except an RTU frame that lacks only its silence (wire.md D9).
@@ -49,10 +54,12 @@ class Receiver {
 
   /// For frames that end after this call. After `listen`.
   void answer_to(std::uint8_t address);
+  void answer_to_number(std::uint32_t serial_number) { rtu_.answer_to_number(serial_number); }
   /// Whether each request (wire.md D16) with the module's own address and a correct check restarts the host
   /// watchdog like a host OK. For frames that end after this call.
   void restart_by_requests(bool on) { restarts_by_requests_.store_in_main_loop(on); }
   [[nodiscard]] const LineTiming& timing() const { return rtu_.timing(); }
+  [[nodiscard]] const Arbitration& arbitration() const { return arbitration_; }
   FrameQueue& queue() { return queue_; }
   [[nodiscard]] const FrameQueue& queue() const { return queue_; }
   constexpr LineTallies& tallies() { return tallies_; }
@@ -75,6 +82,7 @@ class Receiver {
 
   DconAssembler dcon_;
   RtuAssembler rtu_;
+  Arbitration arbitration_;
   Protocol protocol_ = Protocol::Ascii;
   LineTallies tallies_;
   HostOks host_oks_;
@@ -89,8 +97,10 @@ inline Duration Receiver::on_byte(std::uint8_t byte, ByteStatus status, const Cl
     tallies_.count_damaged_byte_in_interrupt();
   }
   if (modbus()) {
-    rtu_.byte(queue_, byte, status);
-    return rtu_.first_wait();
+    if (arbitration_.active() && arbitration_.hears_byte()) {
+      return {};
+    }
+    return rtu_.byte(queue_, byte, status);
   }
   if (byte != DconAssembler::kEnd) {
     dcon_.byte(queue_, byte, status);

@@ -35,13 +35,33 @@ void RtuAssembler::open(FrameQueue& queue, std::uint8_t first) {
   crc_after_zero_ = Crc16();
 }
 
+std::optional<Arbitration::Round> RtuAssembler::round() const {
+  constexpr unsigned kSize = 5;
+  if (state_ != State::Receiving || received_ != kSize || whole_.value() != 0 || first_spoiled_ ||
+      rest_spoiled_ || frame_->storage[0] != modbus::kScanAddress ||
+      frame_->storage[1] != modbus::kScanFunction) {
+    return {};
+  }
+  switch (frame_->storage[2]) {
+    case modbus::kFirstRound:
+      return Arbitration::Round::First;
+    case modbus::kNextRound:
+      return Arbitration::Round::Next;
+    default:
+      return {};
+  }
+}
+
+/// After bytes with a correct CRC. Above 19200 baud, an arbitration begins before T3.5 is over.
+Duration RtuAssembler::wait_after_frame() const { return round() ? wait_of_round() : first_wait_; }
+
 Verdict RtuAssembler::silence(FrameQueue& queue, Time now) {
   Verdict verdict = Verdict::Open;
   switch (state_) {  // not covered: the enumeration has no other value
     case State::Idle:
       break;
     case State::Receiving:
-      if (strict()) {
+      if (strict() && !round()) {
         state_ = State::LongGap;
         break;
       }
@@ -83,16 +103,23 @@ Verdict RtuAssembler::conclude(FrameQueue& queue, Time received) {
     }
     offset = 1;
   }
-  const unsigned size = received_ - offset;
+  unsigned size = received_ - offset;
   if (size < kShortestFrame || size > kLongestFrame) {
     return Verdict::Open;
   }
+  const bool by_number = has_own_number(frame.storage.data() + offset, size);
+  if (by_number) {
+    offset += modbus::kNumberPrefix;
+    size -= modbus::kNumberPrefix;
+  }
   const std::uint8_t address = frame.storage[offset];
   const bool is_exception = (frame.storage[offset + 1] & modbus::kExceptionFlag) != 0;
-  if (is_exception || (address != own_address_.load() && address != modbus::kBroadcast)) {
+  const bool is_broadcast = !by_number && address == modbus::kBroadcast;
+  if (is_exception || (!by_number && !is_broadcast && address != own_address_.load())) {
     return Verdict::Foreign;
   }
-  broadcast_ = address == modbus::kBroadcast;
+  broadcast_ = is_broadcast;
+  frame.by_serial_number = by_number;
   frame.offset = static_cast<std::uint16_t>(offset);
   frame.size = static_cast<std::uint16_t>(size - kCrcBytes);
   frame.received = received;
@@ -100,6 +127,16 @@ Verdict RtuAssembler::conclude(FrameQueue& queue, Time received) {
     return Verdict::HostOk;
   }
   return queue.complete_in_interrupt() ? Verdict::Accepted : Verdict::NoRoom;
+}
+
+/// `frame` of `size` bytes is a request by serial number, and the number is this module's.
+bool RtuAssembler::has_own_number(const std::uint8_t* frame, unsigned size) const {
+  constexpr unsigned kNumberAt = 3;
+  const Bytes bytes{frame, size};
+  const std::uint32_t number = serial_number_.load();
+  return frame[0] == modbus::kScanAddress && size >= modbus::kNumberPrefix + kShortestFrame && number != 0 &&
+         frame[1] == modbus::kScanFunction && frame[2] == modbus::kRequestByNumber &&
+         (std::uint32_t{bytes.word(kNumberAt)} << 16U | bytes.word(kNumberAt + 2)) == number;
 }
 
 Verdict RtuAssembler::loss_verdict() const {

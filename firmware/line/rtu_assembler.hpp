@@ -1,9 +1,12 @@
 // Assembles Modbus RTU frames from bytes and silences, in interrupts.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <optional>
 
 #include "firmware/crossing.hpp"
+#include "firmware/line/arbitration.hpp"
 #include "firmware/line/crc16.hpp"
 #include "firmware/line/frame_queue.hpp"
 #include "firmware/line/timing.hpp"
@@ -24,10 +27,19 @@ class RtuAssembler {
   [[nodiscard]] const LineTiming& timing() const { return timing_; }
   /// For frames that end after this call. For the main loop, also while bytes are received.
   void answer_to(std::uint8_t address) { own_address_.store_in_main_loop(address); }
+  /// The same for frames that are addressed by serial number. 0: the module has none.
+  void answer_to_number(std::uint32_t serial_number) { serial_number_.store_in_main_loop(serial_number); }
+  [[nodiscard]] Arbitration::Contender contender() const {
+    return {serial_number_.load(), static_cast<std::uint8_t>(own_address_.load())};
+  }
 
-  /// From the receive interrupt; then restart the silence timer with `first_wait()`.
-  void byte(FrameQueue& queue, std::uint8_t byte, ByteStatus status);
-  [[nodiscard]] Duration first_wait() const { return first_wait_; }
+  /// From the receive interrupt; then restart the silence timer with the returned time.
+  Duration byte(FrameQueue& queue, std::uint8_t byte, ByteStatus status);
+
+  /// The open frame asks for a round of a scan if it ends here, which it does when its first wait is over.
+  [[nodiscard]] std::optional<Arbitration::Round> round() const;
+  /// The first wait of such a frame.
+  [[nodiscard]] Duration wait_of_round() const { return std::min(timing_.rtu_silence, timing_.arbitration); }
 
   /// From the interrupt of the silence timer; then restart it with `next_wait()`, unless that is 0. Returns
   /// the verdict on the frame that has ended, or Open. An accepted frame is address, function and data,
@@ -57,10 +69,13 @@ class RtuAssembler {
   void open(FrameQueue& queue, std::uint8_t first);
   void go_on(FrameQueue& queue, std::uint8_t byte);
   void spoil();
+  [[nodiscard]] Duration wait_after_frame() const;
+  [[nodiscard]] bool has_own_number(const std::uint8_t* frame, unsigned size) const;
   Verdict conclude(FrameQueue& queue, Time received);
   [[nodiscard]] Verdict loss_verdict() const;
 
   WrittenByMainLoop<std::uint32_t> own_address_;
+  WrittenByMainLoop<std::uint32_t> serial_number_;
   LineTiming timing_{};
   Duration first_wait_;
   State state_ = State::Idle;
@@ -77,7 +92,7 @@ class RtuAssembler {
 
 // `byte` and `spoil` are inline, because `byte` runs for each byte on the line, also of other modules.
 
-inline void RtuAssembler::byte(FrameQueue& queue, std::uint8_t byte, ByteStatus status) {
+inline Duration RtuAssembler::byte(FrameQueue& queue, std::uint8_t byte, ByteStatus status) {
   if (state_ != State::Receiving) {
     go_on(queue, byte);
   } else if (after_zero_) {
@@ -93,6 +108,7 @@ inline void RtuAssembler::byte(FrameQueue& queue, std::uint8_t byte, ByteStatus 
     spoil();
     overrun_ = overrun_ || status == ByteStatus::Overrun;
   }
+  return whole_.value() == 0 ? wait_after_frame() : first_wait_;
 }
 
 /// The last byte, or the gap after it.

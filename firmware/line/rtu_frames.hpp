@@ -14,6 +14,23 @@ constexpr std::uint16_t kHostOkRegister = 0x3038;
 /// In the function code of exception replies, never of a request.
 constexpr std::uint8_t kExceptionFlag = 0x80;
 
+/// Frames of a bus scan and of access by serial number (extensions.md, scan): address, function, then one of
+/// these.
+constexpr std::uint8_t kScanAddress = 0xFD;
+constexpr std::uint8_t kScanFunction = 0x46;
+enum Scan : std::uint8_t {
+  kFirstRound = 0x01,
+  kNextRound = 0x02,
+  kFound = 0x03,
+  kNobodyLeft = 0x04,
+  kRequestByNumber = 0x08,
+  kReplyByNumber = 0x09,
+};
+
+/// Before the request in a frame by serial number. The last byte of the number, which follows, is where the
+/// address would be.
+constexpr unsigned kNumberPrefix = 6;
+
 /// Function 03 or 04, register 0x3038, quantity 0 or 1; `frame` without CRC. The interrupt that ends a frame
 /// checks this, so that no host OK is lost while a request is waiting.
 constexpr bool is_host_ok(Bytes frame) {

@@ -1,6 +1,7 @@
 // The times between frames, and between a request and its reply.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 #include "firmware/model/line_format.hpp"
@@ -32,6 +33,16 @@ struct LineTiming {
   Duration rtu_slack;
   /// From the report of a byte to the end of its last stop bit, rounded up.
   Duration rest_of_stop_bit;
+  /// From the report of the last byte of a request to the first window of its arbitration: the rest of the
+  /// stop bits, then 3.5 characters of 12 bits, at least 800 us rounded up to whole bits (extensions.md,
+  /// scan).
+  Duration arbitration;
+  /// Of a window of an arbitration, in 1/64 us: 12 bits and 50 us rounded up to whole bits.
+  std::uint32_t window_64ths = 0;
+
+  [[nodiscard]] constexpr Duration windows(unsigned count) const {
+    return Duration(count * window_64ths / kParts);
+  }
 
   static constexpr Duration kAnyGap{0xFFFF'FFFFU};
 
@@ -49,6 +60,11 @@ struct LineTiming {
     timing.rtu_silence = timing.rest_of_stop_bit + Duration(silence(7, baud, 1750) + kRoundUp);
     timing.rtu_grace = Duration(until_report > kRoundDown ? until_report - kRoundDown : 1);
     timing.rtu_slack = kAnyGap;
+    const std::uint32_t before = std::max(42U, whole_bits(800, baud));
+    timing.arbitration = timing.rest_of_stop_bit + Duration(microseconds(2 * before, baud) + 1U);
+    const std::uint32_t window = 12 + whole_bits(50, baud);
+    timing.window_64ths =
+        window * kMicroseconds / baud * kParts + window * kMicroseconds % baud * kParts / baud;
     return timing;
   }
 
@@ -59,6 +75,7 @@ struct LineTiming {
     timing.dcon_turn_around = timing.dcon_turn_around + half_bit;
     timing.rtu_silence = timing.rtu_silence + half_bit;
     timing.rest_of_stop_bit = timing.rest_of_stop_bit + half_bit;
+    timing.arbitration = timing.arbitration + half_bit;
     timing.rtu_grace = timing.rtu_grace - half_bit;  // a byte is reported half a bit earlier than in `at`
     return timing;
   }
@@ -72,6 +89,13 @@ struct LineTiming {
   }
 
  private:
+  static constexpr std::uint32_t kMicroseconds = 1'000'000;
+  static constexpr std::uint32_t kParts = 64;
+
+  static constexpr std::uint32_t whole_bits(std::uint32_t microseconds, std::uint32_t baud) {
+    return (microseconds * baud + (kMicroseconds - 1)) / kMicroseconds;
+  }
+
   static constexpr LineTiming strictly(LineTiming timing, std::uint32_t baud, LineFormat format) {
     timing.rtu_slack =
         Duration(silence(3, baud, 750) + microseconds(2 * bits_of_character(format), baud) + kRoundUp);

@@ -64,15 +64,37 @@ void write_exception(std::uint8_t address, std::uint8_t function, Refusal refusa
   reply.put(exception_of(refusal, function));
 }
 
+bool is_addressed_to(const State& state, std::uint8_t address, Bytes serial_number) {
+  if (serial_number.size == 0) {
+    return address == state.in_force.address;
+  }
+  constexpr unsigned kBitsOfAWord = 16;
+  return (std::uint32_t{serial_number.word(0)} << kBitsOfAWord | serial_number.word(2)) ==
+         state.serial_number();
+}
+
+/// The last byte of the number follows as the address of the reply.
+void put_prefix(Bytes serial_number, Reply& reply) {
+  reply.put(kScanAddress);
+  reply.put(kScanFunction);
+  reply.put(kReplyByNumber);
+  reply.put(serial_number.first(serial_number.size - 1));
+  reply.end_prefix();
+}
+
 }  // namespace
 
 void answer(Exchange& exchange) {
   const Bytes frame = exchange.frame;
   Reply& reply = exchange.reply;
   const std::uint8_t function = frame[1];
-  exchange.broadcast = frame[0] == kBroadcast;
-  if (!exchange.broadcast && frame[0] != exchange.state.in_force.address) {
-    return;  // a write has changed the address since the frame was received (wire.md D16)
+  const bool by_number = exchange.serial_number.size != 0;
+  exchange.broadcast = !by_number && frame[0] == kBroadcast;
+  if (!exchange.broadcast && !is_addressed_to(exchange.state, frame[0], exchange.serial_number)) {
+    return;  // a write has changed address or number since the frame was received (wire.md D16)
+  }
+  if (by_number) {
+    put_prefix(exchange.serial_number, reply);
   }
   const FunctionRow* row = find(exchange.model(), function);
   if (exchange.broadcast && (row == nullptr || row->at_broadcast == AtBroadcast::Ignored)) {
@@ -98,7 +120,7 @@ void answer(Exchange& exchange) {
 void refuse_store(Exchange& exchange) {
   Reply& reply = exchange.reply;
   if (!reply.empty()) {
-    const Bytes written = reply.bytes();
+    const Bytes written = reply.after_prefix();
     write_exception(written[0], written[1], Refusal::StoreFailed, reply);
     append_crc(reply);
   }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "firmware/bytes.hpp"
+#include "firmware/line/frame_queue.hpp"
 #include "firmware/line/line_tallies.hpp"
 #include "firmware/request/outcome.hpp"
 #include "firmware/request/reply.hpp"
@@ -19,9 +20,11 @@ struct Exchange {
   const State& state;
   const LineTallies& tallies;  ///< the counts already include this request
 
-  Bytes frame;       ///< the request without checksum, CRC and CR; valid until it has been judged
-  Bytes args;        ///< the arguments of a DCON command (dcon/commands.hpp); set before a DCON handler runs
-  bool broadcast{};  ///< whether the request has address 0; for Modbus only
+  Bytes frame;  ///< the request without checksum, CRC and CR; valid until it has been judged
+  Bytes args;   ///< the arguments of a DCON command (dcon/commands.hpp); set before a DCON handler runs
+  Bytes
+      serial_number;  ///< Modbus: to which the request is addressed, else empty; its last byte begins `frame`
+  bool broadcast{};   ///< Modbus: the request has address 0
 
   Outcome outcome;
   Reply reply;
@@ -37,10 +40,11 @@ struct Exchange {
   }
   [[nodiscard]] constexpr const Model& model() const { return state.model(); }
   /// For the next request. The outcome must be clear.
-  void begin(Bytes request) {
-    frame = request;
+  void begin(const Frame& request) {
+    frame = request.bytes();
+    serial_number = request.serial_number();
     outcome.refusal = Refusal::None;
-    reply.clear();
+    reply.begin();
   }
 };
 

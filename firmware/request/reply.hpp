@@ -16,7 +16,12 @@ namespace ex9000 {
 /// and every DCON reply is shorter than 32 bytes.
 class Reply {
  public:
-  void clear() { size_ = 0; }
+  /// For the next request.
+  void begin() { size_ = prefix_ = 0; }
+  /// What has been put so far precedes the reply proper.
+  void end_prefix() { prefix_ = size_; }
+  /// Drops the reply proper.
+  void clear() { size_ = prefix_; }
 
   void put(std::uint8_t byte) {
     if (size_ < bytes_.size()) {
@@ -55,12 +60,14 @@ class Reply {
     }
   }
 
-  [[nodiscard]] bool empty() const { return size_ == 0; }
+  [[nodiscard]] bool empty() const { return size_ == prefix_; }
   [[nodiscard]] std::size_t size() const { return size_; }
   [[nodiscard]] Bytes bytes() const { return {bytes_.data(), size_}; }
+  [[nodiscard]] Bytes after_prefix() const { return bytes().from(prefix_); }
 
  private:
-  std::size_t size_ = 0;
+  std::size_t prefix_ = 0;
+  std::size_t size_ = 0;  ///< with the prefix
   std::array<std::uint8_t, kLongestFrame> bytes_{};
 };
 

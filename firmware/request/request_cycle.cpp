@@ -17,8 +17,9 @@ void RequestCycle::poll(Time now) {
   }
 }
 
-const Outcome& RequestCycle::judge(Bytes frame, Time now) {
+const Outcome& RequestCycle::judge(const Frame& frame, Time now) {
   EX9000_EXPECT(free());
+  processing_.store_in_main_loop(true);
   exchange_.begin(frame);
   earliest_reply_.set(now);
   earliest_reply_.delay_to(gap_end_);
@@ -32,7 +33,7 @@ const Outcome& RequestCycle::judge(Bytes frame, Time now) {
     outcome.clear();  // no action of a refused request is carried out
   }
   if (outcome.changes_settings()) {
-    phase_ = Phase::AwaitingStore;
+    enter(Phase::AwaitingStore);
   }
   return outcome;
 }
@@ -56,7 +57,7 @@ void RequestCycle::refuse_store() {
 
 bool RequestCycle::finish() {
   exchange_.outcome.clear();
-  phase_ = exchange_.reply.empty() ? Phase::Idle : Phase::ReplyReady;
+  enter(exchange_.reply.empty() ? Phase::Idle : Phase::ReplyReady);
   return phase_ == Phase::ReplyReady;
 }
 
@@ -65,8 +66,8 @@ Bytes RequestCycle::take_reply(Time now) {
     return {};
   }
   EX9000_EXPECT(!replying());
-  phase_ = Phase::Idle;
-  replies_.store_in_main_loop(replies_.load() + 1U);
+  replies_.store_in_main_loop(replies_.load() + 1U);  // before the phase, see `at_rest`
+  enter(Phase::Idle);
   return exchange_.reply.bytes();
 }
 

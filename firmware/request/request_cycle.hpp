@@ -6,6 +6,7 @@
 #include "firmware/bytes.hpp"
 #include "firmware/crossing.hpp"
 #include "firmware/expect.hpp"
+#include "firmware/line/frame_queue.hpp"
 #include "firmware/request/exchange.hpp"
 #include "firmware/time.hpp"
 
@@ -30,6 +31,8 @@ class RequestCycle {
   [[nodiscard]] bool stores() const { return phase_ == Phase::AwaitingStore || phase_ == Phase::Storing; }
   /// A reply is on the line. An interrupt reports its end, which needs no pass of the main loop.
   [[nodiscard]] bool replying() const { return replies_.load() != replies_sent_.load(); }
+  /// No request is being processed, and no reply is on the line. For interrupts.
+  [[nodiscard]] bool at_rest() const { return !processing_.load() && !replying(); }
   /// The next request may be judged. Becomes true in `poll`.
   [[nodiscard]] bool free() const { return phase_ == Phase::Idle && replies_.load() == replies_ended_; }
   /// The shortest time between two replies (wire.md D18).
@@ -39,7 +42,7 @@ class RequestCycle {
 
   /// Only while `free()`. Does not keep the frame. If the phase becomes AwaitingStore, the changed settings
   /// must be stored before the outcome is carried out. Then call `finish`.
-  const Outcome& judge(Bytes frame, Time now);
+  const Outcome& judge(const Frame& frame, Time now);
   /// After `judge`.
   void hold_reply_until(Time earliest) { earliest_reply_.delay_to(Deadline(earliest)); }
   /// After `finish`, only the refusal.
@@ -71,7 +74,13 @@ class RequestCycle {
   }
 
  private:
+  void enter(Phase phase) {
+    phase_ = phase;
+    processing_.store_in_main_loop(phase != Phase::Idle);
+  }
+
   Phase phase_ = Phase::Idle;
+  WrittenByMainLoop<bool> processing_;
   WrittenByMainLoop<std::uint32_t> replies_;  ///< number of replies that `take_reply` has returned; wraps
   WrittenByInterrupt<std::uint32_t> replies_sent_;  ///< the value of `replies_` when a reply ended
   std::uint32_t replies_ended_ = 0;            ///< the value of `replies_sent_` that `poll` has processed

@@ -17,6 +17,7 @@ class Wire {
   /// What the UART sends instead of `bytes`, valid until its driver is off. Called before the driver is on.
   virtual Bytes replaced(Bytes bytes) { return bytes; }
   virtual void drive(bool on) = 0;
+  [[nodiscard]] virtual bool low() const { return false; }
   /// Only while the driver is on. The first start bit begins now. Turning the driver off drops the rest.
   virtual void put(Bytes bytes, SerialMode mode) = 0;
   [[nodiscard]] virtual VirtualTime takes(std::size_t bytes, SerialMode mode) const = 0;
@@ -40,7 +41,9 @@ class SerialLine {
   }
   void open(std::uint32_t baud, LineFormat format) { mode_ = {baud, format}; }
   void send(Bytes bytes);
+  void send_in_interrupt(Bytes bytes) { send(bytes); }
   [[nodiscard]] bool sending() const { return driving_; }
+  [[nodiscard]] bool low() const { return wire_.low(); }
 
   /// The baud rate is 0 before `open` and after `abort`.
   [[nodiscard]] SerialMode mode() const { return mode_; }

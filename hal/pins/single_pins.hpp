@@ -25,12 +25,27 @@ class LedPin {
   static void light(bool on) { pin.drive(on); }
 };
 
-/// On while its pin is high. The main loop turns it on, an interrupt off.
+/// On while its pin is high. The main loop turns it on, an interrupt on and off. It cannot tell whether a
+/// start bit is on the line.
 template <const auto& pin>
 class DriverEnablePin {
  public:
   static void start() { pin.make_output(false); }
   static void drive(bool on) { pin.drive(on); }
+  static bool low() { return false; }
+};
+
+/// `receive`: the UART's pin, if its level can be read although the UART owns it.
+template <const auto& driver_enable, const auto& receive>
+class Transceiver : public DriverEnablePin<driver_enable> {
+ public:
+  static bool low() { return !receive.read(); }
+};
+
+/// The driver enable of a transceiver that switches its direction itself.
+struct NoPin {
+  static void make_output(bool /*level*/) {}
+  static void drive(bool /*level*/) {}
 };
 
 }  // namespace ex9000::hal

@@ -15,19 +15,20 @@
 
 namespace ex9000::hal::pl011 {
 
-/// `base`: of the registers; `clock`: of the UART, in Hz; `DriverEnable`: `start()` turns the RS-485 driver
-/// off, `drive(bool on)` on or off; `EndTimer`: its own one-shot timer, whose interrupt calls `on_end_timer`.
+/// `base`: of the registers; `clock`: of the UART, in Hz; `Transceiver`: `start()` turns the RS-485 driver
+/// off, `drive(bool on)` on or off, `low()` see hal/serial_line.hpp; `EndTimer`: its own one-shot timer,
+/// whose interrupt calls `on_end_timer`.
 ///
 /// The FIFOs stay off: each byte causes an interrupt when it arrives, so the silence after it can be
 /// measured. The price is an overrun if an interrupt is late by more than a character time. The main loop
-/// writes `begun_`, the interrupts `ended_`; the driver is on only while these differ.
-template <std::uint32_t base, std::uint32_t clock, class DriverEnable, class EndTimer>
+/// writes `begun_`, the interrupts `ended_` and `burst_`; the driver is on only while `sending()`.
+template <std::uint32_t base, std::uint32_t clock, class Transceiver, class EndTimer>
 class Uart {
   static_assert(largest_baud_error(clock) < kTolerableBaudError,
                 "clock: the error of at least one baud rate is 1 % or more; it must be less than 1 %");
 
  public:
-  static void start() { DriverEnable::start(); }
+  static void start() { Transceiver::start(); }
 
   // --- the functions of hal/serial_line.hpp ---
 
@@ -54,11 +55,19 @@ class Uart {
     rest_.set_in_main_loop({bytes.begin() + 1, bytes.end()});
     kInterruptMask.write(kTransmitted);  // bytes that are received from now on are the echo
     begun_.store_in_main_loop(begun_.load() + 1U);
-    DriverEnable::drive(true);
-    kData.write(Bits<Data>(bytes[0]));
+    begin(bytes[0]);
+  }
+  void send_in_interrupt(Bytes bytes) {
+    rest_.in_interrupt() = {bytes.begin() + 1, bytes.end()};
+    kInterruptMask.write(kTransmitted);
+    burst_.store_in_interrupt(true);
+    begin(bytes[0]);
   }
 
-  [[nodiscard, gnu::always_inline]] bool sending() const { return begun_.load() != ended_.load(); }
+  [[nodiscard, gnu::always_inline]] bool sending() const {
+    return begun_.load() != ended_.load() || burst_.load();
+  }
+  [[nodiscard]] static bool low() { return Transceiver::low(); }
 
   // --- interrupts ---
 
@@ -85,8 +94,9 @@ class Uart {
     }
     take_echo();
     kInterruptMask.write(kReceived | kTransmitted);
-    DriverEnable::drive(false);  // must follow the write of the mask, because a master may send now
+    Transceiver::drive(false);  // must follow the write of the mask, because a master may send now
     ended_.store_in_interrupt(begun_.load());
+    burst_.store_in_interrupt(false);
     return true;
   }
 
@@ -158,6 +168,11 @@ class Uart {
     return data.has(kFramingError) ? ByteStatus::FramingError : ByteStatus::ParityError;
   }
 
+  static void begin(std::uint8_t first) {
+    Transceiver::drive(true);
+    kData.write(Bits<Data>(first));
+  }
+
   /// Empties the receiver for the next byte.
   static void take_echo() {
     if (!kFlags.read().has(kReceiverEmpty)) {
@@ -186,6 +201,7 @@ class Uart {
   HandedToInterrupt<Rest> rest_;
   WrittenByMainLoop<std::uint32_t> begun_;
   WrittenByInterrupt<std::uint32_t> ended_;
+  WrittenByInterrupt<bool> burst_;  ///< an interrupt has begun to send
 };
 
 }  // namespace ex9000::hal::pl011

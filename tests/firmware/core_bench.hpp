@@ -40,10 +40,12 @@ class CoreBench {
     now_ = now_ + kCharacter;
     module_.on_byte(value, status, ClockAt{now_});
   }
-  /// Lets a silence of 50 ms pass, which ends every frame.
+  /// Lets a silence of at least 50 ms pass, which ends every frame.
   void silence() {
     now_ = now_ + milliseconds(50);
-    while (!(module_.on_silence(now_) == Duration())) {
+    for (Duration wait = module_.on_silence(now_, false); !(wait == Duration());
+         wait = module_.on_silence(now_, false)) {
+      now_ = now_ + wait;
     }
   }
   /// Passes all bytes of a frame and the silence after it to the module. The main loop does not process the

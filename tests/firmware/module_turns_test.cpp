@@ -45,7 +45,7 @@ class ModuleTurns : public testing::Test {
       module_.on_byte(static_cast<std::uint8_t>(character), ByteStatus::Good, ClockAt{now_});
     }
     pass(kCharacter + kCharacter);
-    module_.on_silence(now_);
+    module_.on_silence(now_, false);
   }
   std::string take_reply() {
     const Bytes reply = module_.take_reply(now_);
@@ -196,11 +196,13 @@ TEST_F(ModuleTurns, IfSeveralHostOksArriveBetweenTwoTurnsTheFirstAndTheLastTakeE
 // The receiver processes `~**` itself and does not queue it, so that a full queue cannot lose it. A direct
 // call of `dcon::answer` must have the same effect.
 TEST(HostOkCommand, RestartsTheHostWatchdogAndIsNotAnswered) {
-  const std::string command = "~**";
+  Frame command;
+  command.storage = {'~', '*', '*'};
+  command.size = 3;
   const State state(*find_model("EX9043D"));
   const LineTallies tallies;
   Exchange exchange(state, tallies);
-  exchange.begin({reinterpret_cast<const std::uint8_t*>(command.data()), command.size()});
+  exchange.begin(command);
   dcon::answer(exchange);
   EXPECT_TRUE(exchange.outcome.asks_for(Effect::RestartHostWatchdog));
   EXPECT_EQ(exchange.outcome.refusal, Refusal::None);

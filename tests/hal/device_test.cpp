@@ -26,7 +26,9 @@ struct StillBoard {
     }
     static void open(std::uint32_t /*baud*/, LineFormat /*format*/) {}
     static void send(Bytes /*bytes*/) {}
+    static void send_in_interrupt(Bytes /*bytes*/) {}
     static bool sending() { return true; }
+    static bool low() { return false; }
   };
   struct Timer {
     unsigned restarts = 0;

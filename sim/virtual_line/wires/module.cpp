@@ -249,6 +249,12 @@ void SimulatedModule::say_stores() {
 void SimulatedModule::end_silence() {
   if (mcu_->silence_timer.fire()) {
     mcu_->device.on_silence();
+    if (module().arbitrates()) {
+      mcu_->silence_timer.restart_at(mcu_->silence_timer.next() + skew_);
+    }
+    if (mcu_->line.sending()) {
+      settle();  // an arbitration has begun to send
+    }
   }
 }
 

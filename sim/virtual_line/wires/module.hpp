@@ -48,6 +48,8 @@ class SimulatedModule final : public Station {
   void set_init(bool asserted);
   /// The board's, from the next start on; 0: none.
   void set_serial_number(std::uint32_t number) { serial_number_ = number; }
+  /// How much later than the first module it begins a window of an arbitration.
+  void set_skew(VirtualTime skew) { skew_ = skew; }
   [[nodiscard]] bool init_asserted() const { return init_switch_.asserted(); }
   /// `channel` from 0; one that the model lacks does not reach the firmware.
   void set_input(unsigned channel, bool level);
@@ -173,6 +175,7 @@ class SimulatedModule final : public Station {
   hal::doubles::InitSwitch init_switch_;
   VirtualTime driver_late_by_{0};
   std::uint32_t serial_number_ = 0;
+  VirtualTime skew_{0};
   bool switched_on_ = false;
   bool supply_interrupted_ = false;
   VirtualTime hangs_until_{0};  ///< 0: the main loop runs

@@ -62,6 +62,7 @@ class ModuleWire final : public Wire {
 
   Bytes replaced(Bytes bytes) override;
   void drive(bool on) override;
+  [[nodiscard]] bool low() const override { return wire_.low(); }
   void put(Bytes bytes, SerialMode mode) override;
   [[nodiscard]] VirtualTime takes(std::size_t bytes, SerialMode mode) const override {
     return wire_.takes(bytes, reply_mode(mode));

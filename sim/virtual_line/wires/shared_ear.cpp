@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "firmware/hex.hpp"
+#include "firmware/line/rtu_frames.hpp"
 
 namespace ex9000::sim {
 
@@ -81,9 +82,13 @@ void SharedEar::hear(std::uint8_t byte) {
   }
   Assembler& assembler = *assembler_;
   if (modbus()) {
-    assembler.rtu.byte(assembler.queue, byte, ByteStatus::Good);
+    const Duration wait = assembler.rtu.byte(assembler.queue, byte, ByteStatus::Good);
+    if (assembler.rtu.round()) {
+      dissolve();
+      return;
+    }
     heard_.frame.push_back(byte);
-    heard_.silence_ends = clock_.when(assembler.rtu.first_wait());
+    heard_.silence_ends = clock_.when(wait);
   } else if (byte == DconAssembler::kEnd) {
     judge(assembler.dcon.end(assembler.queue, ByteStatus::Good, clock_.now_in_interrupt()));
   } else {
@@ -127,7 +132,7 @@ std::vector<std::size_t> SharedEar::concerned_by(Verdict verdict) const {
                                : frame[0] != 0 ? frame[0]
                                                : *second;
     for (const Member& member : members_) {
-      if (member.name == name) {
+      if (member.name == name || name == modbus::kScanAddress) {
         concerned.push_back(member.station);
       }
     }

@@ -18,6 +18,7 @@ struct Wires::End final : WireEnd {
                        wires.bit_rate(mode.baud));
   }
   void listen(SerialMode mode) override { wires.listen(*this, mode); }
+  [[nodiscard]] bool low() const override { return wires.low(); }
   void hear_alone() override { wires.hear_alone(index); }
   void run_at(VirtualTime when) override { wires.due_times_.set(index, when); }
 
@@ -75,6 +76,11 @@ void Wires::run_until(VirtualTime until) {
     run_next(until);
   }
   clock_.set(std::max(until, clock_.virtual_now()));
+}
+
+bool Wires::low() const {
+  const VirtualTime now = clock_.virtual_now();
+  return std::any_of(waves_.begin(), waves_.end(), [now](const Wave& wave) { return !wave.level(now); });
 }
 
 void Wires::drive(End& end, bool on) {

@@ -59,6 +59,8 @@ class WireEnd {
   virtual void listen(SerialMode mode) = 0;
   /// Replaces the time of the next `run`; kNever: none.
   virtual void run_at(VirtualTime when) = 0;
+  /// A byte on the wires is 0 now.
+  [[nodiscard]] virtual bool low() const = 0;
   /// Ends sharing an ear. Before any change that concerns the station's hearing.
   virtual void hear_alone() = 0;
 
@@ -163,6 +165,7 @@ class Wires {
   [[nodiscard]] std::uint32_t bit_rate(std::uint32_t baud) const;
   [[nodiscard]] SerialMode on_the_wires(SerialMode mode) const;
   [[nodiscard]] VirtualTime next_wire_event() const { return std::min(next_byte_end_, next_sample_); }
+  [[nodiscard]] bool low() const;
   void drive(End& end, bool on);
   void send(End& end);
   void stop_sending(const End& end);

@@ -68,8 +68,8 @@ class Wire {
     now_ += character() - second_stop_bit_ * bit_;
     run_timer();
     assembler_.answer_to(own);
-    assembler_.byte(queue_, value, status);
-    due_ = now_ / 1000 + assembler_.first_wait().microseconds() + late_by;
+    const Duration wait = assembler_.byte(queue_, value, status);
+    due_ = now_ / 1000 + wait.microseconds() + late_by;
     now_ += second_stop_bit_ * bit_;
   }
   void bytes(const FrameBytes& values) {

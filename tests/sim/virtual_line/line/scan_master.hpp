@@ -1,0 +1,89 @@
+// A master that scans a virtual line, written from the public description of the protocol.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <tuple>
+#include <vector>
+
+#include "sim/app/play/modbus_frame.hpp"
+#include "sim/text/values.hpp"
+#include "sim/virtual_line/line/line.hpp"
+
+namespace ex9000::sim {
+
+class ScanMaster {
+ public:
+  using Bytes = std::vector<std::uint8_t>;
+  struct Found {
+    std::uint32_t serial_number;
+    unsigned address;
+
+    friend bool operator<(Found a, Found b) { return a.serial_number < b.serial_number; }
+    friend bool operator==(Found a, Found b) {
+      return std::tie(a.serial_number, a.address) == std::tie(b.serial_number, b.address);
+    }
+    friend std::ostream& operator<<(std::ostream& out, Found found) {
+      return out << hex_long_text(found.serial_number) << " at " << found.address;
+    }
+  };
+
+  /// At the rate and in the format of the first module.
+  explicit ScanMaster(const std::vector<ModuleSpec>& modules)
+      : line_(modules, kPaced, [this](std::uint8_t byte, ByteStatus /*status*/) { heard_.push_back(byte); }) {
+    line_.come_up();
+    line_.master().set_mode(line_.module(0).mode());
+  }
+
+  Line& line() { return line_; }
+
+  /// All that arrives within the time of an arbitration, a reply and a silence.
+  Bytes round(std::uint8_t subfunction) {
+    Bytes heard = ask({0xFD, 0x46, subfunction}, 1000);
+    return heard;
+  }
+
+  /// Until nobody is left or nobody replies.
+  std::vector<Found> scan() {
+    std::vector<Found> found;
+    for (std::uint8_t next = 0x01;; next = 0x02) {
+      const Bytes reply = frame_of(round(next));
+      if (reply == Bytes{0xFD, 0x46, 0x04}) {
+        return found;
+      }
+      if (reply.size() != 8 || reply[0] != 0xFD || reply[1] != 0x46 || reply[2] != 0x03) {
+        ADD_FAILURE() << "not a reply to a round: " << hex_text(reply, " ");
+        return found;
+      }
+      found.push_back({reply[3] * 0x1000000U + reply[4] * 0x10000U + reply[5] * 0x100U + reply[6], reply[7]});
+    }
+  }
+
+  /// Sends `request` with its CRC, and lets the time of `bits` pass after it. What has arrived.
+  Bytes ask(const Bytes& request, std::int64_t bits) {
+    heard_.clear();
+    const Bytes frame = with_crc(request);
+    line_.master().send(frame.data(), frame.size());
+    const VirtualTime bit(1'000'000'000 / line_.master().mode().baud);
+    line_.wires().run_for(line_.master().takes(frame.size()) + bits * bit + std::chrono::milliseconds(2));
+    return heard_;
+  }
+
+  /// Without the bytes FF before it and without its CRC; empty if that is wrong.
+  static Bytes frame_of(Bytes heard) {
+    heard.erase(heard.begin(),
+                std::find_if(heard.begin(), heard.end(), [](auto byte) { return byte != 0xFF; }));
+    if (heard.size() < 4) {
+      return {};
+    }
+    Bytes frame(heard.begin(), heard.end() - 2);
+    return with_crc(frame) == heard ? frame : Bytes{};
+  }
+
+ private:
+  Bytes heard_;
+  Line line_;
+};
+
+}  // namespace ex9000::sim
