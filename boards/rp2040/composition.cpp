@@ -44,7 +44,7 @@ using Tick = SystemTick<kHertz / kMegahertz>;
 using SilenceTimer = OneShotTimer<0>;
 using LineEndTimer = OneShotTimer<1>;
 using WakeTimer = OneShotTimer<2>;
-constexpr Pin kReceive{kUartPins.first_pin + 1U};
+constexpr Pin kReceive{static_cast<std::uint8_t>(kUartPins.first_pin + 1U)};
 using Line = hal::pl011::Uart<kUart0, kHertz, hal::Transceiver<kDriverEnable, kReceive>, LineEndTimer>;
 using Watchdog = HardwareWatchdog<kClock.crystal / kMegahertz>;
 

@@ -60,7 +60,7 @@ struct LineTiming {
     timing.rtu_silence = timing.rest_of_stop_bit + Duration(silence(7, baud, 1750) + kRoundUp);
     timing.rtu_grace = Duration(until_report > kRoundDown ? until_report - kRoundDown : 1);
     timing.rtu_slack = kAnyGap;
-    const std::uint32_t before = std::max(42U, whole_bits(800, baud));
+    const std::uint32_t before = std::max<std::uint32_t>(42, whole_bits(800, baud));
     timing.arbitration = timing.rest_of_stop_bit + Duration(microseconds(2 * before, baud) + 1U);
     const std::uint32_t window = 12 + whole_bits(50, baud);
     timing.window_64ths =
