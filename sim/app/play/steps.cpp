@@ -1,5 +1,6 @@
 #include "sim/app/play/steps.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "sim/app/play/modbus_frame.hpp"
@@ -155,14 +156,19 @@ bool is_action(const std::string& word) {
        ", N ACTION, fault FAULT, fault off K|all");
 }
 
-/// `HEX` or `HEX or HEX ...`.
+/// `HEX` or `HEX or HEX ...`. The bytes FF before a frame are those of an arbitration (extensions.md, scan).
 Run parse_modbus_reply(const std::string& text) {
   const std::string separator = " or ";
   std::vector<Bytes> permitted;
   for (std::size_t from = 0, end = 0; end != std::string::npos; from = end + separator.size()) {
     end = text.find(separator, from);
-    permitted.push_back(
-        with_crc(sim::parse_hex_bytes(text.substr(from, end == std::string::npos ? end : end - from))));
+    const Bytes bytes =
+        sim::parse_hex_bytes(text.substr(from, end == std::string::npos ? end : end - from));
+    const auto frame = std::find_if(bytes.begin(), bytes.end(), [](std::uint8_t byte) { return byte != 0xFF; });
+    Bytes reply(bytes.begin(), frame);
+    const Bytes checked = with_crc({frame, bytes.end()});
+    reply.insert(reply.end(), checked.begin(), checked.end());
+    permitted.push_back(std::move(reply));
     if (permitted.back().size() != permitted.front().size()) {
       fail("'" + text + "': the replies differ in length; expected replies of the same length");
     }
