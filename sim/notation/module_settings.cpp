@@ -6,6 +6,7 @@
 #include "firmware/model/baud.hpp"
 #include "sim/notation/fault_notation.hpp"
 #include "sim/notation/input_notation.hpp"
+#include "sim/text/durations.hpp"
 #include "sim/text/fail.hpp"
 #include "sim/text/values.hpp"
 
@@ -80,6 +81,9 @@ const std::vector<Setting<ModuleSpec>> module_settings{
      [](ModuleSpec& spec, const std::string& value) {
        spec.serial_number = serial_number_of(parse_hex_word(value));
      }},
+    {"skew", Form::Text, "TIME",
+     "how much later than other modules it begins a window of a bus scan (default: 0 to 4 us)",
+     [](ModuleSpec& spec, const std::string& value) { spec.skew = parse_time(value); }},
     {"init", Form::Flag, "on|off", "on ties INIT* to GND: ASCII at address 00, 9600 baud (default: off)",
      [](ModuleSpec& spec, const std::string& value) { spec.init_asserted = parse_on_off(value); }},
     {"eeprom", Form::Text, "FILE",

@@ -246,7 +246,8 @@ void Possible::execute(Time since, Time now, std::vector<Possible>& after) const
       next.due_ =
           Due{reply,
               answer.refusal,
-              {std::max(earliest, first.last + module_.reply_delay()) - microseconds(2), first_by(stores)}};
+              {std::max(earliest, first.last + module_.reply_delay()) - microseconds(2), first_by(stores)},
+              module.address() != module_.address()};
     }
     after.push_back(next);
     if (saves && overtaken_) {

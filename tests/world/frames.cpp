@@ -57,9 +57,15 @@ std::vector<Possible> Possible::frame_ends(Moment received, Moment judged) const
   next.bad_.clear();
   const bool concerns = next.module_.on_receipt(frame.bytes, frame.bad, received);
   const std::string text(frame.bytes.begin(), frame.bytes.end());
+  const std::size_t prefix =
+      reference::Module::is_by_number(frame.bytes) ||
+              (frame.bytes[0] == 0 &&
+               reference::Module::is_by_number({frame.bytes.begin() + 1, frame.bytes.end()}))
+          ? 6
+          : 0;
   const bool host_ok =
       module_.runs_modbus()
-          ? is_whole() && (frame.bytes.size() == 8 || frame.bytes.size() == 9) &&
+          ? is_whole() && (frame.bytes.size() == 8 + prefix || frame.bytes.size() == 9 + prefix) &&
                 reference::word(frame.bytes, frame.bytes.size() - 6) == 0x3038 &&
                 (frame.bytes[frame.bytes.size() - 7] == 3 || frame.bytes[frame.bytes.size() - 7] == 4) &&
                 reference::word(frame.bytes, frame.bytes.size() - 4) <= 1
@@ -85,6 +91,13 @@ std::vector<Possible> Possible::frame_ends(Moment received, Moment judged) const
     }
   }
   std::vector<Possible> after;
+  if (executed && due_ && due_->takes_address) {  // wire.md D16: it was perhaps not in force yet
+    after.push_back(next);
+    after.back().module_.miss_frame();
+    if (expiry && next.module_.expiry()) {
+      after.back().module_.keep_expiry(*expiry);
+    }
+  }
   for (Possible& each : each_way) {
     if (may_be_lost) {
       after.push_back(each);

@@ -28,6 +28,7 @@ struct Due {
   Bytes bytes;
   std::string refusal;  ///< why the request is refused, for people
   Moment begins{};
+  bool takes_address = false;  ///< the request changes the address in force
 };
 
 /// Adds to the reference, which executes whole frames, what happens around that: bytes become frames, frames

@@ -162,9 +162,9 @@ Run parse_modbus_reply(const std::string& text) {
   std::vector<Bytes> permitted;
   for (std::size_t from = 0, end = 0; end != std::string::npos; from = end + separator.size()) {
     end = text.find(separator, from);
-    const Bytes bytes =
-        sim::parse_hex_bytes(text.substr(from, end == std::string::npos ? end : end - from));
-    const auto frame = std::find_if(bytes.begin(), bytes.end(), [](std::uint8_t byte) { return byte != 0xFF; });
+    const Bytes bytes = sim::parse_hex_bytes(text.substr(from, end == std::string::npos ? end : end - from));
+    const auto frame =
+        std::find_if(bytes.begin(), bytes.end(), [](std::uint8_t byte) { return byte != 0xFF; });
     Bytes reply(bytes.begin(), frame);
     const Bytes checked = with_crc({frame, bytes.end()});
     reply.insert(reply.end(), checked.begin(), checked.end());

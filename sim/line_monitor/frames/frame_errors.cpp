@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <iterator>
 
+#include "firmware/line/timing.hpp"
+#include "sim/text/durations.hpp"
 #include "sim/text/values.hpp"
 #include "sim/text/words.hpp"
 
@@ -31,12 +33,25 @@ std::string told(const Frame::Change& change) {
   return which + joined(parts, ", ");
 }
 
+/// What a window of an arbitration is longer than a byte.
+VirtualTime room_in_window(SerialMode mode) {
+  if (mode.baud == 0) {
+    return kNever;
+  }
+  const LineTiming timing = LineTiming::at(mode.baud, mode.format);
+  return std::chrono::microseconds((timing.windows(1) - timing.character).microseconds());
+}
+
 }  // namespace
 
 std::string line_error(const Frame& frame) {
   Words parts;
   if (frame.collided) {
     parts.emplace_back("collision: another station drove the line at the same time");
+  }
+  if (frame.skew > room_in_window(frame.sent_in)) {
+    parts.push_back("modules begin the same window " + time_text(frame.skew) +
+                    " apart, so that not all bytes end in it");
   }
   if (!hear_each_other(frame.sent_in, frame.line_in)) {
     parts.push_back("sent at " + mode_text(frame.sent_in.baud, frame.sent_in.format) + " on a line at " +

@@ -6,6 +6,7 @@
 
 #include "firmware/dcon/commands.hpp"
 #include "firmware/line/crc16.hpp"
+#include "firmware/line/rtu_frames.hpp"
 #include "firmware/modbus/functions.hpp"
 #include "firmware/registers/bits.hpp"
 #include "firmware/registers/words.hpp"
@@ -137,6 +138,9 @@ std::string row_meaning(Bytes request) {
 constexpr std::size_t kShortestModbus = 4;
 
 std::string modbus_check_error(const FrameBytes& bytes) {
+  if (is_arbitration(bytes)) {
+    return "";
+  }
   if (bytes.size() < kShortestModbus) {
     const bool noise = bytes.size() == 1 && bytes[0] < 0x20;  // for example an LF after CR
     return noise ? "" : "too short for a frame";
@@ -144,12 +148,8 @@ std::string modbus_check_error(const FrameBytes& bytes) {
   return crc16({bytes.data(), bytes.size()}).value() == 0 ? "" : "wrong CRC";
 }
 
-std::string modbus_meaning(const FrameBytes& bytes, Speaker speaker) {
-  std::string error = modbus_check_error(bytes);
-  if (bytes.size() < kShortestModbus || !error.empty()) {
-    return error;
-  }
-  const std::string who = bytes[0] == 0 ? "all modules: " : hex_byte_text(bytes[0]) + ": ";
+/// `who`: the receiver or the sender. `bytes`: after the address, with any byte in its place.
+std::string modbus_meaning(const std::string& who, const FrameBytes& bytes, Speaker speaker) {
   constexpr unsigned kExceptionBit = 0x80;
   constexpr std::size_t kExceptionSize = 5;
   const unsigned function = bytes[1];
@@ -173,7 +173,52 @@ std::string modbus_meaning(const FrameBytes& bytes, Speaker speaker) {
          (single ? " = " + hex_word_text(value) : " x " + std::to_string(value)) + row_meaning(request);
 }
 
+/// extensions.md, scan; empty: unknown. `bytes`: function 46 at address FD, with its CRC.
+std::string scan_meaning(const FrameBytes& bytes, Speaker speaker) {
+  constexpr std::size_t kFoundSize = 10;
+  const bool has_number = bytes.size() >= kFoundSize;
+  const std::string number = has_number ? hex_text({bytes.begin() + 3, bytes.begin() + 7}, "") : "";
+  switch (bytes[2]) {
+    case modbus::kFirstRound:
+      return "scan, first round";
+    case modbus::kNextRound:
+      return "scan, next round";
+    case modbus::kFound:
+      return has_number ? "scan: " + number + " at address " + hex_byte_text(bytes[7]) : "";
+    case modbus::kNobodyLeft:
+      return "scan: nobody is left";
+    case modbus::kRequestByNumber:
+    case modbus::kReplyByNumber:
+      return has_number ? modbus_meaning(number + ": ", {bytes.begin() + modbus::kNumberPrefix, bytes.end()},
+                                         speaker)
+                        : "";
+    default:
+      return "";
+  }
+}
+
+std::string modbus_meaning(const FrameBytes& bytes, Speaker speaker) {
+  std::string error = modbus_check_error(bytes);
+  if (is_arbitration(bytes)) {
+    return "arbitration of a scan: a byte in " + std::to_string(bytes.size()) + " windows";
+  }
+  if (bytes.size() < kShortestModbus || !error.empty()) {
+    return error;
+  }
+  if (bytes[0] == modbus::kScanAddress && bytes[1] == modbus::kScanFunction) {
+    if (std::string scan = scan_meaning(bytes, speaker); !scan.empty()) {
+      return scan;
+    }
+  }
+  return modbus_meaning(bytes[0] == 0 ? "all modules: " : hex_byte_text(bytes[0]) + ": ", bytes, speaker);
+}
+
 }  // namespace
+
+bool is_arbitration(const FrameBytes& bytes) {
+  return !bytes.empty() &&
+         std::all_of(bytes.begin(), bytes.end(), [](std::uint8_t byte) { return byte == kArbitrationByte; });
+}
 
 bool looks_like_dcon(const FrameBytes& bytes) {
   if (bytes.empty()) {

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "firmware/line/crc16.hpp"
+#include "firmware/line/timing.hpp"
 
 namespace ex9000::sim {
 
@@ -38,6 +39,11 @@ void FrameWatch::changed(std::size_t station, Levels arrives) { sender(station).
 
 void FrameWatch::byte(std::size_t station, std::uint8_t byte, SerialMode mode, bool collided,
                       VirtualTime start, VirtualTime end) {
+  if (station != kMaster && byte == kArbitrationByte && sender(station).sent == 0) {
+    burst(station, mode, start, end);
+    return;
+  }
+  end_arbitration();
   if (station == kMaster && begins_another(start, end)) {
     hand_out(kMaster);
   }
@@ -70,6 +76,36 @@ void FrameWatch::byte(std::size_t station, std::uint8_t byte, SerialMode mode, b
   }
 }
 
+/// A byte FF of an arbitration.
+void FrameWatch::burst(std::size_t station, SerialMode mode, VirtualTime start, VirtualTime end) {
+  sender(station).change.reset();
+  Frame& frame = arbitration_.frame;
+  if (arbitration_.sent == 0) {
+    frame.station = station;
+    frame.began = start;
+    frame.sent_in = mode;
+    frame.line_in = line_mode_();
+  }
+  if (arbitration_.sent == 0 || start >= frame.ended) {
+    frame.bytes.push_back(kArbitrationByte);
+    ++arbitration_.sent;
+    last_burst_ = start;
+  } else {
+    frame.skew = std::max(frame.skew, start > last_burst_ ? start - last_burst_ : last_burst_ - start);
+  }
+  frame.ended = std::max(frame.ended, end);
+  constexpr unsigned kWindows = 32;
+  const Duration longest = LineTiming::at(mode.baud, mode.format).windows(kWindows);
+  arbitration_.frame_deadline = end + std::chrono::microseconds(longest.microseconds());
+}
+
+void FrameWatch::end_arbitration() {
+  if (arbitration_.sent != 0) {
+    const std::size_t station = arbitration_.frame.station;
+    hand_out(arbitration_, station);
+  }
+}
+
 void FrameWatch::driver(std::size_t station, bool on, VirtualTime /*now*/) {
   if (!on) {
     sender(station).change.reset();  // a byte in progress is cut off, and Wires does not report it
@@ -87,7 +123,7 @@ VirtualTime FrameWatch::next() const {
   for (const Sender& each : senders_) {
     next = std::min(next, each.frame_deadline);
   }
-  return next;
+  return std::min(next, arbitration_.frame_deadline);
 }
 
 void FrameWatch::run(VirtualTime now) {
@@ -96,10 +132,14 @@ void FrameWatch::run(VirtualTime now) {
       hand_out(station);
     }
   }
+  if (arbitration_.frame_deadline <= now) {
+    end_arbitration();
+  }
 }
 
-void FrameWatch::hand_out(std::size_t station) {
-  Sender& sending = sender(station);
+void FrameWatch::hand_out(std::size_t station) { hand_out(sender(station), station); }
+
+void FrameWatch::hand_out(Sender& sending, std::size_t station) {
   if (std::exchange(sending.sent, 0) == 0) {
     return;
   }

@@ -35,6 +35,8 @@ struct Frame {
   FrameBytes bytes;
   std::vector<Change> changes;
   bool collided = false;  ///< see WireObserver::byte; true if at least one byte collided
+  /// Of an arbitration: the largest time between the bytes FF of two modules in a window.
+  VirtualTime skew{0};
   /// At the first byte. Receivers in the line's mode get `bytes` only if rates and parities are equal.
   SerialMode sent_in;
   SerialMode line_in;
@@ -48,7 +50,8 @@ struct Frame {
 /// Any other ends after 5 ms or four characters of 11 bits, whichever is longer: the master may write it in
 /// pieces. A frame of the master that is not DCON also ends when another station enables its driver; one with
 /// a correct CRC, before a byte after a gap of more than 1.5 characters. A frame of another station also ends
-/// when that disables its driver. All end after 300 bytes at the latest.
+/// when that disables its driver. All end after 300 bytes at the latest. The bytes FF of an arbitration are
+/// one frame of the first module that sends one; those of several modules in a window merge into one byte.
 class FrameWatch final : public WireObserver {
  public:
   using Take = std::function<void(const Frame&)>;
@@ -80,12 +83,17 @@ class FrameWatch final : public WireObserver {
   };
 
   Sender& sender(std::size_t station);
+  void burst(std::size_t station, SerialMode mode, VirtualTime start, VirtualTime end);
+  void end_arbitration();
   [[nodiscard]] bool begins_another(VirtualTime start, VirtualTime end);
   void hand_out(std::size_t station);
+  void hand_out(Sender& sending, std::size_t station);
 
   Mode line_mode_;
   std::vector<Take> takers_;
   std::vector<Sender> senders_;
+  Sender arbitration_;
+  VirtualTime last_burst_{0};  ///< the beginning of the first byte in the present window
 };
 
 }  // namespace ex9000::sim

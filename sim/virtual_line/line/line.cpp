@@ -15,7 +15,15 @@ LineTiming instantly(std::uint32_t /*baud*/, LineFormat /*format*/) {
   timing.rtu_silence = kSilence;
   timing.rtu_grace = kQuiet;
   timing.rtu_slack = LineTiming::kAnyGap;
+  timing.arbitration = kSilence;
+  timing.window_64ths = 64 * 10;  // at 1200 baud, a byte and the driver take 6 us
   return timing;
+}
+
+/// Interrupts of different modules differ by a few microseconds.
+VirtualTime usual_skew(std::size_t module) {
+  constexpr std::size_t kDifferent = 5;
+  return std::chrono::microseconds(module % kDifferent);
 }
 
 Line::Line(const std::vector<ModuleSpec>& modules, LineKind kind, Master::Receive receive)
@@ -29,6 +37,8 @@ Line::Line(const std::vector<ModuleSpec>& modules, LineKind kind, Master::Receiv
     module.store(spec.settings);
     module.set_init(spec.init_asserted);
     module.set_serial_number(spec.serial_number);
+    module.set_skew(
+        spec.skew.value_or(kind.times_faster == 1 ? usual_skew(modules_.size()) : VirtualTime(0)));
   }
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,7 @@ struct ModuleSpec {
   bool settings_given = false;  ///< at least one setting was given explicitly
   bool init_asserted = false;
   std::uint32_t serial_number = 0;  ///< of the board; 0: from line and position, or none without a setup
+  std::optional<VirtualTime> skew;  ///< of its windows in an arbitration; none: a few us
   std::string eeprom;  ///< path of the EEPROM file; empty: settings are lost when the simulator ends
   std::vector<InputProgram> inputs;
   std::vector<Fault> faults;

@@ -81,7 +81,8 @@ struct Wave {
   /// When the driver was disabled during the byte; kNever: it was not.
   VirtualTime cut_off = hal::doubles::kNever;
   std::size_t station = 0;
-  SerialMode nominal;  ///< the nominal rate and the format in which the station sends
+  std::vector<std::size_t> also;  ///< other stations that send the same at the same time
+  SerialMode nominal;             ///< the nominal rate and the format in which the station sends
   std::uint8_t byte = 0;
   bool disturbed = false;  ///< the levels differ from those of `byte`
   /// Another driver or byte was there too, or the byte was cut off.

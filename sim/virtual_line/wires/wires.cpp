@@ -83,6 +83,20 @@ bool Wires::low() const {
   return std::any_of(waves_.begin(), waves_.end(), [now](const Wave& wave) { return !wave.level(now); });
 }
 
+/// Other stations send the rest of the byte.
+bool Wires::goes_on_without(Wave& wave, std::size_t station) {
+  if (wave.also.empty()) {
+    return false;
+  }
+  if (wave.station == station) {
+    wave.station = wave.also.back();
+    wave.also.pop_back();
+    return true;
+  }
+  wave.also.erase(std::remove(wave.also.begin(), wave.also.end(), station), wave.also.end());
+  return false;
+}
+
 void Wires::drive(End& end, bool on) {
   if (end.driving == on) {
     return;
@@ -96,6 +110,9 @@ void Wires::drive(End& end, bool on) {
   }
   for (Wave& wave : waves_) {
     wave.collided = wave.collided || drivers_on_ > 1;
+    if (!on && wave.end > now && goes_on_without(wave, end.index)) {
+      continue;
+    }
     if (!on && wave.station == end.index && wave.cut_off == kNever && wave.end > now) {
       // The sender leaves the rest of the byte idle, and the receivers sample the result.
       wave.collided = true;
@@ -185,6 +202,12 @@ Wave Wires::wave_of(const End& end, const Character& sent) {
 void Wires::carry(const Wave& wave) {
   for (Wave& other : waves_) {
     other.collided = true;
+    // In a window of an arbitration, hundreds of modules may send the same byte at the same time.
+    if (other.start == wave.start && other.mode == wave.mode && other.levels == wave.levels && !other.over &&
+        other.cut_off == kNever && other.nominal == wave.nominal && other.byte == wave.byte) {
+      other.also.push_back(wave.station);
+      return;
+    }
   }
   waves_.push_back(wave);
   ++carried_;
@@ -317,6 +340,9 @@ void Wires::deliver(const Wave& over) {
       has_second_stop_bit ? over.start + ends_[over.station]->takes(1, over.nominal) : clock_.virtual_now();
   for (WireObserver* observer : observers_) {
     observer->byte(over.station, over.byte, over.nominal, over.collided, over.start, ends);
+    for (const std::size_t station : over.also) {
+      observer->byte(station, over.byte, over.nominal, over.collided, over.start, ends);
+    }
   }
   const VirtualTime quiet_since = std::exchange(quiet_since_, ends);
   if (!over.arrives_whole()) {

@@ -166,6 +166,7 @@ class Wires {
   [[nodiscard]] SerialMode on_the_wires(SerialMode mode) const;
   [[nodiscard]] VirtualTime next_wire_event() const { return std::min(next_byte_end_, next_sample_); }
   [[nodiscard]] bool low() const;
+  static bool goes_on_without(Wave& wave, std::size_t station);
   void drive(End& end, bool on);
   void send(End& end);
   void stop_sending(const End& end);

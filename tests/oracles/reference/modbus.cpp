@@ -20,6 +20,12 @@ bool known_function(const ModelRow& model, unsigned function) {
 
 }  // namespace
 
+/// extensions.md, scan: `FD 46 08`, a serial number other than 0, and at least a function.
+bool Module::is_by_number(const Bytes& frame) {
+  return frame.size() >= 8 && frame[0] == 0xFD && frame[1] == 0x46 && frame[2] == 0x08 &&
+         (word(frame, 3) | word(frame, 5)) != 0;
+}
+
 /// Processes a complete frame of any content. Returns the reply with its CRC, or no bytes if there is no
 /// reply. The counters of function 08 follow wire.md D1: for example, a frame of less than 4 bytes counts as
 /// a CRC error, and a broadcast counts as a message without a reply. `bad`: which bytes have a line error.
@@ -52,7 +58,13 @@ Bytes Module::modbus_frame(Bytes frame, std::vector<bool> bad) {
   }
   frame.resize(frame.size() - 2);
   count(&Counts::bus_messages);
-  const unsigned address = frame[0];
+  Bytes prefix;
+  const bool by_number = is_by_number(frame) && (word(frame, 3) << 16 | word(frame, 5)) == serial_number();
+  if (by_number) {
+    prefix = {0xFD, 0x46, 0x09, frame[3], frame[4], frame[5]};
+    frame.erase(frame.begin(), frame.begin() + 6);
+  }
+  const unsigned address = by_number ? address_ : frame[0];
   const unsigned function = frame[1];
   if (address != 0 && address != address_) {
     return {};
@@ -88,6 +100,7 @@ Bytes Module::modbus_frame(Bytes frame, std::vector<bool> bad) {
     refusal_ = exception.reason;
     reply = {frame[0], static_cast<std::uint8_t>(function | 0x80U), exception.code};
   }
+  reply.insert(reply.begin(), prefix.begin(), prefix.end());
   return address == 0 ? Bytes{} : with_crc(reply);
 }
 

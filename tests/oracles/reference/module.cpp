@@ -221,7 +221,11 @@ Answer Module::on_frame_without_store(const Bytes& bytes, const std::vector<bool
   if (!answer.reply.empty()) {
     counts_.exceptions += 1;
     if (runs_modbus_) {
-      answer.reply = with_crc({answer.reply[0], static_cast<std::uint8_t>(answer.reply[1] | 0x80U), 0x04});
+      const std::size_t prefix = answer.reply[0] == 0xFD ? 6 : 0;  // a reply by serial number
+      answer.reply.resize(prefix + 2);
+      answer.reply.back() |= 0x80U;
+      answer.reply.push_back(0x04);
+      answer.reply = with_crc(answer.reply);
     } else {
       const std::string reply = "?" + aa();
       const std::string line = reply + (checksum_ ? check_of(reply) : "") + "\r";
@@ -245,6 +249,8 @@ bool Module::on_receipt(const Bytes& bytes, const std::vector<bool>& bad, Moment
   }
   return seen.server_messages != 0;
 }
+
+void Module::miss_frame() { counts_.server_messages -= 1; }
 
 void Module::lose_frame() {
   counts_.server_messages -= 1;

@@ -145,6 +145,8 @@ class Module {
   /// The frame is complete: counts it. Returns whether it concerns this module, so that it must be executed.
   /// `when`: its end.
   bool on_receipt(const Bytes& bytes, const std::vector<bool>& bad, Moment when);
+  /// The last complete frame was for the address that the module did not have yet.
+  void miss_frame();
   /// The last complete frame is lost, because no buffer is free.
   void lose_frame();
   /// Bytes that are no frame.
@@ -188,6 +190,11 @@ class Module {
   [[nodiscard]] bool runs_modbus() const { return runs_modbus_; }
   [[nodiscard]] bool checksum() const { return checksum_; }
   [[nodiscard]] unsigned address() const { return address_; }
+  /// 0: none.
+  [[nodiscard]] unsigned serial_number() const {
+    return stored_.serial_number != 0 ? stored_.serial_number : serial_number_of_board_;
+  }
+  static bool is_by_number(const Bytes& frame);
   [[nodiscard]] bool init_asserted() const { return init_asserted_; }
   /// Returns whether a reset would start or end INIT mode, or would change the protocol, address, baud rate,
   /// line format or checksum in force.
@@ -306,10 +313,6 @@ class Module {
   void set_extension(unsigned address, unsigned value);
   std::string delay_command(const std::string& body);
   std::string extension_command(const std::string& body);
-
-  [[nodiscard]] unsigned serial_number() const {
-    return stored_.serial_number != 0 ? stored_.serial_number : serial_number_of_board_;
-  }
 
   const ModelRow* row_;
   unsigned serial_number_of_board_ = 0;

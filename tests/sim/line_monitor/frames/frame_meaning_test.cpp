@@ -190,5 +190,20 @@ TEST(ModbusMeaning, AShortFrameAndAWrongCrcAreReported) {
   EXPECT_EQ(meaning({}, Speaker::Master), "too short for a frame");
 }
 
+// extensions.md, scan.
+TEST(ScanMeaning, FramesAtAddressFDAreNamedAndRequestsBySerialNumberAreLikeOthers) {
+  EXPECT_EQ(of_request(FrameBytes{0xFD, 0x46, 0x01}), "scan, first round");
+  EXPECT_EQ(of_request(FrameBytes{0xFD, 0x46, 0x02}), "scan, next round");
+  EXPECT_EQ(of_reply(FrameBytes{0xFD, 0x46, 0x03, 0x0D, 0x00, 0x12, 0x34, 0x2A}),
+            "scan: 0D001234 at address 2A");
+  EXPECT_EQ(of_reply(FrameBytes{0xFD, 0x46, 0x04}), "scan: nobody is left");
+  EXPECT_EQ(of_request(FrameBytes{0xFD, 0x46, 0x08, 0x0D, 0x00, 0x12, 0x34, 0x05, 0, 0, 0xFF, 0}),
+            "0D001234: Write Single Coil 0000 = FF00, outputs");
+  EXPECT_EQ(of_reply(FrameBytes{0xFD, 0x46, 0x09, 0x0D, 0x00, 0x12, 0x34, 0x85, 0x04}),
+            "0D001234: Write Single Coil, exception 04");
+  EXPECT_EQ(of_request(FrameBytes{0xFD, 0x46, 0x05}), "FD: Module code and address");
+  EXPECT_EQ(meaning(FrameBytes(22, 0xFF), Speaker::Module), "arbitration of a scan: a byte in 22 windows");
+}
+
 }  // namespace
 }  // namespace ex9000::sim

@@ -206,5 +206,35 @@ TEST_F(FrameWatchTest, AChangeOfAnAbortedByteDoesNotAffectALaterByte) {
   EXPECT_EQ(frames[0].bytes, (FrameBytes{0x41}));
 }
 
+// extensions.md, scan. At 9600 baud, a window is three bits longer than a byte.
+TEST_F(FrameWatchTest, TheBytesOfAnArbitrationAreOneFrameWithAByteForEachWindow) {
+  constexpr std::size_t kOther = 2;
+  constexpr VirtualTime kWindow{1'354'167};
+  const auto burst = [this](std::size_t station, VirtualTime late) {
+    watch.byte(station, 0xFF, sender_mode, true, now + late, now + late + kCharacter);
+    watch.driver(station, false, now + late + kCharacter);
+  };
+  burst(kModule, microseconds(0));
+  burst(kOther, microseconds(3));
+  now += 5 * kWindow;
+  burst(kModule, microseconds(0));
+  now += kWindow;
+  EXPECT_TRUE(frames.empty());
+  send(kModule, with_crc({0xFD, 0x46, 0x04}));
+  ASSERT_EQ(frames.size(), 1U);
+  EXPECT_EQ(frames[0].bytes, (FrameBytes{0xFF, 0xFF}));
+  EXPECT_EQ(frames[0].station, kModule);
+  EXPECT_EQ(frames[0].skew, microseconds(3));
+  EXPECT_EQ(errors(frames[0]), "");
+  watch.driver(kModule, false, now);
+  frames.clear();
+
+  burst(kModule, microseconds(0));
+  burst(kOther, microseconds(320));
+  pass(50 * kWindow);
+  ASSERT_EQ(frames.size(), 1U);
+  EXPECT_EQ(errors(frames[0]), "modules begin the same window 320us apart, so that not all bytes end in it");
+}
+
 }  // namespace
 }  // namespace ex9000::sim

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "sim/virtual_line/wires/master.hpp"
+#include "tests/sim/virtual_line/wires/wires_recorder.hpp"
 
 namespace ex9000::sim {
 namespace {
@@ -152,6 +153,36 @@ TEST(Wires, DamagedBytesOfTheMasterArriveWithParityErrorsAndTheOthersAreGood) {
       EXPECT_EQ(listener.heard[i].byte, bytes[i]);
       EXPECT_EQ(listener.heard[i].status, i == 1 || i == 4 ? ByteStatus::ParityError : ByteStatus::Good) << i;
     }
+  }
+}
+
+// As in an arbitration. A receiver gets one byte, and observers hear of both senders.
+TEST(Wires, EqualBytesAtTheSameTimeMergeAndOneGoesOnWithoutTheOther) {
+  for (const bool first_stops : {false, true}) {
+    VirtualClock clock;
+    Wires wires(clock);
+    Listener listener(wires, 9600);
+    std::array<Sender, 2> senders;
+    std::array<WireEnd*, 2> ends{};
+    WiresRecorder recorder;
+    wires.observe(recorder);
+    for (std::size_t i = 0; i < senders.size(); ++i) {
+      ends[i] = &wires.attach(senders[i]);
+      ends[i]->drive(true);
+    }
+    for (WireEnd* const end : ends) {
+      end->put({0xFF, {9600}});
+    }
+    EXPECT_TRUE(ends[0]->low());
+    wires.run_for(std::chrono::microseconds(500));
+    EXPECT_FALSE(ends[0]->low());
+    ends[first_stops ? 0 : 1]->drive(false);
+    wires.run_for(milliseconds(10));
+    ASSERT_EQ(listener.heard.size(), 1U);
+    EXPECT_EQ(listener.heard[0].byte, 0xFF);
+    EXPECT_EQ(listener.heard[0].status, ByteStatus::Good);
+    ASSERT_EQ(recorder.bytes.size(), 1U);
+    EXPECT_EQ(recorder.bytes[0].station, first_stops ? 2U : 1U);
   }
 }
 
