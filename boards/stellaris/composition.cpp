@@ -2,6 +2,7 @@
 // the pins of the board, the module to the drivers, and the interrupts to their handlers. The folder of the
 // board is in the include path.
 #include <cstdint>
+#include <type_traits>
 
 #include "board.hpp"
 #include "boards/cortex_m/start_up.hpp"
@@ -122,9 +123,14 @@ constexpr std::uint32_t ports_of_the_module() {
     add(group.port);
   }
   add(kUartPins.port);
-  for (const Pin pin : {kDriverEnable, kInitSwitch, kStatusLed}) {
-    add(pin.port);
-  }
+  const auto add_pin = [add](auto pin) {
+    if constexpr (!std::is_same_v<decltype(pin), hal::NoPin>) {
+      add(pin.port);
+    }
+  };
+  add_pin(kDriverEnable);
+  add_pin(kInitSwitch);
+  add_pin(kStatusLed);
   add(Port::B);  // I2C0
   return ports;
 }

@@ -42,7 +42,8 @@ class Transceiver : public DriverEnablePin<driver_enable> {
   static bool low() { return !receive.read(); }
 };
 
-/// The driver enable of a transceiver that switches its direction itself.
+/// The driver enable of a board whose transceiver switches its direction automatically. `drive` does nothing,
+/// but the line is still sending until the last stop bit has ended, and until then ignores what it receives.
 struct NoPin {
   static void make_output(bool /*level*/) {}
   static void drive(bool /*level*/) {}

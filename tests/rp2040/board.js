@@ -12,7 +12,8 @@ const PULL = 700e3; // ns until a pull has changed the level of an open pin: 80 
 
 class Board {
   // `image` is the content of the flash from its first byte on. `pins` contains the numbers of the pins transmit,
-  // receive, driverEnable and data (SDA; SCL is the next pin).
+  // receive, driverEnable and data (SDA; SCL is the next pin). If driverEnable is null, the transceiver switches its
+  // direction automatically.
   constructor(image, pins) {
     this.time = new Time();
     this.pins = pins;
@@ -204,6 +205,8 @@ class Board {
     }
     if (number === this.pins.driverEnable) {
       this.enableDriver(level);
+    } else if (number === this.pins.transmit && this.automatic) {
+      this.driveAutomatically(level);
     } else if (number === this.pins.receive) {
       chip.uart.level(level);
     }
@@ -229,7 +232,7 @@ class Board {
   // --- the line ---
 
   transmit(level) {
-    if (this.chip.uart.sender.atStartBit && !this.driverOn) {
+    if (this.chip.uart.sender.atStartBit && !this.driverOn && !this.automatic) {
       this.counts.lost += 1;
     }
     this.transmitted = level;
@@ -253,6 +256,23 @@ class Board {
       this.counts.late += 1;
     }
     this.updateLine();
+  }
+
+  get automatic() {
+    return this.pins.driverEnable === null;
+  }
+
+  // An automatic transceiver drives only zeros, even those of a transmit pin that floats low after a reset. The biasing
+  // of the line makes the ones.
+  driveAutomatically(level) {
+    this.driverOn = !level;
+    this.transmitted = level;
+    this.updateLine();
+  }
+
+  // Returns whether the module sends, for a master that waits for the end.
+  get speaks() {
+    return this.automatic ? this.chip !== null && this.chip.uart.sender.busy : this.driverOn;
   }
 
   masterDrives(level) {

@@ -4,6 +4,7 @@
 const fs = require("fs");
 const { Board } = require("./board");
 
+const STEP = 1e4; // ns
 let board = null;
 
 const integer = (text) => {
@@ -34,10 +35,11 @@ function keep(memory, descriptor, address) {
 }
 
 const COMMANDS = {
-  // new IMAGE.bin TRANSMIT RECEIVE DRIVER-ENABLE SDA: creates a board with this image and these pins. SCL is the pin
-  // after SDA. The supply of the board is off, and its EEPROM is erased.
+  // new IMAGE.bin TRANSMIT RECEIVE DRIVER-ENABLE SDA: creates a board with this image and these pins. DRIVER-ENABLE is
+  // "none" if the transceiver switches its direction automatically. SCL is the pin after SDA. The supply of the board
+  // is off, and its EEPROM is erased.
   new(path, ...pins) {
-    const [transmit, receive, driverEnable, data] = pins.map(integer);
+    const [transmit, receive, driverEnable, data] = pins.map((pin) => (pin === "none" ? null : integer(pin)));
     board = new Board(fs.readFileSync(path), { transmit, receive, driverEnable, data });
   },
   now: () => Math.round(board.time.now),
@@ -68,11 +70,12 @@ const COMMANDS = {
       board.runUntil(Infinity);
     }
   },
-  // await-release NANOSECONDS: lets time pass until the module's driver is off, but at most NANOSECONDS
+  // await-release NANOSECONDS: lets time pass until the module's driver is off, but at most NANOSECONDS. An automatic
+  // driver counts as off when the last stop bit has ended.
   "await-release"(nanoseconds) {
     const until = board.time.now + integer(nanoseconds);
-    while (board.driverOn && board.time.now < until) {
-      board.runUntil(until);
+    while (board.speaks && board.time.now < until) {
+      board.runUntil(Math.min(until, board.time.now + STEP));
     }
   },
   // queue HEX: begins to send bytes from the master, and returns immediately

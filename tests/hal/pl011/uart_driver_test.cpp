@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "firmware/model/baud.hpp"
+#include "hal/pins/single_pins.hpp"
 #include "hal/stellaris/gpio.hpp"
 #include "hal/stellaris/one_shot_timer.hpp"
 #include "hal/stellaris/uart.hpp"
@@ -28,9 +29,11 @@ using std::chrono::milliseconds;
 
 constexpr std::uint32_t kHertz = 50'000'000;
 constexpr Pin kEnable{Port::A, 6};
+constexpr hal::NoPin kAutomatic{};
 using EndTimer = OneShotTimer<1, kHertz / 1'000'000>;
 
-class UartBench : public DriverBench {
+template <const auto& enable>
+class UartBenchWith : public DriverBench {
  public:
   struct Received {
     std::uint8_t byte;
@@ -38,7 +41,7 @@ class UartBench : public DriverBench {
     bool while_sending;
   };
 
-  UartBench(const Chip& chip, std::uint32_t baud, LineFormat format)
+  UartBenchWith(const Chip& chip, std::uint32_t baud, LineFormat format)
       : DriverBench(chip), line(timeline, pins.at('A', 1), pins.at('A', 6), pins.at('A', 0)) {
     uart.start();
     if (chip.port_control) {
@@ -74,9 +77,10 @@ class UartBench : public DriverBench {
   }
 
   LineBench line;
-  Uart<0, kHertz, kEnable, EndTimer> uart;
+  Uart<0, kHertz, enable, EndTimer> uart;
   std::vector<Received> received;
 };
+using UartBench = UartBenchWith<kEnable>;
 
 std::vector<std::uint8_t> some_bytes(std::size_t count) {
   std::vector<std::uint8_t> bytes;
@@ -170,6 +174,28 @@ TEST_P(Sending, TheEchoOfTheSentBytesIsNotReceived) {
     bench.mcu.run_for(3 * character());
     ASSERT_EQ(bench.received.size(), 1U) << "expected only the byte after the echo";
     EXPECT_EQ(bench.received[0].byte, 0x5A);
+    EXPECT_EQ(bench.received[0].status, ByteStatus::Good);
+  }
+}
+
+/// The bench keeps the driver on, like an automatic transceiver with an echo.
+TEST_P(Sending, WithoutADriverEnableTheUartSendsAndIgnoresTheEchoUntilTheEndOfTheLastStopBit) {
+  UartBenchWith<kAutomatic> bench(chip(), baud(), format());
+  bench.pins.at('A', 6).drive(End::Board, Drive::High);
+  bench.mcu.run_for(character());
+  for (const std::uint8_t byte : std::array<std::uint8_t, 3>{0x00, 0x55, 0xFF}) {
+    bench.line.heard.clear();
+    bench.received.clear();
+    bench.send({byte, byte});
+    ASSERT_EQ(bench.line.heard.size(), 2U);
+    const Instant end = bench.line.heard.back().started + bits() * bench.mcu.uart0.bit_time();
+    EXPECT_GE(bench.now(), end);
+    EXPECT_LE(bench.now(), end + character());
+    EXPECT_TRUE(bench.received.empty());
+    bench.line.send({byte});
+    bench.mcu.run_for(2 * character());
+    ASSERT_EQ(bench.received.size(), 1U);
+    EXPECT_EQ(bench.received[0].byte, byte);
     EXPECT_EQ(bench.received[0].status, ByteStatus::Good);
   }
 }
