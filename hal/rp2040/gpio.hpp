@@ -1,6 +1,7 @@
 // Pins. Source: RP2040 data sheet, 2.3.1 (SIO), 2.19 (GPIO, functions, interrupts and pads).
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "hal/registers/register.hpp"
@@ -14,6 +15,29 @@ struct PinGroup {
 
   [[nodiscard]] constexpr std::uint32_t mask() const { return ((1U << count) - 1U) << first_pin; }
 };
+
+/// The numbers of the pins of the channels, from channel 0 on. `groups`: an array of PinGroup.
+template <unsigned channels, class Groups>
+constexpr std::array<std::uint8_t, channels> pins_of_channels(const Groups& groups) {
+  std::array<std::uint8_t, channels> result{};
+  unsigned channel = 0;
+  for (const PinGroup& group : groups) {
+    for (unsigned i = 0; i < group.count && channel < channels; ++i, ++channel) {
+      result[channel] = static_cast<std::uint8_t>(group.first_pin + i);
+    }
+  }
+  return result;
+}
+
+/// Bit n is GPIOn.
+template <class Numbers>
+constexpr std::uint32_t mask_of(const Numbers& numbers) {
+  std::uint32_t result = 0;
+  for (const std::uint8_t number : numbers) {
+    result |= 1U << number;
+  }
+  return result;
+}
 
 enum class Function : std::uint8_t { Uart = 2, I2c = 3, Software = 5 };
 

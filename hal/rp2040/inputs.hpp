@@ -1,7 +1,6 @@
 // Input channels on pins, with interrupts at both edges.
 #pragma once
 
-#include <array>
 #include <cstdint>
 
 #include "hal/pins/settle.hpp"
@@ -47,26 +46,8 @@ class InputPins {
   }
 
  private:
-  static constexpr std::array<std::uint8_t, channels> pins_of_channels() {
-    std::array<std::uint8_t, channels> result{};
-    unsigned channel = 0;
-    for (const PinGroup& group : groups) {
-      for (unsigned i = 0; i < group.count && channel < channels; ++i, ++channel) {
-        result[channel] = static_cast<std::uint8_t>(group.first_pin + i);
-      }
-    }
-    return result;
-  }
-  static constexpr std::array<std::uint8_t, channels> kPinOf = pins_of_channels();
-
-  static constexpr std::uint32_t mask() {
-    std::uint32_t result = 0;
-    for (const std::uint8_t pin : kPinOf) {
-      result |= 1U << pin;
-    }
-    return result;
-  }
-  static constexpr std::uint32_t kPins = mask();
+  static constexpr auto kPinOf = pins_of_channels<channels>(groups);
+  static constexpr std::uint32_t kPins = mask_of(kPinOf);
 };
 
 }  // namespace ex9000::hal::rp2040

@@ -17,23 +17,36 @@ class OutputPins {
   static void drive(std::uint16_t energised) { Gpio::write(kPins, levels(energised)); }
 
  private:
-  static constexpr unsigned kFirst = groups[0].first_pin;
-  static constexpr std::uint32_t kPins = ((1U << channels) - 1U) << kFirst;
+  static constexpr auto kPinOf = pins_of_channels<channels>(groups);
+  static constexpr std::uint32_t kPins = mask_of(kPinOf);
 
-  static constexpr bool adjacent() {
-    unsigned channel = 0;
-    for (const PinGroup& group : groups) {
-      if (channel < channels && group.first_pin != kFirst + channel) {
+  /// Whether the pins ascend with the channels, without a gap.
+  static constexpr bool in_order() {
+    for (unsigned channel = 0; channel < channels; ++channel) {
+      if (kPinOf[channel] != kPinOf[0] + channel) {
         return false;
       }
-      channel += group.count;
     }
     return true;
   }
-  static_assert(adjacent(), "the outputs of a model must have adjacent pins");
 
   static std::uint32_t levels(std::uint32_t energised) {
-    return (active_high ? energised << kFirst : ~(energised << kFirst)) & kPins;
+    const std::uint32_t pins = pins_of(energised);
+    return (active_high ? pins : ~pins) & kPins;
+  }
+
+  static std::uint32_t pins_of(std::uint32_t energised) {
+    if constexpr (channels == 0) {
+      return 0;
+    } else if constexpr (in_order()) {
+      return energised << kPinOf[0];
+    } else {
+      std::uint32_t pins = 0;
+      for (unsigned channel = 0; channel < channels; ++channel) {
+        pins |= (energised >> channel & 1U) << kPinOf[channel];
+      }
+      return pins;
+    }
   }
 };
 
