@@ -55,7 +55,7 @@ def openocd(words: list[str]) -> subprocess.CompletedProcess[str]:
 
 class Flash(unittest.TestCase):
     def test_every_board_has_a_script_that_openocd_understands(self) -> None:
-        self.assertEqual(set(openocd_scripts()), {"ek-tm4c123gxl", "lm3s6965evb", "pico", "pico-w"})
+        self.assertEqual(set(openocd_scripts()), {"ek-tm4c123gxl", "lm3s6965evb", "pico", "pico-relay-b", "pico-w"})
         for board, script in openocd_scripts().items():
             with self.subTest(board):
                 finished = openocd(["-f", script, "-c", "noinit", "-c", "shutdown"])

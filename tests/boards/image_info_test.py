@@ -9,8 +9,11 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 FORMATS = ("elf", "hex", "bin", "uf2")
-PRESETS = ("lm3s6965evb", "ek-tm4c123gxl", "ek-tm4c123gxl-usb", "pico", "pico-eeprom", "pico-w")
-MODEL = "EX9055D"  # tests/images builds this model with each preset
+# For each preset, a model that tests/images builds.
+MODELS = {
+    **dict.fromkeys(("lm3s6965evb", "ek-tm4c123gxl", "ek-tm4c123gxl-usb", "pico", "pico-eeprom", "pico-w"), "EX9055D"),
+    "pico-relay-b": "EX9068D-M",
+}
 
 
 def firmware_version() -> str:
@@ -22,15 +25,15 @@ def firmware_version() -> str:
 class ImageInfo(unittest.TestCase):
     def test_image_info_prints_version_board_model_and_commit_of_each_file(self) -> None:
         version = firmware_version()
-        for preset in PRESETS:
-            files = [ROOT / "build" / preset / f"{MODEL}.{kind}" for kind in FORMATS]
+        for preset, model in MODELS.items():
+            files = [ROOT / "build" / preset / f"{model}.{kind}" for kind in FORMATS]
             files = [file for file in files if file.suffix != ".uf2" or preset.startswith("pico")]
             for file in files:
                 with self.subTest(file=str(file.relative_to(ROOT))):
                     done = subprocess.run(
                         [ROOT / "toolchain/image-info", file], capture_output=True, text=True, check=False
                     )
-                    expected = f"version {version}\nboard {preset}\nmodel {MODEL}\ncommit development\n"
+                    expected = f"version {version}\nboard {preset}\nmodel {model}\ncommit development\n"
                     self.assertEqual((done.stdout, done.stderr), (expected, ""))
 
 

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <string>
 
-#include "boards/pico/board.hpp"
+#include EX9000_BOARD_HEADER
 #include "firmware/model/baud.hpp"
 #include "tests/rp2040/pico_bench.hpp"
 
@@ -16,7 +16,6 @@ namespace ex9000::pico {
 using std::chrono::milliseconds;
 using std::chrono::nanoseconds;
 
-constexpr milliseconds kComingUp{100};  ///< wire.md section 2
 /// The longest period of the module's watchdog: wire.md section 6.
 constexpr milliseconds kWatchdogPeriod{1600};
 
@@ -52,13 +51,13 @@ class PicoImage : public testing::Test {
                                : static_cast<std::uint8_t>(settings.baud_code + 1U);
     }
     if (model.outputs != 0) {
-      settings.power_on_value = kPowerOnValue;
-      settings.safe_value = kSafeValue;
+      settings.power_on_value = kPowerOnValue & model.output_mask();
+      settings.safe_value = kSafeValue & model.output_mask();
     }
     bench_.begin_anew(model, &settings);
     bench_.set_baud(baud);
     bench_.power(true);
-    bench_.run_for(kComingUp);
+    bench_.come_up();
   }
 
   std::string ask(const std::string& request) {

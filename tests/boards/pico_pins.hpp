@@ -7,11 +7,13 @@
 #include <vector>
 
 #include EX9000_BOARD_HEADER
+#include "hal/pins/single_pins.hpp"
 
 namespace ex9000::board {
 
 inline std::string name_of(unsigned number) { return "GP" + std::to_string(number); }
 inline std::string name_of(Pin pin) { return name_of(pin.number); }
+inline std::string name_of(hal::NoPin /*pin*/) { return "–"; }
 
 template <class Groups>
 std::vector<std::string> names_of(const Groups& groups) {
@@ -24,16 +26,19 @@ std::vector<std::string> names_of(const Groups& groups) {
   return names;
 }
 
-/// Returns the names of the pins of the UART and of the EEPROM, by signal. The checks of the pins follow the
-/// RP2040 data sheet, 1.4.3.
+/// Returns the names of the pins of the UART and, if the board can have one, of the EEPROM, by signal. The
+/// checks of the pins follow the RP2040 data sheet, 1.4.3.
 inline std::map<std::string, std::string> names_of_peripherals() {
   static_assert(kUartPins.first_pin % 16 == 0 || kUartPins.first_pin % 16 == 12,
                 "the UART pins must be TX and RX of UART0");
   static_assert(kI2cPins.first_pin % 4 == 0, "the I2C pins must be SDA and SCL of I2C0");
   return {{"transmit", name_of(kUartPins.first_pin)},
           {"receive", name_of(kUartPins.first_pin + 1U)},
+#ifndef EX9000_BOARD_HAS_NO_EEPROM
           {"EEPROM data", name_of(kI2cPins.first_pin)},
-          {"EEPROM clock", name_of(kI2cPins.first_pin + 1U)}};
+          {"EEPROM clock", name_of(kI2cPins.first_pin + 1U)}
+#endif
+  };
 }
 
 /// The power supply of the Pico (Raspberry Pi Pico data sheet, 2.1) or the radio of the Pico W uses these

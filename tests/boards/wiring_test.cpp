@@ -114,12 +114,15 @@ Terminals terminals_in(const std::string& head) {
   return terminals;
 }
 
-TEST(Wiring, TheReadmeListsThePinOfEveryTerminalOfEveryModel) {
+TEST(Wiring, TheReadmeListsThePinOfEveryTerminalOfEveryModelOfTheBoard) {
   const std::vector<std::string> output_pins = names_of(kOutputs);
   const std::vector<std::string> input_pins = names_of(kInputs);
   Terminals outputs;
   Terminals inputs;
   for (const Model& model : kModels) {
+    if (model.outputs > output_pins.size() || model.inputs > input_pins.size()) {
+      continue;  // has no image for this board
+    }
     std::set<std::string> used;
     for (unsigned channel = 0; channel < model.outputs; ++channel) {
       outputs[output_pins.at(channel)].insert(output_label(model, channel));
@@ -131,7 +134,9 @@ TEST(Wiring, TheReadmeListsThePinOfEveryTerminalOfEveryModel) {
     }
   }
   EXPECT_EQ(terminals_in("output"), outputs);
-  EXPECT_EQ(terminals_in("input"), inputs);
+  if (!input_pins.empty()) {
+    EXPECT_EQ(terminals_in("input"), inputs);
+  }
 }
 
 TEST(Wiring, TheReadmeListsThePinsOfTheCommonSignals) {

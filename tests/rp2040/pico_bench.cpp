@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <sstream>
+#include <type_traits>
 
-#include "boards/pico/board.hpp"
+#include EX9000_BOARD_HEADER
 #include "hal/flash/record_log.hpp"
+#include "hal/pins/single_pins.hpp"
 #include "sim/text/values.hpp"
 #include "sim/virtual_line/wires/module.hpp"
 
@@ -33,6 +35,10 @@ Bytes bytes_of(const std::string& hex) {
   return bytes;
 }
 
+/// Returns the argument DRIVER-ENABLE of the emulator.
+[[maybe_unused]] std::string driver_enable(board::Pin pin) { return std::to_string(pin.number); }
+[[maybe_unused]] std::string driver_enable(hal::NoPin /*pin*/) { return "none"; }
+
 template <class Groups>
 unsigned pin_of(const Groups& groups, unsigned channel) {
   for (const board::PinGroup& group : groups) {
@@ -60,15 +66,15 @@ Bytes memory_with(const Model& model, const Settings& settings) {
 }  // namespace
 
 std::string image_of(const Model& model, Memory memory) {
-  const char* preset = memory == Memory::Flash ? "/pico/" : "/pico-eeprom/";
-  return "build" + (preset + std::string(model.designation)) + ".bin";
+  const char* preset = memory == Memory::Flash ? EX9000_BOARD : EX9000_BOARD "-eeprom";
+  return "build/" + (preset + ("/" + std::string(model.designation))) + ".bin";
 }
 
 void PicoBench::begin_with(const std::string& file) {
   constexpr unsigned kTransmit = board::kUartPins.first_pin;
   powered_ = false;
   execute("new " + file + " " + std::to_string(kTransmit) + " " + std::to_string(kTransmit + 1U) + " " +
-          std::to_string(board::kDriverEnable.number) + " " + std::to_string(board::kI2cPins.first_pin));
+          driver_enable(board::kDriverEnable) + " " + std::to_string(board::kI2cPins.first_pin));
   set_baud(9600);
 }
 
@@ -124,6 +130,13 @@ void PicoBench::power(bool on) {
 }
 
 void PicoBench::reset() { execute("reset"); }
+
+void PicoBench::come_up() {
+  run_for(kComingUp);
+  if constexpr (std::is_same_v<decltype(board::kDriverEnable), const hal::NoPin>) {
+    heard();
+  }
+}
 
 void PicoBench::run_for(nanoseconds time) { execute("run " + std::to_string(time.count())); }
 

@@ -16,6 +16,9 @@ namespace ex9000::pico {
 
 using board::Memory;
 
+/// The longest time from a reset until a module is ready to receive requests (wire.md section 2).
+constexpr std::chrono::milliseconds kComingUp{100};
+
 /// A function that sends a command to the emulator throws std::runtime_error if the command fails, for
 /// example because the image does something that is an error on a real chip.
 class PicoBench {
@@ -45,6 +48,9 @@ class PicoBench {
   [[nodiscard]] bool powered() const { return powered_; }
   /// Resets the chip with its RUN pin.
   void reset();
+  /// Lets `kComingUp` pass. The byte 00 that an automatic transceiver makes of the floating transmit pin does
+  /// not arrive.
+  void come_up();
   void run_for(std::chrono::nanoseconds time);
   /// Returns the virtual time since `begin_anew` or `begin_with`.
   std::chrono::nanoseconds now();

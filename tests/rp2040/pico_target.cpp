@@ -9,8 +9,6 @@ namespace {
 using std::chrono::microseconds;
 using std::chrono::milliseconds;
 
-/// The longest time from a reset until a module is ready to receive requests (wire.md section 2).
-constexpr milliseconds kComingUp{100};
 /// The image processes a byte and updates its pins in less than this time.
 constexpr microseconds kSettling{100};
 constexpr microseconds kBetweenEdges{40};
@@ -56,13 +54,13 @@ void PicoTarget::set_format(LineFormat format) {
 void PicoTarget::power(bool on) {
   bench_.power(on);
   if (on) {
-    bench_.run_for(kComingUp);
+    bench_.come_up();
   }
 }
 
 void PicoTarget::reset() {
   bench_.reset();
-  bench_.run_for(kComingUp);
+  bench_.come_up();
 }
 
 void PicoTarget::set_input(unsigned channel, bool level) {

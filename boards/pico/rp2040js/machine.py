@@ -22,7 +22,7 @@ _EMULATOR = _ROOT / "tests/rp2040/emulator.js"
 _PACKAGES = _ROOT / "build/rp2040js/node_modules"
 _PR_SET_PDEATHSIG = 1
 
-# GPIO numbers, and the offset of the settings in the flash: boards/pico/module.hpp.
+# GPIO numbers, and the offset of the settings in the flash: boards/pico/module.hpp and every_pico.hpp.
 _TRANSMIT, _RECEIVE, _DRIVER_ENABLE, _INIT, _EEPROM_DATA = range(5)
 _SETTINGS_IN_FLASH = (2048 - 64) * 1024
 
@@ -34,10 +34,11 @@ _LARGEST_LAG = 0.1  # seconds
 class Machine:
     """A module on a Pico in rp2040js. After `__init__`, only `carry` lets virtual time pass."""
 
-    def __init__(self, image: int, settings: int, eeprom: int, init_grounded: bool) -> None:
+    def __init__(self, image: int, settings: int, eeprom: int, init_grounded: bool, has_driver_enable: bool) -> None:
         """Starts the emulator and the module, and lets 100 ms of virtual time pass. `image`, `settings` and `eeprom`
         are descriptors of three files: the flash from its first byte on, the settings at the end of the flash, and the
-        EEPROM. `init_grounded`: whether INIT* is tied to GND.
+        EEPROM. `init_grounded`: whether INIT* is tied to GND. `has_driver_enable`: if not, the transceiver switches its
+        direction automatically.
 
         Raises Refusal if rp2040js or Node.js is missing. Raises Ended if the emulator ends or reports an error.
         """
@@ -45,7 +46,8 @@ class Machine:
         self._errors = tempfile.TemporaryFile()
         self._process = self._start([image, settings, eeprom])
         try:
-            pins = (_TRANSMIT, _RECEIVE, _DRIVER_ENABLE, _EEPROM_DATA)
+            driver_enable = _DRIVER_ENABLE if has_driver_enable else "none"
+            pins = (_TRANSMIT, _RECEIVE, driver_enable, _EEPROM_DATA)
             self._ask("new", f"/dev/fd/{image}", *pins)
             self._ask("keep-flash", settings, _SETTINGS_IN_FLASH)
             self._ask("keep-eeprom", eeprom)

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from elf_file import NotAnImage
 from emulated import image, memory_file, program
+from image_info.info import info_of
 from rp2040js.machine import Machine
 
 _BOARD = image.Memory(preset="pico", vectors=0x20000000, top_of_ram=0x20040000)
@@ -12,6 +14,7 @@ _FLASH = 0x10000000
 _IMAGE_SIZE = (2048 - 64) * 1024  # the length of FLASH in boards/pico/image.ld
 _SETTINGS_SIZE = 64 * 1024
 _EEPROM_SIZE = 8192
+_WITHOUT_DRIVER_ENABLE = ("pico-relay-b",)  # presets
 
 
 def _flash_of(segments: list[image.Segment]) -> bytes:
@@ -25,10 +28,17 @@ def _flash_of(segments: list[image.Segment]) -> bytes:
     return bytes(content)
 
 
+def _has_driver_enable(flash: bytes) -> bool:
+    try:
+        return info_of(flash)["board"] not in _WITHOUT_DRIVER_ENABLE
+    except NotAnImage:
+        return True  # the emulator says what is wrong
+
+
 def main(words: list[str]) -> int:
     """Runs the program and returns its exit status. Raises SystemExit with status 2 if an argument is wrong, and with
     status 0 after `--help`."""
-    parser = program.parser_for("rp2040js", f"{_BOARD.preset}, pico-eeprom or pico-w")
+    parser = program.parser_for("rp2040js", f"{_BOARD.preset}, pico-eeprom, pico-w or pico-relay-b")
     parser.add_argument(
         "--flash",
         metavar="FILE",
@@ -54,6 +64,7 @@ def main(words: list[str]) -> int:
         content = _flash_of(image.read(arguments.image, _BOARD))
         settings = memory("--flash", arguments.flash, _SETTINGS_SIZE)
         eeprom = memory("--eeprom", arguments.eeprom, _EEPROM_SIZE)
-        return Machine(memory_file.in_memory(len(content), content), settings, eeprom, arguments.init)
+        flash = memory_file.in_memory(len(content), content)
+        return Machine(flash, settings, eeprom, arguments.init, _has_driver_enable(content))
 
     return program.run(arguments, "rp2040js", start)

@@ -1,5 +1,5 @@
-// Tests the functions of boards/pico/run that run_test.cpp does not test: the file of the EEPROM, and the
-// baud rate of the master.
+// Tests the functions of boards/pico/run that run_test.cpp does not test: the file of the EEPROM, an
+// automatic transceiver, and the baud rate of the master.
 #include <gtest/gtest.h>
 
 #include "tests/boards/run/running_image.hpp"
@@ -15,6 +15,11 @@ TEST(PicoRun, AnImageWithAnEepromStoresItsSettingsInTheEepromFile) {
   EXPECT_EQ(bytes_of_file(directory / "eeprom").size(), 8192U);
   EXPECT_EQ(RunningImage::of_file(image, options).ask("$01M"), "!01PUMP");
   EXPECT_EQ(RunningImage::of_file(image).ask("$01M"), "!019043D");
+}
+
+TEST(PicoRun, AnImageForAnAutomaticTransceiverNeedsNoDriverEnable) {
+  const std::string image = in_repository(EX9000_IMAGES "-relay-b/EX9068D-M.elf");
+  EXPECT_EQ(RunningImage::of_file(image, {"--init"}).ask("$002"), "!01400600");
 }
 
 /// boards/pico/run has no option for the baud rate of the emulated master. In the second run, this master
