@@ -35,6 +35,43 @@ Scenario with_filters(Scenario scenario) {
   return scenario;
 }
 
+/// With few zeros, so that there are few bytes FF.
+void numbered(Settings& settings) { settings.serial_number = 0x0D00FFFF; }
+
+/// The bytes FF of an arbitration have less time between them than replies: a window without its byte.
+Scenario with_number(Scenario scenario) {
+  constexpr std::uint32_t kBetweenBursts = 60;
+  scenario.settings = numbered;
+  scenario.turn_around = kBetweenBursts;
+  return scenario;
+}
+
+/// The bytes of a request for a round of a scan, then all its windows and the reply.
+std::vector<Step> round() {
+  std::vector<Step> steps = frame(kScan, "");
+  steps.back() = [](Bench& bench) {
+    constexpr unsigned kWindows = 32;
+    for (unsigned window = 0; window <= kWindows; ++window) {
+      silence(bench);
+    }
+    reply_leaves(bench);
+  };
+  return steps;
+}
+
+/// What the module sends in a round that it wins.
+std::vector<std::string> bursts_and_reply() {
+  std::vector<std::string> sent(11, "\xFF");
+  sent.push_back(kScanReply);
+  return sent;
+}
+
+std::vector<std::string> after(const std::string& reply) {
+  std::vector<std::string> sent = bursts_and_reply();
+  sent.insert(sent.begin(), reply);
+  return sent;
+}
+
 Scenario restless(Scenario scenario) {
   scenario.restless = true;
   return scenario;
@@ -147,6 +184,13 @@ std::vector<Scenario> scenarios() {
       restless(modbus("a Modbus reply ends while a request waits",
                       replying_with_one_more(kRtuStore, kRtuStore, kRtuRead, kRtuReadReply), {reply_leaves},
                       {{kRtuStore, kRtuReadReply}}, outputs_and_name)),
+      with_number(modbus("a scan while idle", nothing, round(), {bursts_and_reply()}, outputs_and_name)),
+      with_number(modbus("a scan while a frame is answered", asked(kRtuOn, kRtuOn), round(),
+                         {{kRtuOn}, after(kRtuOn)}, outputs_and_name)),
+      with_number(modbus("a reply ends, and then a scan begins", replying(kRtuOn, kRtuOn),
+                         std::vector<Step>{reply_leaves} + round(), {after(kRtuOn)}, outputs_and_name)),
+      with_number(modbus("a scan while storing", storing(kRtuStore, kRtuStore),
+                         round() + std::vector<Step>{memory_done}, {{kRtuStore}}, outputs_and_name)),
       with_watchdog(
           modbus("Modbus host OK while idle", nothing, frame(kRtuHostOk, "host OK"), {{}}, modbus_restarted)),
       with_watchdog(modbus(
