@@ -42,6 +42,26 @@ TEST(ModuleWatchdog, IsNotFedWhileAReplyTakesLongerThanItsDeadline) {
   EXPECT_TRUE(fed());
 }
 
+// The driver of a byte FF of an arbitration stays on: extensions.md, scan.
+TEST(ModuleWatchdog, IsNotFedIfAnArbitrationJamsTheLine) {
+  CoreBench bench("EX9042D-M");
+  Module& module = bench.module();
+  bench.hear(CoreBench::with_crc({0x01, 0x10, 0x01, 0x0E, 0x00, 0x02, 0x04, 0x0D, 0x00, 0x00, 0x01}));
+  ASSERT_FALSE(bench.answer().empty());
+  module.on_reply_sent(bench.now());
+  bench.hear(CoreBench::with_crc({0xFD, 0x46, 0x01}));
+  ASSERT_EQ(module.take_burst().size, 1U);
+  const auto fed = [&] {
+    bench.pass(ex9000::milliseconds(60));
+    module.on_tick();
+    return module.feed_watchdog(bench.now());
+  };
+  EXPECT_TRUE(fed());
+  EXPECT_FALSE(fed());
+  module.on_reply_sent(bench.now());
+  EXPECT_TRUE(fed());
+}
+
 TEST(HostWatchdog, RunsEvenIfTheInitSwitchBouncesContinuously) {
   ModuleBench bench("EX9043D");
   ASSERT_EQ(bench.ask("@010001"), ">");

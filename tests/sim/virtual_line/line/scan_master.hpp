@@ -32,8 +32,8 @@ class ScanMaster {
   };
 
   /// At the rate and in the format of the first module.
-  explicit ScanMaster(const std::vector<ModuleSpec>& modules)
-      : line_(modules, kPaced, [this](std::uint8_t byte, ByteStatus /*status*/) { heard_.push_back(byte); }) {
+  explicit ScanMaster(const std::vector<ModuleSpec>& modules, LineKind kind = kPaced)
+      : line_(modules, kind, [this](std::uint8_t byte, ByteStatus /*status*/) { heard_.push_back(byte); }) {
     line_.come_up();
     line_.master().set_mode(line_.module(0).mode());
   }

@@ -93,6 +93,30 @@ TEST(Scan, NobodyReplaysOnALineWithoutModulesThatTakePart) {
   EXPECT_EQ(master.round(0x01), Bytes{});
 }
 
+TEST(Scan, AModuleWithoutASerialNumberTakesNoPart) {
+  ScanMaster master(modules({"EX9042D-M@01,protocol=modbus"}));
+  EXPECT_EQ(master.round(0x01), Bytes{});
+}
+
+// wire.md 7: a gap of more than T1.5 makes a frame invalid. The arbitration begins after a longer one.
+TEST(Scan, WorksIfGapsInFramesAreLimited) {
+  std::mt19937 random(4);
+  for (const unsigned baud_code : {kBaud9600, kBaud115200}) {
+    const auto all = plant(random, 4, baud_code);
+    ScanMaster master(all, kStrictlyPaced);
+    EXPECT_EQ(master.scan(), in_order(all));
+  }
+}
+
+TEST(Scan, ARequestWithAParityErrorBeginsNoRound) {
+  for (std::size_t damaged = 0; damaged < 5; ++damaged) {
+    ScanMaster master(modules({"EX9042D-M@01,protocol=modbus,format=8E1,serial=0001"}));
+    const Bytes round = with_crc({0xFD, 0x46, 0x01});
+    master.line().master().send(round.data(), round.size(), VirtualTime(0), {damaged});
+    EXPECT_EQ(master.put({}, 900), Bytes{}) << damaged;
+  }
+}
+
 TEST(Scan, FramesOfAForeignModuleBetweenTheRoundsChangeNothing) {
   std::mt19937 random(3);
   const auto all = plant(random, 6, kBaud115200);
