@@ -140,9 +140,11 @@ void RunningLine::summarize() {
   summary_.name = setup_.name;
   for (std::size_t i = 0; i < line_->size(); ++i) {
     SimulatedModule& module = line_->module(i);
-    const InForce& in_force = module.module().state().in_force;
+    const State& state = module.module().state();
+    const InForce& in_force = state.in_force;
     summary_.modules.push_back({std::string(module.model().designation), module.model().inputs,
                                 module.model().outputs, in_force.address,
+                                state.speaks_modbus() ? state.serial_number() : 0,
                                 in_force.protocol == Protocol::Ascii, module.mode(), remark(i)});
   }
   summary_.mode = line_->master().mode();

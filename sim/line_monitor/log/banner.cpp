@@ -105,6 +105,7 @@ std::string summary_of(const LineSummary& line) {
     text += "  " + module.designation + " at " + hex_byte_text(module.address) + ", " +
             (module.speaks_ascii ? "ASCII" : "Modbus RTU") + ", " +
             mode_text(module.mode.baud, module.mode.format) +
+            (module.serial_number == 0 ? "" : ", serial number " + hex_long_text(module.serial_number)) +
             (module.remark.empty() ? "" : "; " + module.remark) + "\n";
     text += commands(line, module);
   }

@@ -17,6 +17,7 @@ struct ModuleSummary {
   unsigned inputs = 0;
   unsigned outputs = 0;
   std::uint8_t address = 0;
+  std::uint32_t serial_number = 0;  ///< by which Modbus reaches it; 0: none
   bool speaks_ascii = false;
   hal::SerialMode mode;
   std::string remark;  ///< about the module's settings; empty: none
