@@ -42,11 +42,15 @@ class Module {
   Duration on_byte(std::uint8_t byte, ByteStatus status, const Clock& clock) {
     return receiver_.on_byte(byte, status, clock);
   }
-  /// Then send what `take_burst` returns. `line_low`: a start bit is on the line.
-  Duration on_silence(Time now, bool line_low) {
-    return receiver_.on_silence(now, line_low, !receiver_.queue().has_frame() && cycle_.at_rest());
+  /// Then, if it `arbitrates`, call `on_window` too, and use the time that this returns.
+  Duration on_silence(Time now) { return receiver_.on_silence(now); }
+  /// A bus scan is under way, in which the module may still win.
+  [[nodiscard]] bool arbitrates() const { return kBuiltModbus && receiver_.arbitration().active(); }
+  /// See Arbitration::on_time. Then send what `take_burst` returns.
+  Duration on_window(Time now, bool line_low) {
+    return receiver_.arbitration().on_time(now, line_low, !receiver_.queue().has_frame() && cycle_.at_rest());
   }
-  Bytes take_burst() { return receiver_.take_burst(); }
+  Bytes take_burst() { return receiver_.arbitration().take_burst(); }
   /// When the last stop bit has been sent and the driver is off. Needs no `step`.
   void on_reply_sent(Time now) {
     receiver_.on_own_driver_off(now);
@@ -105,8 +109,6 @@ class Module {
     return listening() && cycle_.phase() == RequestCycle::Phase::Idle && !cycle_.replying() &&
            !receiver_.queue().has_frame();
   }
-  /// A bus scan is under way, in which the module may still win.
-  [[nodiscard]] bool arbitrates() const { return receiver_.arbitration().active(); }
   [[nodiscard]] const Outcome& outcome() const { return cycle_.outcome(); }
   [[nodiscard]] bool settings_unreadable() const { return keeper_.unreadable(); }
 

@@ -50,13 +50,13 @@ class Device {
   /// When the silence timer expires: a silence is over, the turn-around time of an ASCII frame, or a window
   /// of an arbitration.
   void on_silence() {
-    const Duration more = module_.on_silence(board_.clock.now_in_interrupt(), board_.line.low());
+    const Time now = board_.clock.now_in_interrupt();
+    Duration more = module_.on_silence(now);
+    if (module_.arbitrates()) {
+      more = serve_window(now);
+    }
     if (!(more == Duration())) {
       board_.silence_timer.restart(more);
-    }
-    const Bytes burst = module_.take_burst();
-    if (burst.size != 0) {
-      board_.line.send_in_interrupt(burst);
     }
     wake_for_frame();
   }
@@ -107,6 +107,15 @@ class Device {
   [[nodiscard]] const Module& module() const { return module_; }
 
  private:
+  [[gnu::noinline]] Duration serve_window(Time now) {
+    const Duration next = module_.on_window(now, board_.line.low());
+    const Bytes burst = module_.take_burst();
+    if (burst.size != 0) {
+      board_.line.send_in_interrupt(burst);
+    }
+    return next;
+  }
+
   void serve_line(Time now) {
     if (!line_open_) {
       if (!module_.listening()) {

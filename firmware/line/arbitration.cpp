@@ -19,13 +19,13 @@ constexpr Duration kMargin = milliseconds(100);
 }  // namespace
 
 void Arbitration::begin(Round round, const Contender& who, Time reported) {
-  EX9000_EXPECT(!active());
+  EX9000_EXPECT(!active() && round != Round::None);
   who_ = who;
   scanned_ = scanned_ && round == Round::Next;
   constexpr std::uint32_t kNumber = (1U << kPriorityAt) - 1U;
   word_ = (scanned_ ? kScanned : kUnscanned) << kPriorityAt | (who.serial_number & kNumber);
   begin_ = reported + timing_.arbitration;
-  window_ = 0;
+  window_ = who.serial_number != 0 ? 0 : kOver;
 }
 
 Duration Arbitration::on_time(Time now, bool line_low, bool at_rest) {

@@ -17,10 +17,10 @@ namespace ex9000 {
 /// byte in a window of a 1 has lost, so the lowest word wins, and its module replies after the last window.
 class Arbitration {
  public:
-  /// Whether the master begins a scan, so that all modules are unscanned again.
-  enum class Round : std::uint8_t { First, Next };
+  /// For which the master asks: in the first one of a scan, all modules are unscanned again.
+  enum class Round : std::uint8_t { None, First, Next };
   struct Contender {
-    std::uint32_t serial_number;  ///< not 0
+    std::uint32_t serial_number;  ///< 0: none, so that it takes no part
     std::uint8_t address;         ///< in force
   };
 
@@ -28,7 +28,8 @@ class Arbitration {
 
   // --- interrupts, which must not interrupt each other ---
 
-  /// A request for a round has ended. `reported`: when the UART reported its last byte. Then call `on_time`.
+  /// A request for a round, not None, has ended. `reported`: when the UART reported its last byte. Then call
+  /// `on_time`.
   void begin(Round round, const Contender& who, Time reported);
   /// From `begin` until the module has lost, gives up, or has begun its reply.
   [[nodiscard]] bool active() const { return window_ != kOver; }

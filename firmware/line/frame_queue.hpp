@@ -25,11 +25,6 @@ struct Frame {
   std::array<std::uint8_t, kLongestFrame + 1> storage{};
 
   [[nodiscard]] Bytes bytes() const { return {storage.data() + offset, size}; }
-  /// To which the frame is addressed, high byte first; empty: to an address.
-  [[nodiscard]] Bytes serial_number() const {
-    constexpr std::uint16_t kBefore = 3;
-    return by_serial_number ? Bytes{storage.data() + (offset - kBefore), kBefore + 1U} : Bytes();
-  }
 };
 
 /// Two buffers in turn: one frame waits for the main loop while the next is assembled. The main loop drops a

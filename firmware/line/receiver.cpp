@@ -6,7 +6,6 @@ void Receiver::listen(const Listening& how) {
   protocol_ = how.protocol;
   dcon_.use_checksum(how.checksum);
   rtu_.use(how.timing);
-  arbitration_.use(how.timing);
 }
 
 void Receiver::answer_to(std::uint8_t address) {
@@ -14,26 +13,17 @@ void Receiver::answer_to(std::uint8_t address) {
   rtu_.answer_to(address);
 }
 
-Duration Receiver::on_silence(Time now, bool line_low, bool at_rest) {
-  if (!modbus()) {
+Duration Receiver::on_silence(Time now) {
+  if (!modbus() || rtu_.arbitration().active()) {
     return {};
   }
-  if (!arbitration_.active()) {
-    const auto round = rtu_.round();
-    note(rtu_.silence(queue_, now), now);
-    if (round && rtu_.contender().serial_number != 0) {
-      arbitration_.begin(*round, rtu_.contender(), now - rtu_.wait_of_round());
-    }
-  }
-  if (arbitration_.active()) {
-    return arbitration_.on_time(now, line_low, at_rest);
-  }
+  note(rtu_.silence(queue_, now), now);
   return rtu_.next_wait();
 }
 
 void Receiver::on_own_driver_off(Time now) {
   if (modbus()) {
-    arbitration_.on_sent();
+    rtu_.arbitration().on_sent();
     // The module's own reply ends the frame, even before its silence is over.
     note(rtu_.cut_off(queue_, now), now);
   } else {

@@ -41,10 +41,9 @@ class Receiver {
   template <class Clock>
   Duration on_byte(std::uint8_t byte, ByteStatus status, const Clock& clock);
 
-  /// When the time from `on_byte` or `on_silence` has passed. Returns the next such time; 0: none.
-  /// `line_low`, `at_rest`: see Arbitration::on_time. Then send what `take_burst` returns.
-  Duration on_silence(Time now, bool line_low, bool at_rest);
-  Bytes take_burst() { return arbitration_.take_burst(); }
+  /// When the time from `on_byte` or `on_silence` has passed. Returns the next such time; 0: none. Then, if
+  /// `arbitration().active()`, call its `on_time` too, and use that time instead.
+  Duration on_silence(Time now);
 
   /// When the module's own driver is off again; no `on_byte` while it is on. Drops an incomplete frame,
   /// except an RTU frame that lacks only its silence (wire.md D9).
@@ -59,7 +58,8 @@ class Receiver {
   /// watchdog like a host OK. For frames that end after this call.
   void restart_by_requests(bool on) { restarts_by_requests_.store_in_main_loop(on); }
   [[nodiscard]] const LineTiming& timing() const { return rtu_.timing(); }
-  [[nodiscard]] const Arbitration& arbitration() const { return arbitration_; }
+  Arbitration& arbitration() { return rtu_.arbitration(); }
+  [[nodiscard]] const Arbitration& arbitration() const { return rtu_.arbitration(); }
   FrameQueue& queue() { return queue_; }
   [[nodiscard]] const FrameQueue& queue() const { return queue_; }
   constexpr LineTallies& tallies() { return tallies_; }
@@ -82,7 +82,6 @@ class Receiver {
 
   DconAssembler dcon_;
   RtuAssembler rtu_;
-  Arbitration arbitration_;
   Protocol protocol_ = Protocol::Ascii;
   LineTallies tallies_;
   HostOks host_oks_;
@@ -97,9 +96,6 @@ inline Duration Receiver::on_byte(std::uint8_t byte, ByteStatus status, const Cl
     tallies_.count_damaged_byte_in_interrupt();
   }
   if (modbus()) {
-    if (arbitration_.active() && arbitration_.hears_byte()) {
-      return {};
-    }
     return rtu_.byte(queue_, byte, status);
   }
   if (byte != DconAssembler::kEnd) {

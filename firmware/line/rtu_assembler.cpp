@@ -1,5 +1,7 @@
 #include "firmware/line/rtu_assembler.hpp"
 
+#include <algorithm>
+
 #include "firmware/line/rtu_frames.hpp"
 
 namespace ex9000 {
@@ -11,8 +13,12 @@ constexpr unsigned kCrcBytes = 2;
 
 }  // namespace
 
-/// Opens a frame, or continues it after the silence timer has expired.
-void RtuAssembler::go_on(FrameQueue& queue, std::uint8_t byte) {
+/// Opens a frame, or continues it after the silence timer has expired. False if the byte belongs to an
+/// arbitration.
+bool RtuAssembler::go_on(FrameQueue& queue, std::uint8_t byte) {
+  if (arbitration_.active() && arbitration_.hears_byte()) {
+    return false;
+  }
   if (state_ == State::Idle) {
     open(queue, byte);
   } else {
@@ -22,6 +28,7 @@ void RtuAssembler::go_on(FrameQueue& queue, std::uint8_t byte) {
     crc_after_zero_.add(byte);
   }
   state_ = State::Receiving;
+  return true;
 }
 
 void RtuAssembler::open(FrameQueue& queue, std::uint8_t first) {
@@ -33,27 +40,46 @@ void RtuAssembler::open(FrameQueue& queue, std::uint8_t first) {
   overrun_ = false;
   whole_ = Crc16();
   crc_after_zero_ = Crc16();
+  may_ask_for_round_ = first >= modbus::kScanAddress;
+  first_wait_ = may_ask_for_round_ ? wait_if_round_ : usual_wait_;
 }
 
-std::optional<Arbitration::Round> RtuAssembler::round() const {
-  constexpr unsigned kSize = 5;
-  if (state_ != State::Receiving || received_ != kSize || whole_.value() != 0 || first_spoiled_ ||
-      rest_spoiled_ || frame_->storage[0] != modbus::kScanAddress ||
-      frame_->storage[1] != modbus::kScanFunction) {
-    return {};
-  }
-  switch (frame_->storage[2]) {
-    case modbus::kFirstRound:
-      return Arbitration::Round::First;
-    case modbus::kNextRound:
-      return Arbitration::Round::Next;
-    default:
-      return {};
-  }
+void RtuAssembler::use(const LineTiming& timing) {
+  timing_ = timing;
+  arbitration_.use(timing);
+  usual_wait_ = std::min(timing.rtu_slack, timing.rtu_silence);
+  // Above 19200 baud, an arbitration begins before T3.5 is over.
+  wait_if_round_ = std::min(usual_wait_, timing.arbitration);
 }
 
-/// After bytes with a correct CRC. Above 19200 baud, an arbitration begins before T3.5 is over.
-Duration RtuAssembler::wait_after_frame() const { return round() ? wait_of_round() : first_wait_; }
+/// Of the last bytes, whatever is before them: masters ask for the next round sooner than T3.5 after a reply,
+/// which modules that have lost hear after the bytes FF of the arbitration. Line errors before them, and the
+/// gap, do not matter.
+Arbitration::Round RtuAssembler::round() const {
+  constexpr std::uint32_t kSize = 5;
+  const bool spoiled = received_ == kSize && (first_spoiled_ || rest_spoiled_);
+  if (!may_ask_for_round_ || state_ != State::Receiving || received_ < kSize ||
+      received_ > frame_->storage.size() || spoiled) {
+    return Arbitration::Round::None;
+  }
+  const Bytes last{frame_->storage.data() + (received_ - kSize), kSize};
+  if (last[0] != modbus::kScanAddress || last[1] != modbus::kScanFunction || crc16(last).value() != 0) {
+    return Arbitration::Round::None;
+  }
+  return last[2] == modbus::kFirstRound  ? Arbitration::Round::First
+         : last[2] == modbus::kNextRound ? Arbitration::Round::Next
+                                         : Arbitration::Round::None;
+}
+
+/// False if the open frame asks for none.
+bool RtuAssembler::begin_round(Time now) {
+  const Arbitration::Round asked = round();
+  if (asked != Arbitration::Round::None) {
+    arbitration_.begin(asked, {serial_number_.load(), static_cast<std::uint8_t>(own_address_.load())},
+                       now - first_wait_);
+  }
+  return asked != Arbitration::Round::None;
+}
 
 Verdict RtuAssembler::silence(FrameQueue& queue, Time now) {
   Verdict verdict = Verdict::Open;
@@ -61,7 +87,13 @@ Verdict RtuAssembler::silence(FrameQueue& queue, Time now) {
     case State::Idle:
       break;
     case State::Receiving:
-      if (strict() && !round()) {
+      if (may_ask_for_round_ && begin_round(now)) {
+        verdict = conclude(queue, now);
+        verdict = verdict == Verdict::Open ? loss_verdict() : verdict;
+        state_ = State::Idle;
+        break;
+      }
+      if (first_wait_ < timing_.rtu_silence) {
         state_ = State::LongGap;
         break;
       }
@@ -80,7 +112,7 @@ Verdict RtuAssembler::silence(FrameQueue& queue, Time now) {
 
 Duration RtuAssembler::next_wait() const {
   if (state_ == State::LongGap) {
-    return timing_.rtu_silence - timing_.rtu_slack;
+    return timing_.rtu_silence - first_wait_;
   }
   return state_ == State::GracePeriod ? timing_.rtu_grace : Duration();
 }
@@ -107,7 +139,8 @@ Verdict RtuAssembler::conclude(FrameQueue& queue, Time received) {
   if (size < kShortestFrame || size > kLongestFrame) {
     return Verdict::Open;
   }
-  const bool by_number = has_own_number(frame.storage.data() + offset, size);
+  const bool by_number =
+      frame.storage[offset] == modbus::kScanAddress && has_own_number(frame.storage.data() + offset, size);
   if (by_number) {
     offset += modbus::kNumberPrefix;
     size -= modbus::kNumberPrefix;
@@ -129,13 +162,13 @@ Verdict RtuAssembler::conclude(FrameQueue& queue, Time received) {
   return queue.complete_in_interrupt() ? Verdict::Accepted : Verdict::NoRoom;
 }
 
-/// `frame` of `size` bytes is a request by serial number, and the number is this module's.
+/// `frame` of `size` bytes, at address FD, is a request by serial number, and the number is this module's.
 bool RtuAssembler::has_own_number(const std::uint8_t* frame, unsigned size) const {
   constexpr unsigned kNumberAt = 3;
   const Bytes bytes{frame, size};
   const std::uint32_t number = serial_number_.load();
-  return frame[0] == modbus::kScanAddress && size >= modbus::kNumberPrefix + kShortestFrame && number != 0 &&
-         frame[1] == modbus::kScanFunction && frame[2] == modbus::kRequestByNumber &&
+  return size >= modbus::kNumberPrefix + kShortestFrame && number != 0 && frame[1] == modbus::kScanFunction &&
+         frame[2] == modbus::kRequestByNumber &&
          (std::uint32_t{bytes.word(kNumberAt)} << 16U | bytes.word(kNumberAt + 2)) == number;
 }
 

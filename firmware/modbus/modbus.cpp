@@ -64,21 +64,23 @@ void write_exception(std::uint8_t address, std::uint8_t function, Refusal refusa
   reply.put(exception_of(refusal, function));
 }
 
-bool is_addressed_to(const State& state, std::uint8_t address, Bytes serial_number) {
-  if (serial_number.size == 0) {
-    return address == state.in_force.address;
-  }
+/// To which the request is addressed, high byte first.
+Bytes serial_number_of(const Exchange& exchange) {
+  constexpr std::size_t kBefore = 3;
+  return {exchange.frame.data - kBefore, kBefore + 1};
+}
+
+bool is_own_number(const Exchange& exchange) {
   constexpr unsigned kBitsOfAWord = 16;
-  return (std::uint32_t{serial_number.word(0)} << kBitsOfAWord | serial_number.word(2)) ==
-         state.serial_number();
+  const Bytes number = serial_number_of(exchange);
+  return (std::uint32_t{number.word(0)} << kBitsOfAWord | number.word(2)) == exchange.state.serial_number();
 }
 
 /// The last byte of the number follows as the address of the reply.
-void put_prefix(Bytes serial_number, Reply& reply) {
-  reply.put(kScanAddress);
-  reply.put(kScanFunction);
-  reply.put(kReplyByNumber);
-  reply.put(serial_number.first(serial_number.size - 1));
+[[gnu::noinline]] void put_prefix(Bytes serial_number, Reply& reply) {
+  const std::array<std::uint8_t, kNumberPrefix> prefix{kScanAddress,     kScanFunction,    kReplyByNumber,
+                                                       serial_number[0], serial_number[1], serial_number[2]};
+  reply.put(Bytes{prefix.data(), prefix.size()});
   reply.end_prefix();
 }
 
@@ -88,13 +90,15 @@ void answer(Exchange& exchange) {
   const Bytes frame = exchange.frame;
   Reply& reply = exchange.reply;
   const std::uint8_t function = frame[1];
-  const bool by_number = exchange.serial_number.size != 0;
-  exchange.broadcast = !by_number && frame[0] == kBroadcast;
-  if (!exchange.broadcast && !is_addressed_to(exchange.state, frame[0], exchange.serial_number)) {
-    return;  // a write has changed address or number since the frame was received (wire.md D16)
-  }
-  if (by_number) {
-    put_prefix(exchange.serial_number, reply);
+  exchange.broadcast = !exchange.by_serial_number && frame[0] == kBroadcast;
+  // A write may have changed address or number since the frame was received (wire.md D16).
+  if (exchange.by_serial_number) {
+    if (!is_own_number(exchange)) {
+      return;
+    }
+    put_prefix(serial_number_of(exchange), reply);
+  } else if (!exchange.broadcast && frame[0] != exchange.state.in_force.address) {
+    return;
   }
   const FunctionRow* row = find(exchange.model(), function);
   if (exchange.broadcast && (row == nullptr || row->at_broadcast == AtBroadcast::Ignored)) {

@@ -22,9 +22,8 @@ struct Exchange {
 
   Bytes frame;  ///< the request without checksum, CRC and CR; valid until it has been judged
   Bytes args;   ///< the arguments of a DCON command (dcon/commands.hpp); set before a DCON handler runs
-  Bytes
-      serial_number;  ///< Modbus: to which the request is addressed, else empty; its last byte begins `frame`
-  bool broadcast{};   ///< Modbus: the request has address 0
+  bool by_serial_number{};  ///< Modbus: the serial number precedes `frame`, which begins with its last byte
+  bool broadcast{};         ///< Modbus: the request has address 0
 
   Outcome outcome;
   Reply reply;
@@ -42,7 +41,7 @@ struct Exchange {
   /// For the next request. The outcome must be clear.
   void begin(const Frame& request) {
     frame = request.bytes();
-    serial_number = request.serial_number();
+    by_serial_number = request.by_serial_number;
     outcome.refusal = Refusal::None;
     reply.begin();
   }

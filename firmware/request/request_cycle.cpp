@@ -19,7 +19,6 @@ void RequestCycle::poll(Time now) {
 
 const Outcome& RequestCycle::judge(const Frame& frame, Time now) {
   EX9000_EXPECT(free());
-  processing_.store_in_main_loop(true);
   exchange_.begin(frame);
   earliest_reply_.set(now);
   earliest_reply_.delay_to(gap_end_);
@@ -32,9 +31,7 @@ const Outcome& RequestCycle::judge(const Frame& frame, Time now) {
   if (outcome.refusal != Refusal::None) {
     outcome.clear();  // no action of a refused request is carried out
   }
-  if (outcome.changes_settings()) {
-    enter(Phase::AwaitingStore);
-  }
+  phase_.store_in_main_loop(outcome.changes_settings() ? Phase::AwaitingStore : Phase::Judged);
   return outcome;
 }
 
@@ -45,7 +42,7 @@ void RequestCycle::keep_timeout_status() {
 }
 
 void RequestCycle::refuse_store() {
-  EX9000_EXPECT(phase_ == Phase::Storing);
+  EX9000_EXPECT(phase() == Phase::Storing);
   exchange_.outcome.clear();
   exchange_.outcome.refusal = Refusal::StoreFailed;
   if (exchange_.state.speaks_modbus()) {
@@ -57,17 +54,18 @@ void RequestCycle::refuse_store() {
 
 bool RequestCycle::finish() {
   exchange_.outcome.clear();
-  enter(exchange_.reply.empty() ? Phase::Idle : Phase::ReplyReady);
-  return phase_ == Phase::ReplyReady;
+  const bool replies = !exchange_.reply.empty();
+  phase_.store_in_main_loop(replies ? Phase::ReplyReady : Phase::Idle);
+  return replies;
 }
 
 Bytes RequestCycle::take_reply(Time now) {
-  if (phase_ != Phase::ReplyReady || !earliest_reply_.reached(now)) {
+  if (phase() != Phase::ReplyReady || !earliest_reply_.reached(now)) {
     return {};
   }
   EX9000_EXPECT(!replying());
   replies_.store_in_main_loop(replies_.load() + 1U);  // before the phase, see `at_rest`
-  enter(Phase::Idle);
+  phase_.store_in_main_loop(Phase::Idle);
   return exchange_.reply.bytes();
 }
 

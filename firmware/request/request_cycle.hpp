@@ -19,6 +19,7 @@ class RequestCycle {
  public:
   enum class Phase : std::uint8_t {
     Idle,           ///< no request is being processed; the last reply may still be on the line
+    Judged,         ///< changes no settings; its actions are being carried out
     AwaitingStore,  ///< judged; the store of the changed settings has not begun
     Storing,        ///< judged; the memory is storing the changed settings
     ReplyReady,     ///< done; the reply waits until the gap after a reply and the response delay are over
@@ -26,15 +27,15 @@ class RequestCycle {
 
   constexpr RequestCycle(const State& state, const LineTallies& tallies) : exchange_(state, tallies) {}
 
-  [[nodiscard]] Phase phase() const { return phase_; }
+  [[nodiscard]] Phase phase() const { return phase_.load(); }
   /// The request waits for the memory.
-  [[nodiscard]] bool stores() const { return phase_ == Phase::AwaitingStore || phase_ == Phase::Storing; }
+  [[nodiscard]] bool stores() const { return phase() == Phase::AwaitingStore || phase() == Phase::Storing; }
   /// A reply is on the line. An interrupt reports its end, which needs no pass of the main loop.
   [[nodiscard]] bool replying() const { return replies_.load() != replies_sent_.load(); }
   /// No request is being processed, and no reply is on the line. For interrupts.
-  [[nodiscard]] bool at_rest() const { return !processing_.load() && !replying(); }
+  [[nodiscard]] bool at_rest() const { return phase() == Phase::Idle && !replying(); }
   /// The next request may be judged. Becomes true in `poll`.
-  [[nodiscard]] bool free() const { return phase_ == Phase::Idle && replies_.load() == replies_ended_; }
+  [[nodiscard]] bool free() const { return phase() == Phase::Idle && replies_.load() == replies_ended_; }
   /// The shortest time between two replies (wire.md D18).
   void keep_apart(Duration replies) { gap_ = replies; }
   /// In every pass, at least once every 30 minutes.
@@ -49,8 +50,8 @@ class RequestCycle {
   [[nodiscard]] const Outcome& outcome() const { return exchange_.outcome; }
   /// While AwaitingStore, when the store has begun.
   void store_begun() {
-    EX9000_EXPECT(phase_ == Phase::AwaitingStore);
-    phase_ = Phase::Storing;
+    EX9000_EXPECT(phase() == Phase::AwaitingStore);
+    phase_.store_in_main_loop(Phase::Storing);
   }
   /// The host watchdog has expired: a request that `stores()` must not clear the new status (wire.md D17).
   void keep_timeout_status();
@@ -63,7 +64,7 @@ class RequestCycle {
 
   /// Disarmed unless ReplyReady.
   [[nodiscard]] Deadline reply_due() const {
-    return phase_ == Phase::ReplyReady ? earliest_reply_ : Deadline();
+    return phase() == Phase::ReplyReady ? earliest_reply_ : Deadline();
   }
   /// The reply, once, when it may be sent; else empty. Valid until `on_reply_sent`.
   Bytes take_reply(Time now);
@@ -74,13 +75,7 @@ class RequestCycle {
   }
 
  private:
-  void enter(Phase phase) {
-    phase_ = phase;
-    processing_.store_in_main_loop(phase != Phase::Idle);
-  }
-
-  Phase phase_ = Phase::Idle;
-  WrittenByMainLoop<bool> processing_;
+  WrittenByMainLoop<Phase> phase_;
   WrittenByMainLoop<std::uint32_t> replies_;  ///< number of replies that `take_reply` has returned; wraps
   WrittenByInterrupt<std::uint32_t> replies_sent_;  ///< the value of `replies_` when a reply ended
   std::uint32_t replies_ended_ = 0;            ///< the value of `replies_sent_` that `poll` has processed

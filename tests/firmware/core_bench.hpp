@@ -43,8 +43,7 @@ class CoreBench {
   /// Lets a silence of at least 50 ms pass, which ends every frame.
   void silence() {
     now_ = now_ + milliseconds(50);
-    for (Duration wait = module_.on_silence(now_, false); !(wait == Duration());
-         wait = module_.on_silence(now_, false)) {
+    for (Duration wait = end_wait(); !(wait == Duration()); wait = end_wait()) {
       now_ = now_ + wait;
     }
   }
@@ -82,6 +81,11 @@ class CoreBench {
   }
 
  private:
+  Duration end_wait() {
+    const Duration wait = module_.on_silence(now_);
+    return module_.arbitrates() ? module_.on_window(now_, false) : wait;
+  }
+
   InstantMemory memory_;
   Module module_;
   Time now_;

@@ -45,7 +45,7 @@ class ModuleTurns : public testing::Test {
       module_.on_byte(static_cast<std::uint8_t>(character), ByteStatus::Good, ClockAt{now_});
     }
     pass(kCharacter + kCharacter);
-    module_.on_silence(now_, false);
+    module_.on_silence(now_);
   }
   std::string take_reply() {
     const Bytes reply = module_.take_reply(now_);

@@ -83,7 +83,7 @@ void SharedEar::hear(std::uint8_t byte) {
   Assembler& assembler = *assembler_;
   if (modbus()) {
     const Duration wait = assembler.rtu.byte(assembler.queue, byte, ByteStatus::Good);
-    if (assembler.rtu.round()) {
+    if (assembler.rtu.asks_for_round()) {
       dissolve();
       return;
     }

@@ -63,7 +63,7 @@ class ReceiverTest : public testing::Test {
   /// Lets a silence of 50 ms pass, which ends a Modbus frame. A silence does not end an ASCII frame.
   void silence() {
     now_ = now_ + milliseconds(50);
-    while (!(receiver_.on_silence(now_, false, true) == Duration())) {
+    while (!(receiver_.on_silence(now_) == Duration())) {
     }
   }
   void frame(const FrameBytes& values) {
