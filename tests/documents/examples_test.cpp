@@ -1,12 +1,13 @@
 // If a section of a document has a `text` block, the test runs the examples of this section. If a `sh` block
 // begins with a command that starts a simulator, this block runs in the first terminal. The simulator runs
 // until the test stops it. All other `sh` blocks and all `python` blocks run in a second terminal. The `text`
-// blocks are the expected output of the second terminal. A `json` block is the content of the file
-// `bus.yaml`. Apart from this file, the working directory at first contains only links to `boards` and
-// `build`, because the examples use the programs and images there. For the line `sim/run`, the test runs only
-// the last command of sim/run. The script itself also installs packages and builds the simulator;
-// tests/first-command runs the script. Another test in this file checks that the tables of the documents list
-// each option, control command and fault that `ex9000-sim --help` lists.
+// blocks are the expected output of the second terminal. A `yaml` block is the content of the file
+// `bus.yaml`, and a `python` block that begins with `# NAME.py` that of NAME.py. Apart from these files, the
+// working directory at first contains only links to `boards` and `build`, because the examples use the
+// programs and images there. For the line `sim/run`, the test runs only the last command of sim/run. The
+// script itself also installs packages and builds the simulator; tests/first-command runs the script. Another
+// test in this file checks that the tables of the documents list each option, control command and fault that
+// `ex9000-sim --help` lists.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -117,6 +118,14 @@ bool starts_the_simulator(const Block& block) {
   return begins_with("ex9000-sim ") && !begins_with("ex9000-sim describe") && !begins_with("ex9000-sim play");
 }
 
+/// For a `python` block that is the content of a file, the name of this file, else empty.
+std::string file_of(const Block& block) {
+  std::smatch name;
+  return block.language == "python" && std::regex_search(block.text, name, std::regex("^# (\\w+\\.py)\n"))
+             ? name[1].str()
+             : "";
+}
+
 /// The second terminal. All its blocks run in one shell, because later blocks use functions and jobs of
 /// earlier blocks.
 class Shell {
@@ -146,6 +155,8 @@ void paste(const Section& section) {
       expected += block.text;
     } else if (block.language == "yaml") {
       write_file(directory / "bus.yaml", block.text);
+    } else if (const std::string file = file_of(block); !file.empty()) {
+      write_file(directory / file, block.text);
     } else if (block.language == "sh" && starts_the_simulator(block)) {
       simulator = std::make_unique<ChildProcess>(std::vector<std::string>{"sh", "-c", "exec " + block.text},
                                                  directory.path(), ChildProcess::Errors::WithOutput);
