@@ -16,15 +16,16 @@ constexpr Duration kClockResolution(1);  // an event may be this much later than
 
 }  // namespace
 
-void Module::start(std::uint16_t input_levels, Time now, ResetReason reason, std::uint32_t serial_number) {
+void Module::start(std::uint16_t input_levels, Time now, const Reset& reset) {
   const auto levels = static_cast<std::uint16_t>(input_levels & state_.model().input_mask());
   edges_.begin(levels);
   edges_.time_edges(true);  // the settings, which are not known yet, may contain filters
   state_.inputs.begin(levels);
   init_timeout_.set(now + kInitTimeout);
   second_began_ = now;
-  state_.statistics.reset_reason = reason;
-  state_.board_serial_number = serial_number;
+  state_.statistics.reset_reason = reset.reason;
+  state_.board_serial_number = reset.serial_number;
+  crash_count_.begin(reset.reason, reset.crashes);
 }
 
 StatusLed::Pattern Module::led_pattern_due() const {
@@ -80,7 +81,7 @@ void Module::start_up(Time now) {
 void Module::use_settings(Time now) {
   const Settings& stored = keeper_.stored();
   state_.statistics.settings_source = keeper_.source();
-  state_.outputs = stored.power_on_value;
+  state_.outputs = crash_count_.looping() ? stored.safe_value : stored.power_on_value;
   state_.inputs.count_rising_edges((stored.format & kFormatRisingEdge) != 0);
   apply(stored, now);
   host_watchdog_.restart(now);
@@ -160,6 +161,7 @@ void Module::update_statistics(Time now) {
   while (!(now.since(second_began_) < kSecond)) {
     second_began_ = second_began_ + kSecond;
     ++state_.statistics.seconds_up;
+    crash_count_.lived(state_.statistics.seconds_up);
   }
   state_.statistics.stores = keeper_.saves();
 }

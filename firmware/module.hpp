@@ -15,10 +15,18 @@
 #include "firmware/reset_reason.hpp"
 #include "firmware/settings/settings_keeper.hpp"
 #include "firmware/time.hpp"
+#include "firmware/watchdog/crash_count.hpp"
 #include "firmware/watchdog/host_watchdog.hpp"
 #include "firmware/watchdog/module_watchdog.hpp"
 
 namespace ex9000 {
+
+/// What a board knows at a reset.
+struct Reset {
+  ResetReason reason = ResetReason::Unknown;
+  std::uint32_t serial_number = 0;  ///< of the board; 0: none
+  std::uint32_t crashes = 0;        ///< see CrashCount::begin
+};
 
 /// Accesses no peripheral and reads no clock: the caller passes events, levels and the time, and reads
 /// outputs, LED, reply and memory job. One object lives from one reset to the next. No function blocks. A
@@ -31,9 +39,9 @@ class Module {
   Module& operator=(const Module&) = delete;
 
   /// Once, at reset, before any interrupt but the tick is enabled. `input_levels`: 1 = +4 to +30 V.
-  /// `serial_number`: of the board; 0: none.
-  void start(std::uint16_t input_levels, Time now, ResetReason reason = ResetReason::Unknown,
-             std::uint32_t serial_number = 0);
+  void start(std::uint16_t input_levels, Time now, const Reset& reset = {});
+  /// To be kept by the board from now on, through a reset by the watchdog or a fault.
+  [[nodiscard]] std::uint32_t crashes() const { return crash_count_.to_keep(); }
 
   // --- interrupts ---
 
@@ -151,6 +159,7 @@ class Module {
   RequestCycle cycle_;
   HostWatchdog host_watchdog_;
   ModuleWatchdog module_watchdog_;
+  CrashCount crash_count_;
   Debounce init_switch_;
   StatusLed led_;
 };

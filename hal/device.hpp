@@ -18,7 +18,7 @@ namespace ex9000::hal {
 ///     line                        serial_line.hpp       memory         memory.hpp
 ///     silence_timer, wake_timer   one_shot_timer.hpp    init_switch    init_switch.hpp
 ///     inputs                      inputs.hpp            status_led     status_led.hpp
-///     watchdog                    watchdog.hpp
+///     watchdog                    watchdog.hpp      kept_word      kept_word.hpp
 /// A board also has a tick (tick.hpp), which is no member. The compiler rejects a board that lacks a member
 /// or a function, or whose function takes a narrower number (-Wconversion).
 template <class Board>
@@ -31,7 +31,9 @@ class Device {
   /// Once, after the tick has started, before the other interrupts are enabled.
   /// `serial_number`: 0x0D00xxxx, from a unique number of the board; 0: the board has none.
   void start(ResetReason reason, std::uint32_t serial_number = 0) {
-    module_.start(board_.inputs.start(), board_.clock.now(), reason, serial_number);
+    module_.start(board_.inputs.start(), board_.clock.now(),
+                  {reason, serial_number, board_.kept_word.load()});
+    board_.kept_word.store(module_.crashes());
     board_.watchdog.feed();
   }
 
@@ -94,6 +96,7 @@ class Device {
     // In every pass, in case a disturbance has changed the registers of outputs or LED.
     board_.outputs.drive(module_.outputs());
     board_.status_led.light(module_.led_lit());
+    board_.kept_word.store(module_.crashes());
     if (module_.feed_watchdog(now)) {
       board_.watchdog.feed();
     }

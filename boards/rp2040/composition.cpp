@@ -25,6 +25,7 @@
 #include "hal/rp2040/i2c.hpp"
 #include "hal/rp2040/inputs.hpp"
 #include "hal/rp2040/interrupts.hpp"
+#include "hal/rp2040/kept_word.hpp"
 #include "hal/rp2040/outputs.hpp"
 #include "hal/rp2040/resets.hpp"
 #include "hal/rp2040/timer.hpp"
@@ -79,6 +80,7 @@ struct Board {
   hal::InitPin<kInitSwitch> init_switch;
   hal::LedPin<kStatusLed> status_led;
   Watchdog watchdog;
+  KeptWord kept_word;
 };
 
 hal::Device<Board> device(kOnlyModel);

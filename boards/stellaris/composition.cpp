@@ -18,6 +18,7 @@
 #include "hal/stellaris/i2c.hpp"
 #include "hal/stellaris/inputs.hpp"
 #include "hal/stellaris/interrupts.hpp"
+#include "hal/stellaris/kept_word.hpp"
 #include "hal/stellaris/one_shot_timer.hpp"
 #include "hal/stellaris/outputs.hpp"
 #include "hal/stellaris/system_control.hpp"
@@ -41,6 +42,8 @@ using Line = Uart<kUart, kHertz, kDriverEnable, LineEndTimer>;
 using Memory = hal::TwoPlaces<hal::At24c<I2c<kFamily, kHertz>>>;
 using Watchdog = HardwareWatchdog<kMegahertz>;
 
+__attribute__((section(".kept"))) WrittenByMainLoop<std::uint32_t> kept;
+
 /// See hal::Device.
 struct Board {
   Clock clock;
@@ -53,6 +56,7 @@ struct Board {
   hal::InitPin<kInitSwitch> init_switch;
   hal::LedPin<kStatusLed> status_led;
   Watchdog watchdog;
+  KeptWord<kept> kept_word;
 };
 
 hal::Device<Board> device(kOnlyModel);

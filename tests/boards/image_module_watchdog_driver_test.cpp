@@ -79,6 +79,23 @@ TEST_P(FaultOnBoard, AHungMainLoopCausesAReset) {
   expect_reset("the main loop hangs", [](BoardBench& bench) { bench.mcu->hang(Hangs::MainLoop); });
 }
 
+// wire.md 2: a crash loop. RAM keeps the count through a reset.
+TEST_P(FaultOnBoard, TheThirdResetInARowLeadsToTheSafeValue) {
+  WatchedModule module(image(), set_up(*find_model(image().model), protocol()));
+  BoardBench& bench = module.bench;
+  const auto expect = [&](std::uint16_t outputs) {
+    bench.run_for(kComesUpWithin);
+    EXPECT_EQ(bench.outputs(), bench.image.outputs == 0 ? 0 : outputs);
+  };
+  for (const std::uint16_t outputs : {kPowerOnValue, kPowerOnValue, kSafeValue, kSafeValue}) {
+    bench.mcu->hang(Hangs::MainLoop);
+    bench.run_for(kResetsWithin);
+    expect(outputs);
+  }
+  bench.reset();
+  expect(kPowerOnValue);
+}
+
 TEST_P(FaultOnBoard, AHungInterruptHandlerCausesAReset) {
   expect_reset("an interrupt hangs", [](BoardBench& bench) {
     bench.mcu->hang(Hangs::Handler);

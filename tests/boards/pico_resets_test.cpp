@@ -159,6 +159,25 @@ TEST_F(PicoResets, TheModuleReportsTheReasonOfEachReset) {
   }
 }
 
+// wire.md 2: a crash loop. The count is in a register that only a chip-level reset clears.
+TEST_F(PicoResets, TheThirdResetInARowByWatchdogOrFaultLeadsToTheSafeValue) {
+  begin();
+  for (const std::uint16_t outputs : {kPowerOnValue, kPowerOnValue, kSafeValue, kSafeValue}) {
+    if (outputs == kPowerOnValue) {
+      replace_main_loop(kBranchToItself);
+      bench_.run_for(kWatchdogPeriod + kComingUp);
+    } else {
+      replace_handler(kSystemTick, kUndefined);
+      bench_.run_for(milliseconds(11) + kComingUp);
+    }
+    EXPECT_EQ(bench_.outputs(), outputs);
+  }
+  EXPECT_EQ(ask("@010001"), ">\r");
+  bench_.reset();
+  bench_.run_for(kComingUp);
+  EXPECT_EQ(bench_.outputs(), kPowerOnValue);
+}
+
 /// After a user has copied an image to the drive of the boot ROM, the boot ROM resets the chip through the
 /// watchdog, although the watchdog has not expired.
 TEST_F(PicoResets, TheModuleReportsASoftwareResetAfterACopyToTheDrive) {

@@ -62,6 +62,68 @@ TEST(ModuleWatchdog, IsNotFedIfAnArbitrationJamsTheLine) {
   EXPECT_TRUE(fed());
 }
 
+// wire.md 2: a crash loop.
+class CrashLoop : public testing::Test {
+ protected:
+  CrashLoop() {
+    EXPECT_EQ(bench_.ask("@018000"), ">");
+    EXPECT_EQ(bench_.ask("~015S"), "!01");
+    EXPECT_EQ(bench_.ask("@010001"), ">");
+    EXPECT_EQ(bench_.ask("~015P"), "!01");
+  }
+  /// The outputs after a reset by the watchdog.
+  std::uint16_t crash() {
+    const std::uint64_t resets = bench_.module().watchdog_resets();
+    bench_.module().hang();
+    bench_.run(milliseconds(1700));
+    EXPECT_EQ(bench_.module().watchdog_resets(), resets + 1);
+    return bench_.module().outputs();
+  }
+
+  static constexpr std::uint16_t kPowerOn = 0x0001;
+  static constexpr std::uint16_t kSafe = 0x8000;
+  ModuleBench bench_{"EX9043D@01,protocol=ascii"};
+};
+
+TEST_F(CrashLoop, TheThirdAndEveryLaterResetInARowLeadsToTheSafeValueButBlocksNothing) {
+  EXPECT_EQ(crash(), kPowerOn);
+  EXPECT_EQ(crash(), kPowerOn);
+  EXPECT_EQ(crash(), kSafe);
+  EXPECT_EQ(bench_.ask("~010"), "!0100") << "no timeout status";
+  EXPECT_EQ(bench_.ask("@010004"), ">");
+  EXPECT_EQ(bench_.module().outputs(), 0x0004);
+  EXPECT_EQ(crash(), kSafe);
+}
+
+TEST_F(CrashLoop, ALifeOfAMinuteBetweenTwoEndsTheRow) {
+  crash();
+  crash();
+  bench_.run(seconds(58));
+  EXPECT_EQ(crash(), kSafe);
+  bench_.run(seconds(61));
+  EXPECT_EQ(crash(), kPowerOn);
+  EXPECT_EQ(crash(), kPowerOn);
+  EXPECT_EQ(crash(), kSafe);
+}
+
+TEST_F(CrashLoop, AnyOtherResetBetweenTwoEndsTheRow) {
+  for (const bool power : {false, true}) {
+    crash();
+    crash();
+    if (power) {
+      bench_.module().power(false);
+      bench_.module().power(true);
+    } else {
+      bench_.module().reset();
+    }
+    bench_.run(milliseconds(100));
+    EXPECT_EQ(crash(), kPowerOn);
+    EXPECT_EQ(crash(), kPowerOn);
+    EXPECT_EQ(crash(), kSafe);
+    bench_.run(seconds(61));
+  }
+}
+
 TEST(HostWatchdog, RunsEvenIfTheInitSwitchBouncesContinuously) {
   ModuleBench bench("EX9043D");
   ASSERT_EQ(bench.ask("@010001"), ">");

@@ -8,6 +8,7 @@
 #include <cstdint>
 
 #include "firmware/line/timing.hpp"
+#include "hal/doubles/kept_word.hpp"
 #include "tests/support/instant_memory.hpp"
 
 namespace ex9000::hal {
@@ -60,6 +61,7 @@ struct StillBoard {
   Switch init_switch;
   Led status_led;
   Watchdog watchdog;
+  doubles::KeptWord kept_word;
 };
 
 TEST(Device, AJobThatTheMemoryCompletesAtOnceWaitsForNoPoll) {

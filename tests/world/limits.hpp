@@ -16,6 +16,9 @@ inline constexpr std::chrono::milliseconds kStores{200};
 /// D15
 inline constexpr std::chrono::milliseconds kRetry{1000};
 inline constexpr std::chrono::milliseconds kModuleWatchdog{1600};
+/// wire.md 2: a life that ends a row of crashes, and how much later the main loop notices it.
+inline constexpr std::chrono::seconds kEndsTheRow{60};
+inline constexpr std::chrono::milliseconds kNoticesIt{2000};
 inline constexpr unsigned kResetByWatchdog = 2;
 /// D13
 inline constexpr std::chrono::milliseconds kInitSettled{10};

@@ -99,10 +99,25 @@ std::vector<Possible> Possible::reset(unsigned reason, Time now) const {
   if (reason == kResetByWatchdog && !hung_ && !tick_stopped_) {
     return {};
   }
-  std::vector<Possible> after = power_off();
-  for (Possible& next : after) {
-    next.power_on(now);
-    next.module_.reset({now, now}, reason);
+  // wire.md 2: a life of 60 s ends the row. The main loop counts it, at the latest with the next tick.
+  const Time lived = (hung_ ? *hung_ : now) - reset_at_;
+  const bool may_be_in_a_row = lived <= kEndsTheRow + kNoticesIt;
+  const bool may_be_new = lived >= kEndsTheRow;
+  std::vector<Possible> after;
+  for (const bool in_a_row : {false, true}) {
+    if (reason == kResetByWatchdog && !(in_a_row ? may_be_in_a_row : may_be_new)) {
+      continue;
+    }
+    for (Possible next : power_off()) {
+      const unsigned crashes = in_a_row ? std::min(module_.crashes(), 2U) : 0;
+      next.power_on(now);
+      next.module_.set_crashes(reason == kResetByWatchdog ? crashes + 1 : 0);
+      next.module_.reset({now, now}, reason);
+      after.push_back(next);
+    }
+    if (reason != kResetByWatchdog) {
+      break;
+    }
   }
   return after;
 }

@@ -21,7 +21,7 @@ SimulatedModule::Mcu::Mcu(SimulatedModule& module)
       watchdog(module.clock_),
       device(module.model_, {module.clock_, line, silence_timer, wake_timer, module.inputs_, module.outputs_,
                              hal::TwoPlaces<hal::doubles::Memory&>(module.memory_), module.init_switch_,
-                             module.led_, watchdog}) {}
+                             module.led_, watchdog, module.kept_word_}) {}
 
 SimulatedModule::SimulatedModule(Wires& wires, const Model& model, TimingAt timing_at)
     : clock_(wires.clock()),

@@ -14,6 +14,7 @@
 #include "hal/device.hpp"
 #include "hal/doubles/init_switch.hpp"
 #include "hal/doubles/inputs.hpp"
+#include "hal/doubles/kept_word.hpp"
 #include "hal/doubles/memory.hpp"
 #include "hal/doubles/one_shot_timer.hpp"
 #include "hal/doubles/outputs.hpp"
@@ -115,6 +116,7 @@ class SimulatedModule final : public Station {
     hal::doubles::InitSwitch& init_switch;
     hal::doubles::StatusLed& status_led;
     hal::doubles::Watchdog& watchdog;
+    hal::doubles::KeptWord& kept_word;
   };
 
   /// The parts that lose their state at a reset.
@@ -173,6 +175,7 @@ class SimulatedModule final : public Station {
   hal::doubles::Outputs outputs_;
   hal::doubles::StatusLed led_;
   hal::doubles::InitSwitch init_switch_;
+  hal::doubles::KeptWord kept_word_;
   VirtualTime driver_late_by_{0};
   std::uint32_t serial_number_ = 0;
   VirtualTime skew_{0};

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "hal/device.hpp"
+#include "hal/doubles/kept_word.hpp"
 #include "hal/eeprom/two_places.hpp"
 #include "hal/stellaris/gpio.hpp"
 #include "hal/stellaris/uart.hpp"
@@ -26,6 +27,7 @@ struct Board {
   InitSwitch init_switch;
   StatusLed status_led;
   Watchdog watchdog;
+  hal::doubles::KeptWord kept_word;
 };
 
 class Bench {

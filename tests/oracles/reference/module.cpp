@@ -67,6 +67,7 @@ void Module::power(bool on, Moment when) {
   timers_ = {};
   if (on) {
     reset_reason_ = 1;  // power-on
+    crashes_ = 0;
     come_up(when);
   }
 }
@@ -80,7 +81,8 @@ void Module::reset(Moment when, unsigned reason) {
 
 void Module::come_up(Moment when) {
   counts_rising_ = (stored_.format & 0x80) != 0;
-  outputs_ = stored_.timed_out ? stored_.safe : stored_.power_on;
+  // wire.md 2: after the third reset in a row by the watchdog, too.
+  outputs_ = stored_.timed_out || crashes_ >= 3 ? stored_.safe : stored_.power_on;
   reset_status_ = true;
   counters_ = {};
   wide_counters_ = {};

@@ -114,6 +114,9 @@ class Module {
   void set_serial_number_of_board(unsigned number) { serial_number_of_board_ = number; }
   /// Switches the supply. `when`: the reset.
   void power(bool on, Moment when);
+  /// Resets in a row by the watchdog or a fault, each within 60 s of the one before. Before `reset`.
+  void set_crashes(unsigned crashes) { crashes_ = crashes; }
+  [[nodiscard]] unsigned crashes() const { return crashes_; }
   /// Resets the module. Has no effect while the supply is off. `reason`: the value of register 0x0301.
   void reset(Moment when, unsigned reason = 4);
   /// The outputs are driven: the host watchdog of this reset runs since then at the latest.
@@ -315,6 +318,7 @@ class Module {
   std::string extension_command(const std::string& body);
 
   const ModelRow* row_;
+  unsigned crashes_ = 0;
   unsigned serial_number_of_board_ = 0;
   Stored stored_;
   bool blank_memory_ = true;  ///< nothing has been stored yet
