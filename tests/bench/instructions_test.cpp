@@ -104,47 +104,47 @@ void expect_at_most(const char* model, Protocol protocol, const std::vector<Requ
 TEST(Instructions, OfModbusRequestsToAModuleWithOutputs) {
   expect_at_most("EX9042D-M", Protocol::ModbusRtu,
                  {
-                     {{"01010000000D"}, 1470},
-                     {{"01050000FF00", "010500000000"}, 1580},
-                     {{"010F0000000D025515", "010F0000000D02AA0A"}, 1790},
-                     {{"010F00A0000D025515", "010F00A0000D02AA0A"}, 23760},  // stored
+                     {{"01010000000D"}, 1550},
+                     {{"01050000FF00", "010500000000"}, 1660},
+                     {{"010F0000000D025515", "010F0000000D02AA0A"}, 1880},
+                     {{"010F00A0000D025515", "010F00A0000D02AA0A"}, 25500},  // stored
                  });
 }
 
 TEST(Instructions, OfModbusRequestsToAModuleWithInputs) {
   expect_at_most("EX9052D-M", Protocol::ModbusRtu,
                  {
-                     {{"010100200008"}, 1440},
-                     {{"010400000004"}, 1790},
-                     {{"010F0200000801FF"}, 1950},  // clears eight counters
-                     {{"010301E20004"}, 1930},
-                     {{"010601E80064", "010601E80065"}, 23940},  // stored
-                     {{"0108000000AA"}, 1500},
-                     {{"0111"}, 1450},
-                     {{"012B0E0200"}, 5200},
-                     {{"014600"}, 1370},
-                     {{"0155"}, 1150},         // exception
-                     {{"020100000001"}, 630},  // for another address
-                     {{"010330380000"}, 920},  // host OK
+                     {{"010100200008"}, 1520},
+                     {{"010400000004"}, 1880},
+                     {{"010F0200000801FF"}, 2050},  // clears eight counters
+                     {{"010301E20004"}, 2020},
+                     {{"010601E80064", "010601E80065"}, 25750},  // stored
+                     {{"0108000000AA"}, 1590},
+                     {{"0111"}, 1550},
+                     {{"012B0E0200"}, 5310},
+                     {{"014600"}, 1460},
+                     {{"0155"}, 1260},         // exception
+                     {{"020100000001"}, 650},  // for another address
+                     {{"010330380000"}, 970},  // host OK
                  });
 }
 
 TEST(Instructions, OfAsciiRequestsToAModuleWithInputsAndOutputs) {
   expect_at_most("EX9055D", Protocol::Ascii,
                  {
-                     {{"$012"}, 1240},
-                     {{"$016"}, 1230},
-                     {{"@01"}, 1130},
-                     {{"@01A5", "@015A"}, 1180},
-                     {{"#010"}, 1280},
-                     {{"$01C"}, 1180},
-                     {{"$01M"}, 1260},
-                     {{"#0100A5", "#01005A"}, 1190},
-                     {{"~01OPUMP", "~01OVALVE"}, 24020},  // stored
-                     {{"~01Z"}, 1280},                    // refused
+                     {{"$012"}, 1260},
+                     {{"$016"}, 1250},
+                     {{"@01"}, 1160},
+                     {{"@01A5", "@015A"}, 1210},
+                     {{"#010"}, 1310},
+                     {{"$01C"}, 1210},
+                     {{"$01M"}, 1290},
+                     {{"#0100A5", "#01005A"}, 1230},
+                     {{"~01OPUMP", "~01OVALVE"}, 25570},  // stored
+                     {{"~01Z"}, 1320},                    // refused
                      {{"$022"}, 290},                     // for another address
-                     {{"~**"}, 520},                      // host OK
-                     {{"#**"}, 750},                      // synchronised sampling
+                     {{"~**"}, 540},                      // host OK
+                     {{"#**"}, 780},                      // synchronised sampling
                  });
 }
 
