@@ -64,24 +64,20 @@ void write_exception(std::uint8_t address, std::uint8_t function, Refusal refusa
   reply.put(exception_of(refusal, function));
 }
 
-/// To which the request is addressed, high byte first.
-Bytes serial_number_of(const Exchange& exchange) {
-  constexpr std::size_t kBefore = 3;
-  return {exchange.frame.data - kBefore, kBefore + 1};
-}
+/// Of a serial number, before the byte that stands for the address.
+constexpr std::size_t kNumberBytesBefore = 3;
 
 bool is_own_number(const Exchange& exchange) {
   constexpr unsigned kBitsOfAWord = 16;
-  const Bytes number = serial_number_of(exchange);
+  const Bytes number{exchange.frame.data - kNumberBytesBefore, kNumberBytesBefore + 1};
   return (std::uint32_t{number.word(0)} << kBitsOfAWord | number.word(2)) == exchange.state.serial_number();
 }
 
-/// The last byte of the number follows as the address of the reply.
-[[gnu::noinline]] void put_prefix(Bytes serial_number, Reply& reply) {
-  const std::array<std::uint8_t, kNumberPrefix> prefix{kScanAddress,     kScanFunction,    kReplyByNumber,
-                                                       serial_number[0], serial_number[1], serial_number[2]};
-  reply.put(Bytes{prefix.data(), prefix.size()});
-  reply.end_prefix();
+void put_prefix(const std::uint8_t* begin_of_number, Reply& reply) {
+  const std::array<std::uint8_t, kNumberPrefix> prefix{kScanAddress,       kScanFunction,
+                                                       kReplyByNumber,     begin_of_number[0],
+                                                       begin_of_number[1], begin_of_number[2]};
+  reply.put_first({prefix.data(), prefix.size()});
 }
 
 }  // namespace
@@ -92,12 +88,8 @@ void answer(Exchange& exchange) {
   const std::uint8_t function = frame[1];
   exchange.broadcast = !exchange.by_serial_number && frame[0] == kBroadcast;
   // A write may have changed address or number since the frame was received (wire.md D16).
-  if (exchange.by_serial_number) {
-    if (!is_own_number(exchange)) {
-      return;
-    }
-    put_prefix(serial_number_of(exchange), reply);
-  } else if (!exchange.broadcast && frame[0] != exchange.state.in_force.address) {
+  if (exchange.by_serial_number ? !is_own_number(exchange)
+                                : !exchange.broadcast && frame[0] != exchange.state.in_force.address) {
     return;
   }
   const FunctionRow* row = find(exchange.model(), function);
@@ -118,16 +110,25 @@ void answer(Exchange& exchange) {
   if (refusal != Refusal::None) {
     write_exception(frame[0], function, refusal, reply);
   }
+  if (exchange.by_serial_number) {
+    put_prefix(frame.data - kNumberBytesBefore, reply);
+  }
   append_crc(reply);
 }
 
 void refuse_store(Exchange& exchange) {
   Reply& reply = exchange.reply;
-  if (!reply.empty()) {
-    const Bytes written = reply.after_prefix();
-    write_exception(written[0], written[1], Refusal::StoreFailed, reply);
-    append_crc(reply);
+  if (reply.empty()) {
+    return;
   }
+  const std::size_t address_at = exchange.by_serial_number ? kNumberPrefix : 0;
+  const Bytes written = reply.bytes();
+  const std::array<std::uint8_t, kNumberBytesBefore> number{written[3], written[4], written[5]};
+  write_exception(written[address_at], written[address_at + 1], Refusal::StoreFailed, reply);
+  if (exchange.by_serial_number) {
+    put_prefix(number.data(), reply);
+  }
+  append_crc(reply);
 }
 
 }  // namespace ex9000::modbus

@@ -43,7 +43,7 @@ struct Exchange {
     frame = request.bytes();
     by_serial_number = request.by_serial_number;
     outcome.refusal = Refusal::None;
-    reply.begin();
+    reply.clear();
   }
 };
 

@@ -16,12 +16,7 @@ namespace ex9000 {
 /// and every DCON reply is shorter than 32 bytes.
 class Reply {
  public:
-  /// For the next request.
-  void begin() { size_ = prefix_ = 0; }
-  /// What has been put so far precedes the reply proper.
-  void end_prefix() { prefix_ = size_; }
-  /// Drops the reply proper.
-  void clear() { size_ = prefix_; }
+  void clear() { size_ = 0; }
 
   void put(std::uint8_t byte) {
     if (size_ < bytes_.size()) {
@@ -53,6 +48,16 @@ class Reply {
     put(static_cast<std::uint8_t>(value >> 8U));
     put(static_cast<std::uint8_t>(value));
   }
+  /// Before all others; they must still fit.
+  void put_first(Bytes bytes) {
+    for (std::size_t i = size_; i != 0; --i) {
+      bytes_[i - 1 + bytes.size] = bytes_[i - 1];
+    }
+    for (std::size_t i = 0; i < bytes.size; ++i) {
+      bytes_[i] = bytes[i];
+    }
+    size_ += bytes.size;
+  }
   /// The low byte of `value` replaces the byte at `at`; ignored if that is not written yet.
   void patch(std::size_t at, std::size_t value) {
     if (at < size_) {
@@ -60,14 +65,12 @@ class Reply {
     }
   }
 
-  [[nodiscard]] bool empty() const { return size_ == prefix_; }
+  [[nodiscard]] bool empty() const { return size_ == 0; }
   [[nodiscard]] std::size_t size() const { return size_; }
   [[nodiscard]] Bytes bytes() const { return {bytes_.data(), size_}; }
-  [[nodiscard]] Bytes after_prefix() const { return bytes().from(prefix_); }
 
  private:
-  std::size_t prefix_ = 0;
-  std::size_t size_ = 0;  ///< with the prefix
+  std::size_t size_ = 0;
   std::array<std::uint8_t, kLongestFrame> bytes_{};
 };
 

@@ -41,6 +41,15 @@ TEST(Storing, ABroadcastThatCannotBeStoredGetsNoReplyAndHasNoEffect) {
   EXPECT_EQ(bench.module().outputs(), 0);
 }
 
+// extensions.md, scan: an exception, too, has the prefix.
+TEST(Storing, ARequestBySerialNumberThatCannotBeStoredGetsAnExceptionWithTheNumber) {
+  ModuleBench bench("EX9042D-M");
+  bench.ask(Bytes{0x01, 0x10, 0x01, 0x0E, 0x00, 0x02, 0x04, 0x0D, 0x00, 0x12, 0x34});
+  bench.module().memory().fail(true);
+  EXPECT_EQ(bench.ask(Bytes{0xFD, 0x46, 0x08, 0x0D, 0x00, 0x12, 0x34, 0x06, 0x01, 0xE8, 0x00, 0x05}),
+            (Bytes{0xFD, 0x46, 0x09, 0x0D, 0x00, 0x12, 0x34, 0x86, 0x04}));
+}
+
 TEST(Storing, ACommandThatChangesNothingWritesNothing) {
   // The outputs differ from the stored values, so that `~AA5P` and `~AA5S` have a value to store.
   ModuleBench ascii("EX9042D-M,protocol=ascii");
