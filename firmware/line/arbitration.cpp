@@ -8,8 +8,6 @@ namespace ex9000 {
 
 namespace {
 
-/// One start bit; the rest is like silence, so that those of several modules merge.
-constexpr std::uint8_t kZero = 0xFF;
 constexpr std::uint32_t kUnscanned = 0x6;
 constexpr std::uint32_t kScanned = 0xF;
 constexpr unsigned kPriorityAt = 28;
@@ -45,7 +43,7 @@ Duration Arbitration::on_time(Time now, bool line_low, bool at_rest) {
     return {};
   }
   if (!bit_before(window_) && !line_low) {
-    send({&kZero, 1}, now);
+    send({&modbus::kZeroInWindow, 1}, now);
   }
   return next.remaining(now);
 }

@@ -27,6 +27,10 @@ enum Scan : std::uint8_t {
   kReplyByNumber = 0x09,
 };
 
+/// A 0 in a window of an arbitration: one start bit; the rest is like silence, so that those of several
+/// modules merge. No frame of a module begins so.
+constexpr std::uint8_t kZeroInWindow = 0xFF;
+
 /// Before the request in a frame by serial number. The last byte of the number, which follows, is where the
 /// address would be.
 constexpr unsigned kNumberPrefix = 6;

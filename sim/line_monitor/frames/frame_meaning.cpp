@@ -216,8 +216,8 @@ std::string modbus_meaning(const FrameBytes& bytes, Speaker speaker) {
 }  // namespace
 
 bool is_arbitration(const FrameBytes& bytes) {
-  return !bytes.empty() &&
-         std::all_of(bytes.begin(), bytes.end(), [](std::uint8_t byte) { return byte == kArbitrationByte; });
+  return !bytes.empty() && std::all_of(bytes.begin(), bytes.end(),
+                                       [](std::uint8_t byte) { return byte == modbus::kZeroInWindow; });
 }
 
 bool looks_like_dcon(const FrameBytes& bytes) {

@@ -11,8 +11,7 @@ using FrameBytes = std::vector<std::uint8_t>;
 
 enum class Speaker { Master, Module };
 
-/// What a module sends in a window of an arbitration (extensions.md, scan). No frame of a module begins so.
-constexpr std::uint8_t kArbitrationByte = 0xFF;
+/// What modules send in the windows of an arbitration (extensions.md, scan).
 bool is_arbitration(const FrameBytes& bytes);
 
 /// A delimiter, perhaps after 00 and LF, or a reply's first character; printable characters; perhaps CR.

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "firmware/line/crc16.hpp"
+#include "firmware/line/rtu_frames.hpp"
 #include "firmware/line/timing.hpp"
 
 namespace ex9000::sim {
@@ -39,7 +40,7 @@ void FrameWatch::changed(std::size_t station, Levels arrives) { sender(station).
 
 void FrameWatch::byte(std::size_t station, std::uint8_t byte, SerialMode mode, bool collided,
                       VirtualTime start, VirtualTime end) {
-  if (station != kMaster && byte == kArbitrationByte && sender(station).sent == 0) {
+  if (station != kMaster && byte == modbus::kZeroInWindow && sender(station).sent == 0) {
     burst(station, mode, start, end);
     return;
   }
@@ -87,7 +88,7 @@ void FrameWatch::burst(std::size_t station, SerialMode mode, VirtualTime start, 
     frame.line_in = line_mode_();
   }
   if (arbitration_.sent == 0 || start >= frame.ended) {
-    frame.bytes.push_back(kArbitrationByte);
+    frame.bytes.push_back(modbus::kZeroInWindow);
     ++arbitration_.sent;
     last_burst_ = start;
   } else {

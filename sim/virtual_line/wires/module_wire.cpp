@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "firmware/line/rtu_frames.hpp"
+
 namespace ex9000::sim {
 
 Bytes ModuleWire::replaced(Bytes bytes) {
@@ -10,7 +12,10 @@ Bytes ModuleWire::replaced(Bytes bytes) {
     return bytes;
   }
   reply_ = Reply{{bytes.begin(), bytes.end()}};
-  begins_(reply_);
+  is_reply_ = bytes.size != 1 || bytes[0] != modbus::kZeroInWindow;
+  if (is_reply_) {
+    begins_(reply_);
+  }
   return {reply_.bytes.data(), reply_.bytes.size()};
 }
 
@@ -25,7 +30,7 @@ void ModuleWire::drive(bool on) {
     }
   }
   hand_on(on ? What::On : What::Off, {}, {});
-  if (!on && ends_) {
+  if (!on && ends_ && is_reply_) {
     ends_();
   }
 }

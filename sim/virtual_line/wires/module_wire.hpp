@@ -35,6 +35,7 @@ class ModuleWire final : public Wire {
   ModuleWire(const VirtualClock& clock, WireEnd& wire) : clock_(clock), wire_(wire) {}
 
   /// Before the UART enables its driver. May change the reply, but not reset the module or cut its supply.
+  /// Not for the bytes FF of an arbitration, which are no replies.
   using Begins = std::function<void(Reply& reply)>;
   /// When the UART disables its driver, even if the reply is lost or is not on the wires yet.
   using Ends = std::function<void()>;
@@ -96,7 +97,8 @@ class ModuleWire final : public Wire {
   WireEnd& wire_;
   Begins begins_;
   Ends ends_;
-  Reply reply_;  ///< the reply that the UART sends, if `begins_` is not null
+  Reply reply_;  ///< what the UART sends, if `begins_` is not null
+  bool is_reply_ = true;
   /// Of the reply at the UART: longer than its `late_by` behind a late reply; `end_delays` may shorten it.
   VirtualTime delay_{0};
   std::uint32_t forced_ = 0;

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/notation/fault_notation.hpp"
 #include "sim/notation/module_notation.hpp"
 #include "sim/text/values.hpp"
 #include "sim/virtual_line/line/line.hpp"
@@ -241,6 +242,17 @@ TEST(Scan, NoiseCostsAtMostARepeatedScanAndNeverAWrongAddress) {
     }
     EXPECT_EQ(found.size(), expected.size()) << seed;
   }
+}
+
+// The bytes FF of an arbitration are no replies.
+TEST(Scan, FaultsOfRepliesConcernTheReplyOfARound) {
+  ScanMaster master(modules({"EX9042D-M@01,protocol=modbus,serial=0001"}));
+  master.line().configure_faults(1, [](const std::string&) {});
+  master.line().faults().add(parse_fault("lost-reply every 2nd reply", 0));
+  EXPECT_EQ(ScanMaster::frame_of(master.round(0x01)),
+            (Bytes{0xFD, 0x46, 0x03, 0x0D, 0x00, 0x00, 0x01, 0x01}));
+  EXPECT_EQ(master.round(0x02), Bytes(24, 0xFF));
+  EXPECT_EQ(ScanMaster::frame_of(master.round(0x02)), (Bytes{0xFD, 0x46, 0x04}));
 }
 
 // The limit is what a window is longer than a byte: at 9600 baud, three bits. The late module has the lower
