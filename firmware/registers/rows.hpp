@@ -26,6 +26,7 @@ constexpr Functions kReadRegisters = kReadHoldingRegisters | kReadInputRegisters
 enum class Width : std::uint8_t {
   One = 1,
   Two = 2,
+  Three = 3,
   Eight = 8,
   Twelve = 12,
   Sixteen = 16,

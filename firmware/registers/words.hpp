@@ -140,6 +140,19 @@ inline Refusal write_serial_number(const State& /*state*/, unsigned index, std::
   return Refusal::None;
 }
 
+/// The baud rate / 100; parity: none, odd, even; stop bits.
+inline std::uint16_t read_line(const Exchange& exchange, unsigned index) {
+  const std::uint8_t code = exchange.state.in_force.baud_code;
+  const LineFormat format = line_format(code);
+  if (index == 0) {
+    return static_cast<std::uint16_t>(baud_rate(code) / 100);
+  }
+  if (index == 1) {
+    return format == LineFormat::k8O1 ? 1 : format == LineFormat::k8E1 ? 2 : 0;
+  }
+  return format == LineFormat::k8N2 ? 2 : 1;
+}
+
 /// One character in each register, without the `EX` and the `-` of the designation.
 inline std::uint16_t read_model(const Exchange& exchange, unsigned index) {
   constexpr std::size_t kFamily = 2;
@@ -257,6 +270,10 @@ inline constexpr WordRegister kWordRegisters[] = {
      "1 to 247; not by broadcast",
      {0x0080, Width::One, Needs::Nothing, kReadRegisters | kWriteRegisters, kConfiguration, read_own_address,
       write_own_address}},
+    {"line",
+     "the line in force: baud rate / 100; parity (0 none, 1 odd, 2 even); stop bits",
+     "",
+     {0x006E, Width::Three, Needs::Nothing, kReadRegisters, kPlain, read_line, nullptr}},
     {"model-text",
      "model without EX and -, for example 9042DM; one character in each register",
      "",

@@ -81,6 +81,7 @@ struct TextRow {
   unsigned first;
   unsigned count;
 };
+constexpr TextRow kLine{0x006E, 3};
 constexpr TextRow kModelText{0x00C8, 20};
 constexpr TextRow kVersionText{0x00FA, 16};
 constexpr TextRow kBootLoaderText{0x014A, 8};
@@ -98,8 +99,8 @@ bool register_listed(const ModelRow& model, unsigned address, unsigned function)
   const bool code = address == 0x01E2 || address == 0x01E3;
   const bool setting = address == 0x01E4 || address == 0x01E5 || address == 0x01E8;
   const bool own_address = address == 0x0080;
-  const bool text =
-      is_in(kModelText, address) || is_in(kVersionText, address) || is_in(kBootLoaderText, address);
+  const bool text = is_in(kLine, address) || is_in(kModelText, address) || is_in(kVersionText, address) ||
+                    is_in(kBootLoaderText, address);
   const ExtensionRow extension = extension_row(model, address);
   switch (function) {
     case 0x03:
@@ -196,6 +197,11 @@ unsigned Module::register_value(unsigned address) {
     case 0x0080:
       return address_;
     default:
+      if (is_in(kLine, address)) {
+        const unsigned format = baud_code_ / 0x40;  // 8N1, 8N2, 8E1, 8O1
+        constexpr unsigned kParity[] = {0, 0, 2, 1};
+        return address == 0x006E ? rate() / 100 : address == 0x006F ? kParity[format] : format == 1 ? 2 : 1;
+      }
       if (is_in(kModelText, address)) {
         std::string text = std::string(row_->designation).substr(2);
         text.erase(std::remove(text.begin(), text.end(), '-'), text.end());
