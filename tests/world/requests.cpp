@@ -61,10 +61,11 @@ Bytes line_of(const Module& module, char delimiter, const std::string& body) {
 }
 
 /// extensions.md, scan.
+constexpr std::uint8_t kScan = 0xFD;
 void by_serial_number(Bytes& frame, unsigned number) {
   const auto byte = [=](unsigned shift) { return static_cast<std::uint8_t>(number >> shift); };
   frame[0] = byte(0);
-  const Bytes prefix{0xFD, 0x46, 0x08, byte(24), byte(16), byte(8)};
+  const Bytes prefix{kScan, 0x46, 0x08, byte(24), byte(16), byte(8)};
   frame.insert(frame.begin(), prefix.begin(), prefix.end());
 }
 
@@ -148,6 +149,9 @@ Bytes Requests::next(const Module& module, Random& random, Place& place) const {
       frame[0] = random.once_in(20)   ? any_byte(random)
                  : random.once_in(12) ? std::uint8_t{0}
                                       : static_cast<std::uint8_t>(module.address());
+      if (frame[0] == kScan) {
+        ++frame[0];  // the judge does not know rounds of a scan; scan_test does
+      }
       if (random.once_in(10)) {
         by_serial_number(frame, random.once_in(10) ? random.below(0x10000) : module.serial_number());
       }
