@@ -1,5 +1,5 @@
 // A timer that expires once after each start, with an interrupt. `Device` needs two:
-//   - The silence timer; its interrupt calls `Device::on_silence`. A module sets it to 78 us to 34 ms. It
+//   - The silence timer; its interrupt calls `Device::on_silence`. A module sets it to 1 us to 34 ms. It
 //     and the receive interrupt must not interrupt each other. If both are pending, it runs first: a byte
 //     after the silence does not belong to the frame before.
 //   - The wake timer; its interrupt calls `Device::on_wake_timer`. Set to the next deadline, 1 us to 30 s;

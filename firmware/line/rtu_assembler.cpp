@@ -11,6 +11,13 @@ namespace {
 constexpr unsigned kShortestFrame = 4;
 constexpr unsigned kCrcBytes = 2;
 
+/// FD; a byte FF of an arbitration, in which the start bit of another module may stand; or a turn-around
+/// byte.
+constexpr bool may_precede_a_round(std::uint8_t first) {
+  const unsigned zeros = ~unsigned{first} & 0xFFU;
+  return first == 0 || (zeros & (zeros - 1U)) == 0;
+}
+
 }  // namespace
 
 /// Opens a frame, or continues it after the silence timer has expired. False if the byte belongs to an
@@ -40,7 +47,7 @@ void RtuAssembler::open(FrameQueue& queue, std::uint8_t first) {
   overrun_ = false;
   whole_ = Crc16();
   crc_after_zero_ = Crc16();
-  may_ask_for_round_ = first >= modbus::kScanAddress;
+  may_ask_for_round_ = may_precede_a_round(first);
   first_wait_ = may_ask_for_round_ ? wait_if_round_ : usual_wait_;
 }
 

@@ -78,7 +78,7 @@ class RtuAssembler {
   State state_ = State::Idle;
   Frame* frame_ = nullptr;          ///< the open frame
   std::uint32_t received_ = 0;      ///< number of bytes of the open frame, including those that did not fit
-  bool may_ask_for_round_ = false;  ///< the first byte is FD, or FF of an arbitration
+  bool may_ask_for_round_ = false;  ///< by its first byte, at the end of the open frame
   bool after_zero_ = false;         ///< the first byte is 00, which may be a turn-around byte
   bool first_spoiled_ = false;      ///< the first byte had a line error, or the gap after it was too long
   bool rest_spoiled_ = false;       ///< the same for any other byte

@@ -48,7 +48,7 @@ constexpr std::uint32_t kRates[] = {9600, 19200, 38400, 57600, 115200, 1200, 240
 
 world::Setup setup_of(std::uint8_t model, unsigned flags) {
   const reference::ModelRow& row = reference::kModelRows[model % std::size(reference::kModelRows)];
-  world::Member member{&row, false, reference::Module(row).stored()};
+  world::Member member{&row, false, reference::Module(row).stored(), 0};
   reference::Stored& stored = member.stored;
   stored.baud_code = 3 + (flags + 3) % 8;
   stored.format = (flags & 0x08U) << 3U | (flags & 0x10U) << 3U;

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "firmware/line/crc16.hpp"
+#include "firmware/line/rtu_frames.hpp"
 #include "sim/text/values.hpp"
 #include "sim/virtual_line/line/rtu_frame.hpp"
 
@@ -78,6 +79,9 @@ std::string hint_for(const Frame& frame, const Line& line) {
     return "";
   }
   const std::uint8_t address = bytes[0];
+  if (address == modbus::kScanAddress && bytes[1] == modbus::kScanFunction) {
+    return "";
+  }
   if (address > kLastRtuAddress) {
     return "modules ignore the address " + hex_byte_text(address) + ", because F8 to FF are reserved";
   }

@@ -2,6 +2,7 @@
 #include <numeric>
 
 #include "firmware/line/crc16.hpp"
+#include "firmware/line/rtu_frames.hpp"
 #include "sim/text/values.hpp"
 #include "sim/virtual_line/faults/fault.hpp"
 
@@ -43,11 +44,20 @@ void end_with_cr(std::string text, const State& state, std::vector<std::uint8_t>
   frame.assign(text.begin(), text.end());
 }
 
+/// Of the address, or of what stands for it in a reply by serial number (extensions.md, scan).
+std::size_t address_at(const std::vector<std::uint8_t>& reply) {
+  const bool by_number = reply.size() > modbus::kNumberPrefix + 2 && reply[0] == modbus::kScanAddress &&
+                         reply[1] == modbus::kScanFunction && reply[2] == modbus::kReplyByNumber;
+  return by_number ? modbus::kNumberPrefix : 0;
+}
+
 /// MODBUS Application Protocol V1.1b3, section 7; in ASCII a rejection.
 void refuse(const Fault& fault, Reply& reply, const State& state) {
   constexpr unsigned kException = 0x80;
   if (state.speaks_modbus()) {
-    reply.bytes = {reply.bytes[0], static_cast<std::uint8_t>(reply.bytes[1] | kException), fault.bytes[0]};
+    reply.bytes.resize(address_at(reply.bytes) + 2);
+    reply.bytes.back() |= kException;
+    reply.bytes.push_back(fault.bytes[0]);
     end_with_crc(reply.bytes);
   } else {
     end_with_cr("?" + hex_byte_text(state.in_force.address), state, reply.bytes);
@@ -59,7 +69,7 @@ void answer_as(const Fault& fault, Reply& reply, const State& state) {
   constexpr std::ptrdiff_t kCheck = 2;  // bytes of the CRC, characters of the checksum
   auto& bytes = reply.bytes;
   if (state.speaks_modbus()) {
-    bytes[0] = fault.bytes[0];
+    bytes[address_at(bytes)] = fault.bytes[0];
     bytes.erase(bytes.end() - kCheck, bytes.end());
     end_with_crc(bytes);
     return;

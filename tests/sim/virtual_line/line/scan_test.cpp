@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
+#include <cmath>
 #include <cstdint>
 #include <random>
 #include <set>
@@ -91,6 +93,75 @@ TEST(Scan, TheNextRoundMayBeginSoonerThanTheSilenceAfterAReply) {
       ScanMaster master(all, kind);
       master.gap = baud_code > 7 ? microseconds(800) : microseconds(4500);
       EXPECT_EQ(master.scan(), in_order(all)) << baud_code;
+    }
+  }
+}
+
+// With a skew of 30 us, the bytes FF of two modules merge into others, with which the loser's frame begins.
+TEST(Scan, TheNextRoundMayBeginSoonerAlsoAfterBytesThatHaveMerged) {
+  for (const std::string baud : {"57600", "115200"}) {
+    const std::string common = ",protocol=modbus,baud=" + baud + ",serial=";
+    const auto all =
+        modules({"EX9042D-M@01" + common + "1230,skew=30us", "EX9042D-M@02" + common + "1231,skew=0us",
+                 "EX9042D-M@03" + common + "F231,skew=0us"});
+    ScanMaster master(all);
+    master.gap = microseconds(840);
+    EXPECT_EQ(master.scan(), in_order(all)) << baud;
+  }
+}
+
+// wire.md 7: the byte 00 of a turn-around does not spoil the frame after it.
+TEST(Scan, ATurnAroundByteMayPrecedeTheRequest) {
+  for (const std::string baud : {"9600", "115200"}) {
+    ScanMaster master(modules({"EX9042D-M@01,protocol=modbus,serial=0001,baud=" + baud}));
+    Bytes request = with_crc({0xFD, 0x46, 0x01});
+    request.insert(request.begin(), 0x00);
+    EXPECT_EQ(ScanMaster::frame_of(master.put(request, 1000)),
+              (Bytes{0xFD, 0x46, 0x03, 0x0D, 0x00, 0x00, 0x01, 0x01}))
+        << baud;
+  }
+}
+
+TEST(Scan, OnlyACorrectRequestAfterOtherBytesBeginsARound) {
+  ScanMaster master(modules({"EX9042D-M@01,protocol=modbus,serial=0001,baud=115200"}));
+  for (std::size_t changed = 0; changed < 5; ++changed) {
+    Bytes request = with_crc({0xFD, 0x46, 0x01});
+    request[changed] ^= 0x04;
+    request.insert(request.begin(), 4, 0xFF);
+    EXPECT_EQ(master.put(request, 1000), Bytes{}) << changed;
+  }
+}
+
+/// When a driver other than the master's goes on for the first time, and the master's goes off.
+struct FirstBurst final : WireObserver {
+  void driver(std::size_t station, bool on, VirtualTime now) override {
+    if (station == 0 && !on) {
+      request = now;
+    }
+    if (station != 0 && on && burst == VirtualTime(0)) {
+      burst = now;
+    }
+  }
+  void byte(std::size_t, std::uint8_t, SerialMode, bool, VirtualTime, VirtualTime) override {}
+  VirtualTime request{0};
+  VirtualTime burst{0};
+};
+
+// 42 bits, at least 800 us rounded up to whole bits, after the last stop bit. The first bit of a word is a 0.
+TEST(Scan, TheFirstWindowBeginsAfterTheLastStopBitAtEveryRateInEveryFormat) {
+  for (const unsigned format : {0x00U, 0x40U, 0x80U, 0xC0U}) {
+    for (unsigned rate = kFirstBaudCode; rate <= kLastBaudCode; ++rate) {
+      std::mt19937 random(6);
+      auto all = plant(random, 1, format | rate);
+      all[0].skew = VirtualTime(0);
+      ScanMaster master(all);
+      FirstBurst first;
+      master.line().wires().observe(first);
+      master.round(0x01);
+      const double bit = 1e6 / baud_rate(all[0].settings.baud_code);
+      const double expected = std::max(42.0, std::ceil(800 / bit)) * bit;
+      const double measured = std::chrono::duration<double, std::micro>(first.burst - first.request).count();
+      EXPECT_NEAR(measured, expected, 6) << format << " " << rate;
     }
   }
 }
@@ -253,6 +324,14 @@ TEST(Scan, FaultsOfRepliesConcernTheReplyOfARound) {
             (Bytes{0xFD, 0x46, 0x03, 0x0D, 0x00, 0x00, 0x01, 0x01}));
   EXPECT_EQ(master.round(0x02), Bytes(24, 0xFF));
   EXPECT_EQ(ScanMaster::frame_of(master.round(0x02)), (Bytes{0xFD, 0x46, 0x04}));
+}
+
+TEST(Scan, AnExceptionByAFaultHasThePrefixOfAReplyBySerialNumber) {
+  ScanMaster master(modules({"EX9042D-M@01,protocol=modbus,serial=0001"}));
+  master.line().configure_faults(1, [](const std::string&) {});
+  master.line().faults().add(parse_fault("exception 06 every 1st reply", 0));
+  EXPECT_EQ(master.ask({0xFD, 0x46, 0x08, 0x0D, 0x00, 0x00, 0x01, 0x03, 0x00, 0x80, 0x00, 0x01}, 500),
+            with_crc({0xFD, 0x46, 0x09, 0x0D, 0x00, 0x00, 0x01, 0x83, 0x06}));
 }
 
 // The limit is what a window is longer than a byte: at 9600 baud, three bits. The late module has the lower
