@@ -53,6 +53,7 @@ class Module {
   /// Then, if it `arbitrates`, call `on_window` too, and use the time that this returns.
   Duration on_silence(Time now) { return receiver_.on_silence(now); }
   /// A bus scan is under way, in which the module may still win.
+  // not covered: kBuiltModbus is a constant
   [[nodiscard]] bool arbitrates() const { return kBuiltModbus && receiver_.arbitration().active(); }
   /// See Arbitration::on_time. Then send what `take_burst` returns.
   Duration on_window(Time now, bool line_low) {

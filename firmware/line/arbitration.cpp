@@ -1,6 +1,5 @@
 #include "firmware/line/arbitration.hpp"
 
-#include "firmware/expect.hpp"
 #include "firmware/line/crc16.hpp"
 #include "firmware/line/rtu_frames.hpp"
 
@@ -17,7 +16,6 @@ constexpr Duration kMargin = milliseconds(100);
 }  // namespace
 
 void Arbitration::begin(Round round, const Contender& who, Time reported) {
-  EX9000_EXPECT(!active() && round != Round::None);
   who_ = who;
   scanned_ = scanned_ && round == Round::Next;
   constexpr std::uint32_t kNumber = (1U << kPriorityAt) - 1U;

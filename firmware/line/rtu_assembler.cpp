@@ -65,8 +65,7 @@ void RtuAssembler::use(const LineTiming& timing) {
 Arbitration::Round RtuAssembler::round() const {
   constexpr std::uint32_t kSize = 5;
   const bool spoiled = received_ == kSize && (first_spoiled_ || rest_spoiled_);
-  if (!may_ask_for_round_ || state_ != State::Receiving || received_ < kSize ||
-      received_ > frame_->storage.size() || spoiled) {
+  if (!may_ask_for_round_ || received_ < kSize || received_ > frame_->storage.size() || spoiled) {
     return Arbitration::Round::None;
   }
   const Bytes last{frame_->storage.data() + (received_ - kSize), kSize};

@@ -28,7 +28,8 @@ class RtuAssembler {
   /// From the receive interrupt; then restart the silence timer with the returned time, unless it is 0: a
   /// byte of an arbitration.
   Duration byte(FrameQueue& queue, std::uint8_t byte, ByteStatus status);
-  /// The open frame asks for a round of a scan if it ends here, which it does when its first wait is over.
+  /// After `byte`: the frame asks for a round of a scan if it ends here, which it does when its first wait is
+  /// over.
   [[nodiscard]] bool asks_for_round() const { return round() != Arbitration::Round::None; }
 
   /// From the interrupt of the silence timer, unless the arbitration is active; then restart it with

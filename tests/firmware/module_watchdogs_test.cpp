@@ -124,6 +124,35 @@ TEST_F(CrashLoop, AnyOtherResetBetweenTwoEndsTheRow) {
   }
 }
 
+TEST(CrashCount, CountsFaultsTooAndIgnoresAWordThatTheBoardHasLost) {
+  CrashCount count;
+  count.begin(ResetReason::Fault, 0xFFFF'FFFF);
+  EXPECT_FALSE(count.looping());
+  for (const bool looping : {false, true, true}) {
+    count.begin(ResetReason::Fault, count.to_keep());
+    EXPECT_EQ(count.looping(), looping);
+  }
+  count.begin(ResetReason::ResetPin, count.to_keep());
+  EXPECT_FALSE(count.looping());
+}
+
+// extensions.md, scan: a module that processes a request takes no part.
+TEST(Scan, AModuleTakesNoPartWhileARequestWaitsOrItsReplyIsOnTheLine) {
+  CoreBench bench("EX9042D-M");
+  Module& module = bench.module();
+  bench.ask({0x01, 0x10, 0x01, 0x0E, 0x00, 0x02, 0x04, 0x0D, 0x00, 0x00, 0x01});
+  bench.hear(CoreBench::with_crc({0x01, 0x11}));
+  bench.hear(CoreBench::with_crc({0xFD, 0x46, 0x01}));
+  EXPECT_EQ(module.take_burst().size, 0U) << "a request waits";
+  module.step(false, bench.now());
+  ASSERT_NE(module.take_reply(bench.now()).size, 0U);
+  bench.hear(CoreBench::with_crc({0xFD, 0x46, 0x01}));
+  EXPECT_EQ(module.take_burst().size, 0U) << "the reply is on the line";
+  module.on_reply_sent(bench.now());
+  bench.hear(CoreBench::with_crc({0xFD, 0x46, 0x01}));
+  EXPECT_EQ(module.take_burst().size, 1U);
+}
+
 TEST(HostWatchdog, RunsEvenIfTheInitSwitchBouncesContinuously) {
   ModuleBench bench("EX9043D");
   ASSERT_EQ(bench.ask("@010001"), ">");
