@@ -61,10 +61,11 @@ Bytes Module::modbus_frame(Bytes frame, std::vector<bool> bad) {
   Bytes prefix;
   const bool by_number = is_by_number(frame) && (word(frame, 3) << 16 | word(frame, 5)) == serial_number();
   if (by_number) {
-    prefix = {0xFD, 0x46, 0x09, frame[3], frame[4], frame[5]};
+    prefix = {0xFD, 0x46, 0x09, frame[3], frame[4], frame[5], frame[6]};
     frame.erase(frame.begin(), frame.begin() + 6);
+    frame[0] = static_cast<std::uint8_t>(address_);
   }
-  const unsigned address = by_number ? address_ : frame[0];
+  const unsigned address = frame[0];
   const unsigned function = frame[1];
   if (address != 0 && address != address_) {
     return {};
@@ -100,7 +101,10 @@ Bytes Module::modbus_frame(Bytes frame, std::vector<bool> bad) {
     refusal_ = exception.reason;
     reply = {frame[0], static_cast<std::uint8_t>(function | 0x80U), exception.code};
   }
-  reply.insert(reply.begin(), prefix.begin(), prefix.end());
+  if (by_number) {
+    reply.erase(reply.begin());
+    reply.insert(reply.begin(), prefix.begin(), prefix.end());
+  }
   return address == 0 ? Bytes{} : with_crc(reply);
 }
 
