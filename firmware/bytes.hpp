@@ -26,6 +26,10 @@ struct Bytes {
   [[nodiscard, gnu::always_inline]] constexpr std::uint16_t word(std::size_t offset) const {
     return static_cast<std::uint16_t>((data[offset] << 8U) | data[offset + 1]);
   }
+  [[nodiscard]] constexpr std::uint32_t double_word(std::size_t offset) const {
+    constexpr unsigned kBitsOfAWord = 16;
+    return std::uint32_t{word(offset)} << kBitsOfAWord | word(offset + 2);
+  }
   /// Low byte first, as in stored settings. The range is not checked.
   [[nodiscard]] constexpr std::uint16_t low_byte_first_16(std::size_t offset) const {
     return static_cast<std::uint16_t>(data[offset] | (data[offset + 1] << 8U));

@@ -1,0 +1,39 @@
+#include "firmware/update/slot.hpp"
+
+#include <algorithm>
+
+namespace ex9000::update {
+
+namespace {
+
+void put(std::uint32_t value, std::uint8_t* to) {
+  constexpr unsigned kBitsAByte = 8;
+  for (unsigned i = 4; i != 0; --i) {
+    *to++ = static_cast<std::uint8_t>(value >> (kBitsAByte * (i - 1)));
+  }
+}
+
+}  // namespace
+
+void write_header(const Info& info, std::uint32_t sequence, SlotHead& head) {
+  std::copy(kMagic.begin(), kMagic.end(), head.begin());
+  put(sequence, &head[kSequenceAt]);
+  std::copy(info.bytes.begin(), info.bytes.end(), &head[kInfoAt]);
+  put(crc32({head.data(), kCheckAt}), &head[kCheckAt]);
+}
+
+Slot::Slot(Bytes head)
+    : valid(std::equal(kMagic.begin(), kMagic.end(), head.begin()) &&
+            head.double_word(kCheckAt) == crc32(head.first(kCheckAt))),
+      sequence(head.double_word(kSequenceAt)) {
+  std::copy_n(head.begin() + kInfoAt, kInfoSize, info.bytes.begin());
+  const Bytes marks = head.from(kMarksAt);
+  while (sectors < kImageSectors && marks[sectors] == kMarked) {
+    ++sectors;
+  }
+  activated = marks[kActivated] == kMarked;
+  tried = marks[kTried] == kMarked;
+  confirmed = marks[kConfirmed] == kMarked;
+}
+
+}  // namespace ex9000::update
