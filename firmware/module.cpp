@@ -10,6 +10,7 @@ namespace {
 
 constexpr Duration kInitTimeout = milliseconds(50);  // wire.md D13
 constexpr std::uint8_t kInitModeAddress = 0x00;
+constexpr std::uint32_t kProof = 60;  // seconds until a new image that has replied is confirmed
 /// What a reply may take beyond its bytes, for gaps that late interrupts cause.
 constexpr Duration kReplyMargin = milliseconds(100);
 constexpr Duration kClockResolution(1);  // an event may be this much later than its recorded time
@@ -26,6 +27,9 @@ void Module::start(std::uint16_t input_levels, Time now, const Reset& reset) {
   state_.statistics.reset_reason = reset.reason;
   state_.board_serial_number = reset.serial_number;
   crash_count_.begin(reset.reason, reset.crashes);
+  if (kBuiltUpdate && reset.origin.heads[0].size != 0) {
+    state_.update.start(reset.origin, state_.model());
+  }
 }
 
 StatusLed::Pattern Module::led_pattern_due() const {
@@ -54,6 +58,9 @@ void Module::step(bool init_switch, Time now) {
     continue_store(now);
   }
   dispatch(now);
+  if (kBuiltUpdate) {
+    continue_update(now);
+  }
   keeper_.poll(state_.settings, now);
   led_.show(led_pattern_due(), now);
   EX9000_EXPECT((state_.outputs & ~state_.model().output_mask()) == 0);
@@ -162,6 +169,9 @@ void Module::update_statistics(Time now) {
     second_began_ = second_began_ + kSecond;
     ++state_.statistics.seconds_up;
     crash_count_.lived(state_.statistics.seconds_up);
+    if (kBuiltUpdate && replied_ && state_.statistics.seconds_up % kProof == 0) {
+      state_.update.proved();
+    }
   }
   state_.statistics.stores = keeper_.saves();
 }
@@ -193,11 +203,29 @@ void Module::dispatch(Time now) {
     cycle_.hold_reply_until(request.received + receiver_.timing().rest_of_stop_bit +
                             milliseconds(state_.settings.response_delay) + kClockResolution);
   }
+  if (outcome.asked_of_update().ask != update::Ask::Nothing) {
+    state_.update.accept(outcome.asked_of_update(), now);  // copies the data from the frame
+  }
   receiver_.queue().drop_in_main_loop();
   if (outcome.changes_settings()) {
     continue_store(now);
-  } else {
+  } else if (cycle_.phase() == RequestCycle::Phase::Judged) {
     commit(now);
+  }
+}
+
+/// Also without a request.
+void Module::continue_update(Time now) {
+  update::Update& update = state_.update;
+  update.poll(now);
+  if (cycle_.phase() != RequestCycle::Phase::Updating || !update.answered()) {
+    return;
+  }
+  if (update.answer() == Refusal::None) {
+    commit(now);
+  } else {
+    cycle_.refuse(update.answer());
+    finish_request();
   }
 }
 
@@ -231,7 +259,7 @@ void Module::continue_store(Time now) {
   } else if (keeper_.saved()) {
     commit(now);
   } else {
-    cycle_.refuse_store();
+    cycle_.refuse(Refusal::StoreFailed);
     finish_request();
   }
 }
@@ -325,7 +353,10 @@ void Module::finish_request() {
   Diagnostics& diagnostics = state_.diagnostics;
   if (!cycle_.finish()) {
     ++diagnostics.no_responses;
-  } else if (refused) {
+    return;
+  }
+  replied_ = true;
+  if (refused) {
     ++diagnostics.exceptions;
   }
 }
@@ -342,6 +373,9 @@ Deadline Module::next_deadline() const {
     next.advance_to(request_due());
   }
   next.advance_to(cycle_.reply_due());
+  if (kBuiltUpdate) {
+    next.advance_to(state_.update.latest_answer());
+  }
   next.advance_to(state_.inputs.next_settling());
   next.advance_to(state_.output_timers.next_end());
   return next;

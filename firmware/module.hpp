@@ -15,6 +15,7 @@
 #include "firmware/reset_reason.hpp"
 #include "firmware/settings/settings_keeper.hpp"
 #include "firmware/time.hpp"
+#include "firmware/update/slot_job.hpp"
 #include "firmware/watchdog/crash_count.hpp"
 #include "firmware/watchdog/host_watchdog.hpp"
 #include "firmware/watchdog/module_watchdog.hpp"
@@ -26,6 +27,7 @@ struct Reset {
   ResetReason reason = ResetReason::Unknown;
   std::uint32_t serial_number = 0;  ///< of the board; 0: none
   std::uint32_t crashes = 0;        ///< see CrashCount::begin
+  update::Origin origin;            ///< of the running image
 };
 
 /// Accesses no peripheral and reads no clock: the caller passes events, levels and the time, and reads
@@ -102,12 +104,24 @@ class Module {
   [[nodiscard]] MemoryJob memory_job() { return keeper_.job(); }
   void memory_done(const MemoryResult& result) { keeper_.done(result); }
 
+  /// The same, for the image slots.
+  [[nodiscard]] bool needs_slots() const { return kBuiltUpdate && state_.update.busy(); }
+  [[nodiscard]] const update::SlotJob& slot_job() const { return state_.update.job(); }
+  void slot_done() { state_.update.done(); }
+  /// A new image has been activated. Reset the board when it `wants_reset`, which no event announces.
+  [[nodiscard]] bool activating() const {
+    return kBuiltUpdate && state_.update.state() == update::State::Activating;
+  }
+  [[nodiscard]] bool wants_reset() const { return activating() && cycle_.at_rest() && !keeper_.busy(); }
+
   /// The reply, once, when it may be sent; else empty. Valid until `on_reply_sent`.
   Bytes take_reply(Time now);
 
   // --- for panels, logs and tests ---
 
   [[nodiscard]] const State& state() const { return state_; }
+  /// For a simulator, before `start`. `digits`: nn.nn in BCD.
+  void pretend_version(std::uint16_t digits) { state_.version.pretend(digits); }
   /// For a simulator that has counted frames for others elsewhere.
   LineTallies& tallies() { return receiver_.tallies(); }
   [[nodiscard]] StatusLed::Pattern led_pattern() const { return led_.pattern(); }
@@ -135,6 +149,7 @@ class Module {
   void select_mode();
   void dispatch(Time now);
   void continue_store(Time now);
+  void continue_update(Time now);
   void commit(Time now);
   void drive_outputs(Time now);
   void end_timed_outputs(Time now);
@@ -152,6 +167,7 @@ class Module {
   Deadline init_timeout_;    ///< armed until the module no longer waits for INIT*
   Deadline reply_deadline_;  ///< latest end of the last reply
   Time second_began_;        ///< when the current second of the uptime began
+  bool replied_ = false;     ///< at least once since the reset
 
   State state_;
   InputEdges edges_;

@@ -18,7 +18,8 @@ namespace ex9000::hal {
 ///     line                        serial_line.hpp       memory         memory.hpp
 ///     silence_timer, wake_timer   one_shot_timer.hpp    init_switch    init_switch.hpp
 ///     inputs                      inputs.hpp            status_led     status_led.hpp
-///     watchdog                    watchdog.hpp      kept_word      kept_word.hpp
+///     watchdog                    watchdog.hpp          kept_word      kept_word.hpp
+///     slots, if the image can be updated (kBuiltUpdate): image_slots.hpp
 /// A board also has a tick (tick.hpp), which is no member. The compiler rejects a board that lacks a member
 /// or a function, or whose function takes a narrower number (-Wconversion).
 template <class Board>
@@ -32,7 +33,7 @@ class Device {
   /// `serial_number`: 0x0D00xxxx, from a unique number of the board; 0: the board has none.
   void start(ResetReason reason, std::uint32_t serial_number = 0) {
     module_.start(board_.inputs.start(), board_.clock.now(),
-                  {reason, serial_number, board_.kept_word.load()});
+                  {reason, serial_number, board_.kept_word.load(), origin()});
     board_.kept_word.store(module_.crashes());
     board_.watchdog.feed();
   }
@@ -102,7 +103,8 @@ class Device {
     }
     serve_line(now);
     const bool memory_begins = begin_memory_job(now);
-    return set_wake_timer(now) || memory_polls || memory_begins;
+    const bool slots_poll = serve_slots(now);
+    return set_wake_timer(now) || memory_polls || memory_begins || slots_poll;
   }
 
   constexpr Board& board() { return board_; }
@@ -161,11 +163,40 @@ class Device {
     return true;
   }
 
+  /// True: call it again at once.
+  bool serve_slots(Time now) {
+    if constexpr (kBuiltUpdate) {
+      if (module_.wants_reset()) {
+        board_.watchdog.restart();
+      }
+      const bool polls_again = board_.slots.poll(now);
+      if (slot_job_under_way_ && !board_.slots.busy()) {
+        slot_job_under_way_ = false;
+        module_.slot_done();
+        return true;
+      }
+      if (slot_job_under_way_ || !module_.needs_slots()) {
+        return polls_again;
+      }
+      board_.slots.start(module_.slot_job(), now);
+      slot_job_under_way_ = true;
+      return true;
+    }
+    return false;
+  }
+
+  [[nodiscard]] update::Origin origin() const {
+    if constexpr (kBuiltUpdate) {
+      return board_.slots.origin();
+    }
+    return {};
+  }
+
   /// To the next deadline or poll of the memory. True instead if the deadline is already reached. `now` is
   /// the start of the pass, so the timer is late by its duration; the delays of several passes do not add up.
   bool set_wake_timer(Time now) {
     Deadline next = module_.next_deadline();
-    if (memory_job_under_way_) {
+    if (memory_job_under_way_ || slot_job_under_way_ || module_.activating()) {
       next.advance_to(Deadline(now + kMemoryPollPeriod));
     }
     if (!next.armed()) {
@@ -182,6 +213,7 @@ class Device {
   Board board_;
   bool line_open_ = false;
   bool memory_job_under_way_ = false;
+  bool slot_job_under_way_ = false;
   std::uint32_t wakes_seen_ = 0;
   WrittenByInterrupt<std::uint32_t> wakes_;
   Module module_;

@@ -11,16 +11,4 @@
 #pragma once
 
 #include "firmware/time.hpp"
-#include "firmware/update/slot_job.hpp"
-
-namespace ex9000::hal {
-
-/// For boards without slots.
-struct NoImageSlots {
-  [[nodiscard]] static update::Origin origin() { return {}; }
-  static void start(const update::SlotJob& /*job*/, Time /*now*/) {}
-  static bool poll(Time /*now*/) { return false; }
-  [[nodiscard]] static bool busy() { return false; }
-};
-
-}  // namespace ex9000::hal
+#include "firmware/update/slot_job.hpp"  // IWYU pragma: export

@@ -1,4 +1,5 @@
 set(composition stellaris/composition.cpp)
+set(board_definitions EX9000_NO_IMAGE_SLOTS)
 
 # The start-up code of the board's processor.
 set(start_up cortex_m/start_up.cpp)

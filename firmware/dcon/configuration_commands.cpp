@@ -51,7 +51,7 @@ Refusal read_reset_status(Exchange& exchange) {
 
 Refusal read_version(Exchange& exchange) {
   put_valid(exchange);
-  exchange.reply.put(kFirmwareVersion);
+  exchange.reply.put(exchange.state.version.text());
   return Refusal::None;
 }
 

@@ -42,7 +42,7 @@ void put_object(const State& state, std::uint8_t object, Reply& reply) {
       reply.put(state.model().designation);
       break;
     case kRevision:
-      reply.put(kFirmwareVersion);
+      reply.put(state.version.text());
       break;
     case kProductName:
       reply.put(state.model().description);

@@ -45,6 +45,8 @@ std::uint8_t exception_of(Refusal refusal, std::uint8_t function) {
       return kIllegalDataValue;
     case Refusal::OutputsBlocked:
     case Refusal::StoreFailed:
+    case Refusal::UpdateRefused:
+    case Refusal::NotPermitted:
       return kServerDeviceFailure;
     default:
       return kIllegalFunction;
@@ -116,7 +118,7 @@ void answer(Exchange& exchange) {
   append_crc(reply);
 }
 
-void refuse_store(Exchange& exchange) {
+void refuse(Exchange& exchange) {
   Reply& reply = exchange.reply;
   if (reply.empty()) {
     return;
@@ -124,7 +126,7 @@ void refuse_store(Exchange& exchange) {
   const std::size_t address_at = exchange.by_serial_number ? kNumberPrefix : 0;
   const Bytes written = reply.bytes();
   const std::array<std::uint8_t, kNumberBytesBefore> number{written[3], written[4], written[5]};
-  write_exception(written[address_at], written[address_at + 1], Refusal::StoreFailed, reply);
+  write_exception(written[address_at], written[address_at + 1], exchange.outcome.refusal, reply);
   if (exchange.by_serial_number) {
     put_prefix(number.data(), reply);
   }

@@ -9,7 +9,8 @@ namespace ex9000::modbus {
 /// changes nothing else. The module must carry out the outcome before it sends the reply.
 void answer(Exchange& exchange);
 
-/// If the settings could not be stored: the reply becomes an exception, unless it is empty (broadcast).
-void refuse_store(Exchange& exchange);
+/// For a refusal that is known only later, in the outcome: the reply becomes an exception, unless it is empty
+/// (broadcast).
+void refuse(Exchange& exchange);
 
 }  // namespace ex9000::modbus

@@ -114,6 +114,13 @@ Refusal write_multiple_registers(Exchange& exchange) {
   }
   const unsigned start = frame.word(2);
   const unsigned quantity = frame.word(4);
+  const WordRow* whole = find_word(exchange.model(), kWriteWholeRow, start);
+  if (whole != nullptr && whole->first == start && width_of(whole->width, exchange.model()) == quantity) {
+    put_echo(exchange);
+    return exchange.broadcast
+               ? Refusal::None
+               : whole->write_whole(exchange.state, frame.from(kMultipleHeader), exchange.outcome);
+  }
   Refusal wrong_value = Refusal::None;
   bool configuration = false;
   for (unsigned i = 0; i < quantity; ++i) {

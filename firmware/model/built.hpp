@@ -4,13 +4,20 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <string_view>
 #include <type_traits>
 
 #include "firmware/model/model.hpp"
 
 namespace ex9000 {
 
-// `some_model_meets`: whether a built model has the property `needs`.
+#ifdef EX9000_NO_IMAGE_SLOTS
+constexpr bool kHasImageSlots = false;
+#else
+constexpr bool kHasImageSlots = true;
+#endif
+
+// `some_model_meets`: whether a built model has the property `needs`. ChosenVersion: of the running image.
 
 #ifdef EX9000_MODEL
 
@@ -24,7 +31,13 @@ class ChosenModel {
   [[nodiscard]] static constexpr const Model& get() { return kOnlyModel; }
 };
 
-constexpr bool some_model_meets(Needs needs) { return meets(kOnlyModel, needs); }
+constexpr bool some_model_meets(Needs needs) {
+  return meets(kOnlyModel, needs) && (kHasImageSlots || needs != Needs::ImageSlots);
+}
+
+struct ChosenVersion {
+  [[nodiscard]] static constexpr std::string_view text() { return kFirmwareVersion; }
+};
 
 #else
 
@@ -38,6 +51,30 @@ class ChosenModel {
 };
 
 constexpr bool some_model_meets(Needs /*needs*/) { return true; }
+
+/// A simulated module that has been updated has another version.
+class ChosenVersion {
+ public:
+  [[nodiscard]] std::string_view text() const { return {text_.data(), text_.size()}; }
+  /// `digits`: nn.nn in BCD.
+  void pretend(std::uint16_t digits) {
+    constexpr std::array<unsigned, 4> kPlaces{1, 2, 4, 5};
+    constexpr unsigned kBitsOfADigit = 4;
+    for (unsigned i = 0; i < kPlaces.size(); ++i) {
+      const unsigned digit = digits >> (kBitsOfADigit * (kPlaces.size() - 1 - i)) & 0xFU;
+      text_[kPlaces[i]] = static_cast<char>('0' + digit);
+    }
+  }
+
+ private:
+  std::array<char, kFirmwareVersion.size()> text_ = [] {
+    std::array<char, kFirmwareVersion.size()> text{};
+    for (std::size_t i = 0; i < text.size(); ++i) {
+      text[i] = kFirmwareVersion[i];
+    }
+    return text;
+  }();
+};
 
 #endif
 
@@ -53,6 +90,8 @@ constexpr bool has(const Model& model, Needs needs) {
 #endif
 }
 
+/// If false, the compiler removes the code for updates.
+constexpr bool kBuiltUpdate = some_model_meets(Needs::ImageSlots);
 /// If false, the compiler removes the code for Modbus RTU frames.
 constexpr bool kBuiltModbus = some_model_meets(Needs::Modbus);
 

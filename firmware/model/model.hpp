@@ -104,7 +104,7 @@ constexpr const Model* find_model(std::string_view designation) {
 }
 
 /// What a DCON command, a Modbus function or a register-map row requires of a model.
-enum class Needs : std::uint8_t { Nothing, Outputs, Inputs, Modbus };
+enum class Needs : std::uint8_t { Nothing, Outputs, Inputs, Modbus, ImageSlots };
 
 constexpr bool meets(const Model& model, Needs needs) {
   switch (needs) {  // not covered: the enumeration has no other value
@@ -113,6 +113,7 @@ constexpr bool meets(const Model& model, Needs needs) {
     case Needs::Inputs:
       return model.has_inputs();
     case Needs::Modbus:
+    case Needs::ImageSlots:  // these are the board's; built.hpp knows whether it has them
       return model.speaks_modbus();
     case Needs::Nothing:
       break;

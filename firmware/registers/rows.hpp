@@ -18,6 +18,8 @@ constexpr Functions kReadInputRegisters = 1U << 0x4U;
 constexpr Functions kWriteSingleCoil = 1U << 0x5U;
 constexpr Functions kWriteSingleRegister = 1U << 0x6U;
 constexpr Functions kWriteMultipleCoils = 1U << 0xFU;
+/// Function 10 (hex), with all registers of the row at once.
+constexpr Functions kWriteWholeRow = 1U << 0x0U;
 /// Functions 06 and 10 (hex) can always access the same rows.
 constexpr Functions kWriteRegisters = kWriteSingleRegister;
 constexpr Functions kReadRegisters = kReadHoldingRegisters | kReadInputRegisters;
@@ -31,7 +33,8 @@ enum class Width : std::uint8_t {
   Twelve = 12,
   Sixteen = 16,
   Twenty = 20,
-  PerOutput,
+  SixtyEight = 68,
+  PerOutput = 0x80,
   PerInput,
   PairPerInput
 };
@@ -39,7 +42,7 @@ enum class Width : std::uint8_t {
 constexpr unsigned kLargestWidth = 32;
 
 constexpr unsigned width_of(Width width, const Model& model) {
-  if (width <= Width::Twenty) {
+  if (width < Width::PerOutput) {
     return static_cast<unsigned>(width);
   }
   if (width == Width::PerOutput) {
@@ -77,6 +80,8 @@ struct WordRow {
   /// `index`: position in the row, from 0.
   std::uint16_t (*read)(const Exchange& exchange, unsigned index) = nullptr;
   Refusal (*write)(const State& state, unsigned index, std::uint16_t value, Outcome& outcome) = nullptr;
+  /// For kWriteWholeRow. `data`: valid until the request has been judged.
+  Refusal (*write_whole)(const State& state, Bytes data, Outcome& outcome) = nullptr;
 
   [[nodiscard]] constexpr bool has(Rules rule) const { return (rules & rule) != 0; }
 };

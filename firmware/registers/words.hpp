@@ -89,9 +89,9 @@ inline Refusal write_timed_output(const State& /*state*/, unsigned index, std::u
 }
 
 /// `Dnn.nn` as four BCD digits.
-inline std::uint16_t read_version(const Exchange& /*exchange*/, unsigned /*index*/) {
+inline std::uint16_t read_version(const Exchange& exchange, unsigned /*index*/) {
   unsigned digits = 0;
-  for (const char character : kFirmwareVersion) {
+  for (const char character : exchange.state.version.text()) {
     if (character >= '0' && character <= '9') {
       digits = digits << 4U | static_cast<unsigned>(character - '0');
     }
@@ -165,11 +165,60 @@ inline std::uint16_t read_model(const Exchange& exchange, unsigned index) {
   return 0;
 }
 
-inline std::uint16_t read_version_text(const Exchange& /*exchange*/, unsigned index) {
-  return index < kFirmwareVersion.size() ? static_cast<std::uint8_t>(kFirmwareVersion[index]) : 0;
+inline std::uint16_t read_version_text(const Exchange& exchange, unsigned index) {
+  const std::string_view text = exchange.state.version.text();
+  return index < text.size() ? static_cast<std::uint8_t>(text[index]) : 0;
 }
 
-inline std::uint16_t read_zero(const Exchange& /*exchange*/, unsigned /*index*/) { return 0; }
+// --- the update, extensions.md, firmware update ---
+
+inline std::uint16_t read_boot_loader(const Exchange& exchange, unsigned index) {
+  const bool there = kBuiltUpdate && exchange.state.update.available();
+  const std::string_view text = update::kBootLoaderVersion;
+  return there && index < text.size() ? static_cast<std::uint8_t>(text[index]) : 0;
+}
+
+inline std::uint16_t read_signature(const Exchange& exchange, unsigned index) {
+  return exchange.state.update.signature()[index];
+}
+
+inline Refusal write_updates_allowed(const State& state, unsigned index, std::uint16_t value,
+                                     Outcome& outcome) {
+  return state.configuration_permitted()
+             ? write_setting<&SettingsChange::updates_allowed>(state, index, value, outcome)
+             : Refusal::NotPermitted;
+}
+
+inline Refusal ask_update(const State& state, const update::Request& request, Outcome& outcome) {
+  outcome.ask_update(request);
+  return state.update.judge(request, state.settings.updates_allowed);
+}
+
+template <update::Ask ask>
+Refusal write_to_update(const State& state, Bytes data, Outcome& outcome) {
+  return ask_update(state, {ask, data}, outcome);
+}
+
+inline std::uint16_t read_update_state(const Exchange& exchange, unsigned /*index*/) {
+  return static_cast<std::uint16_t>(exchange.state.update.state());
+}
+
+inline std::uint16_t read_update_offset(const Exchange& exchange, unsigned index) {
+  return word_of(exchange.state.update.next(), index);
+}
+
+inline Refusal write_update_action(const State& state, unsigned /*index*/, std::uint16_t value,
+                                   Outcome& outcome) {
+  const auto ask = static_cast<update::Ask>(value);
+  return value >= 1 && ask <= update::Ask::Abandon ? ask_update(state, {ask, {}}, outcome)
+                                                   : Refusal::WrongValue;
+}
+
+/// A tool for other modules sets the line of their boot loader; this module's line stays as it is.
+inline Refusal keep_line(const State& /*state*/, unsigned /*index*/, std::uint16_t value,
+                         Outcome& /*outcome*/) {
+  return value == 1 ? Refusal::None : Refusal::WrongValue;
+}
 
 inline constexpr WordRegister kWordRegisters[] = {
     {"counters",
@@ -217,6 +266,11 @@ inline constexpr WordRegister kWordRegisters[] = {
      "0 to 30; not by broadcast",
      {0x0252, Width::One, Needs::Nothing, kReadRegisters | kWriteRegisters, kExtension | kConfiguration,
       read_setting<&Settings::response_delay>, write_setting<&SettingsChange::response_delay>}},
+    {"updates-allowed",
+     "1: the firmware can be updated over the line; 0: it cannot",
+     "0 or 1, with the configuration permission; not by broadcast",
+     {0x0254, Width::One, Needs::ImageSlots, kReadRegisters | kWriteRegisters, kExtension | kConfiguration,
+      read_setting<&Settings::updates_allowed>, write_updates_allowed}},
     {"long-counters",
      "input counters with 32 bits, two registers each, high word first",
      "",
@@ -288,9 +342,41 @@ inline constexpr WordRegister kWordRegisters[] = {
      {0x010E, Width::Two, Needs::Nothing, kReadRegisters | kWriteRegisters,
       kExtension | kConfiguration | kLong, read_serial_number, write_serial_number}},
     {"boot-loader-text",
-     "version of the boot loader; 0: there is none",
+     "version of the boot loader, one character in each register; 0: there is none",
      "",
-     {0x014A, Width::Eight, Needs::Nothing, kReadRegisters, kPlain, read_zero, nullptr}},
+     {0x014A, Width::Eight, Needs::Nothing, kReadRegisters, kPlain, read_boot_loader, nullptr}},
+    // --- the update of the firmware ---
+    {"update-signature",
+     "what an image must be for: model and board, for example 9042DM.pico; one character in each register",
+     "",
+     {0x0122, Width::Twelve, Needs::ImageSlots, kReadRegisters, kPlain, read_signature, nullptr}},
+    {"update-begin",
+     "what follows: signature, length of the image, version, flags, CRC-32",
+     "all 16 registers at once, see extensions.md, firmware update",
+     {0x1000, Width::Sixteen, Needs::ImageSlots, kWriteWholeRow, kConfiguration, nullptr, nullptr,
+      write_to_update<update::Ask::Begin>}},
+    {"update-block",
+     "a block of the image: its offset, 128 bytes, CRC-32",
+     "all 68 registers at once, see extensions.md, firmware update",
+     {0x2000, Width::SixtyEight, Needs::ImageSlots, kWriteWholeRow, kConfiguration, nullptr, nullptr,
+      write_to_update<update::Ask::Block>}},
+    {"update-state",
+     "state of the update: 0 none, 1 receiving, 2 complete and verified, 3 activation pending, 4 the new "
+     "image is running and not confirmed, 5 taken back, 6 the flash failed",
+     "",
+     {0x1010, Width::One, Needs::ImageSlots, kReadRegisters, kPlain, read_update_state, nullptr}},
+    {"update-offset",
+     "offset of the next block in bytes, 32 bits, high word first",
+     "",
+     {0x1011, Width::Two, Needs::ImageSlots, kReadRegisters, kPlain, read_update_offset, nullptr}},
+    {"update-action",
+     "action of the update",
+     "1: activate, with a reset after the reply; 2: confirm; 3: abandon; not by broadcast",
+     {0x1013, Width::One, Needs::ImageSlots, kWriteRegisters, kConfiguration, nullptr, write_update_action}},
+    {"boot-loader-line",
+     "for tools that prepare the line of a boot loader; nothing changes",
+     "1; not by broadcast",
+     {0x0083, Width::One, Needs::ImageSlots, kWriteRegisters, kConfiguration, nullptr, keep_line}},
     // Documentation only: the receiver detects a host OK.
     {"host-ok",
      "host OK: a request to read this register, with quantity 0 or 1, restarts the host watchdog "

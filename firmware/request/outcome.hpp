@@ -5,31 +5,11 @@
 #include <cstdint>
 
 #include "firmware/model/model.hpp"
+#include "firmware/request/refusal.hpp"
 #include "firmware/settings/settings.hpp"
+#include "firmware/update/request.hpp"
 
 namespace ex9000 {
-
-/// Why a request is refused. The module carries out no action of it.
-enum class Refusal : std::uint8_t {
-  None,
-  // ASCII: the reply is `?AA` or `?` (wire.md section 3)
-  UnknownCommand,  ///< no command of this model has this syntax
-  OutOfRange,      ///< an argument has a wrong form, is out of range, or contradicts a stored setting
-  NotPermitted,    ///< the configuration permission is missing (wire.md section 2)
-  NoSample,        ///< `$AA4` before the first `#**`
-  // Modbus exceptions; modbus.cpp maps these reasons to exception codes
-  UnknownFunction,     ///< 01
-  UnknownSubfunction,  ///< 01 in functions 08 and 2B, 02 in function 46
-  WrongLength,         ///< 03; also if the byte count does not match the quantity or the length
-  WrongQuantity,       ///< 03
-  WrongCoilValue,      ///< 03: function 05 with a value other than FF00 and 0000
-  WrongAddress,        ///< 02
-  WrongValue,          ///< 03; in ASCII, the reply to `~AAX` is `?AA`
-  UnknownObject,       ///< 02, in function 2B/0E
-  // both protocols
-  OutputsBlocked,  ///< ASCII `!`, Modbus 04: the timeout status is set
-  StoreFailed,     ///< ASCII `?AA`, Modbus 04: the memory did not store the settings
-};
 
 /// Each bit that is set in `mask` gets its value in `value`.
 struct BitWrite {
@@ -69,6 +49,9 @@ class Outcome {
   [[nodiscard]] bool asks_for(Effect effect) const { return (effects_ & bit(effect)) != 0; }
   [[nodiscard]] bool has_effects() const { return effects_ != 0; }
 
+  void ask_update(const update::Request& request) { update_ = request; }
+  [[nodiscard]] const update::Request& asked_of_update() const { return update_; }
+
   void drive(BitWrite outputs) { drive_ = outputs; }
   [[nodiscard]] BitWrite outputs_to_drive() const { return drive_; }
 
@@ -93,6 +76,7 @@ class Outcome {
     drive_ = {};
     timed_drive_.mask = 0;
     counters_to_clear = 0;
+    update_.ask = update::Ask::Nothing;
     if (changes_settings_) {
       changes_settings_ = false;
       change_ = SettingsChange();
@@ -107,6 +91,7 @@ class Outcome {
 
   std::uint16_t effects_ = 0;
   bool changes_settings_ = false;
+  update::Request update_;
   BitWrite drive_;
   TimedDrive timed_drive_;
   SettingsChange change_;

@@ -31,7 +31,9 @@ const Outcome& RequestCycle::judge(const Frame& frame, Time now) {
   if (outcome.refusal != Refusal::None) {
     outcome.clear();  // no action of a refused request is carried out
   }
-  phase_.store_in_main_loop(outcome.changes_settings() ? Phase::AwaitingStore : Phase::Judged);
+  phase_.store_in_main_loop(outcome.changes_settings()                              ? Phase::AwaitingStore
+                            : outcome.asked_of_update().ask != update::Ask::Nothing ? Phase::Updating
+                                                                                    : Phase::Judged);
   return outcome;
 }
 
@@ -41,12 +43,12 @@ void RequestCycle::keep_timeout_status() {
   }
 }
 
-void RequestCycle::refuse_store() {
-  EX9000_EXPECT(phase() == Phase::Storing);
+void RequestCycle::refuse(Refusal refusal) {
+  EX9000_EXPECT(phase() == Phase::Storing || phase() == Phase::Updating);
   exchange_.outcome.clear();
-  exchange_.outcome.refusal = Refusal::StoreFailed;
+  exchange_.outcome.refusal = refusal;
   if (exchange_.state.speaks_modbus()) {
-    modbus::refuse_store(exchange_);
+    modbus::refuse(exchange_);
   } else {
     dcon::refuse_store(exchange_);
   }

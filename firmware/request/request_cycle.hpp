@@ -22,6 +22,7 @@ class RequestCycle {
     Judged,         ///< changes no settings; its actions are being carried out
     AwaitingStore,  ///< judged; the store of the changed settings has not begun
     Storing,        ///< judged; the memory is storing the changed settings
+    Updating,       ///< judged; the image slots work for the request (firmware/update)
     ReplyReady,     ///< done; the reply waits until the gap after a reply and the response delay are over
   };
 
@@ -55,10 +56,10 @@ class RequestCycle {
   }
   /// The host watchdog has expired: a request that `stores()` must not clear the new status (wire.md D17).
   void keep_timeout_status();
-  /// While Storing, if the memory failed: removes all actions and makes the reply an error, unless it is
-  /// empty (broadcast). Then call `finish`.
-  void refuse_store();
-  /// When the outcome has been carried out, or after `refuse_store`. Whether there is a reply to send; if
+  /// While Storing or Updating, if the memory or the update failed: removes all actions and makes the reply
+  /// an error, unless it is empty (broadcast). Then call `finish`.
+  void refuse(Refusal refusal);
+  /// When the outcome has been carried out, or after `refuse`. Whether there is a reply to send; if
   /// not, the next request may be judged.
   bool finish();
 

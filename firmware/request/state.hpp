@@ -9,6 +9,7 @@
 #include "firmware/model/model.hpp"
 #include "firmware/request/statistics.hpp"
 #include "firmware/settings/settings.hpp"
+#include "firmware/update/update.hpp"
 
 namespace ex9000 {
 
@@ -51,6 +52,8 @@ struct State {
   bool reset_status = true;  ///< true until `$AA5` reads it
   Diagnostics diagnostics;
   Statistics statistics;
+  update::Update update;
+  ChosenVersion version;
 
   /// 0: the module has none.
   [[nodiscard]] std::uint32_t serial_number() const {

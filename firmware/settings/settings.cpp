@@ -32,6 +32,7 @@ Settings Settings::factory(const Model& model) {
   settings.protocol = model.speaks_modbus() ? Protocol::ModbusRtu : Protocol::Ascii;
   settings.watchdog_timeout = kFactoryWatchdogTimeout;
   settings.name = Name(model.factory_name);
+  settings.updates_allowed = true;
   return settings;
 }
 

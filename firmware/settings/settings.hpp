@@ -120,6 +120,7 @@ struct SettingsOf {
   As<bool> fed_by_requests{};           ///< register 0x0251: each request restarts the host watchdog
   As<std::uint8_t> response_delay{};    ///< register 0x0252, in ms
   As<std::uint32_t> serial_number{};    ///< registers 0x010E and 0x010F; 0: that of the board
+  As<bool> updates_allowed{};           ///< register 0x0254
 };
 
 /// Calls `f` for each setting, with it of all `settings`, in the order of a record (record.hpp). Append new
@@ -142,6 +143,7 @@ template <class F, class... Some>
   f(settings.fed_by_requests...);
   f(settings.response_delay...);
   f(settings.serial_number...);
+  f(settings.updates_allowed...);
 }
 
 template <class Value>

@@ -15,11 +15,13 @@ void put(std::uint32_t value, std::uint8_t* to) {
 
 }  // namespace
 
-void write_header(const Info& info, std::uint32_t sequence, SlotHead& head) {
-  std::copy(kMagic.begin(), kMagic.end(), head.begin());
-  put(sequence, &head[kSequenceAt]);
-  std::copy(info.bytes.begin(), info.bytes.end(), &head[kInfoAt]);
-  put(crc32({head.data(), kCheckAt}), &head[kCheckAt]);
+Header header_of(const Info& info, std::uint32_t sequence) {
+  Header header{};
+  std::copy(kMagic.begin(), kMagic.end(), header.begin());
+  put(sequence, &header[kSequenceAt]);
+  std::copy(info.bytes.begin(), info.bytes.end(), &header[kInfoAt]);
+  put(crc32({header.data(), kCheckAt}), &header[kCheckAt]);
+  return header;
 }
 
 Slot::Slot(Bytes head)

@@ -18,6 +18,8 @@
 
 namespace ex9000::update {
 
+constexpr std::string_view kBootLoaderVersion = "1.0";
+
 constexpr unsigned kSlots = 2;
 constexpr std::uint32_t kSector = 4096;  ///< unit of an erase, in bytes
 constexpr std::uint32_t kSlotSize = 128 * 1024;
@@ -29,10 +31,16 @@ constexpr std::uint32_t kImageSectors = kLargestImage / kSector;
 
 constexpr std::uint32_t sectors_of(std::uint32_t length) { return (length + kSector - 1) / kSector; }
 
-/// The information block: registers 0x1000 to 0x100F (wire.md section 12).
+/// The information block: registers 0x1000 to 0x100F (extensions.md, firmware update).
 constexpr std::size_t kInfoSize = 32;
 constexpr std::size_t kSignatureSize = 12;
 constexpr std::uint16_t kActivateWhenComplete = 1;
+
+constexpr std::size_t kLengthAt = kSignatureSize;
+constexpr std::size_t kVersionAt = 16;
+constexpr std::size_t kFlagsAt = 18;
+constexpr std::size_t kImageCheckAt = 20;
+constexpr std::size_t kReservedAt = 24;
 
 struct Info {
   std::array<std::uint8_t, kInfoSize> bytes{};
@@ -40,11 +48,15 @@ struct Info {
   [[nodiscard]] Bytes all() const { return {bytes.data(), bytes.size()}; }
   /// Board and model that the image is for, padded with 0.
   [[nodiscard]] Bytes signature() const { return all().first(kSignatureSize); }
-  [[nodiscard]] std::uint32_t length() const { return all().double_word(12); }  ///< of the image, in bytes
-  [[nodiscard]] std::uint16_t version() const { return all().word(16); }        ///< nn.nn in BCD
-  [[nodiscard]] std::uint16_t flags() const { return all().word(18); }
-  [[nodiscard]] std::uint32_t check() const { return all().double_word(20); }  ///< CRC-32 of the image
-  [[nodiscard]] Bytes reserved() const { return all().from(24); }              ///< all 0
+  [[nodiscard]] std::uint32_t length() const {
+    return all().double_word(kLengthAt);
+  }                                                                               ///< of the image, in bytes
+  [[nodiscard]] std::uint16_t version() const { return all().word(kVersionAt); }  ///< nn.nn in BCD
+  [[nodiscard]] std::uint16_t flags() const { return all().word(kFlagsAt); }
+  [[nodiscard]] std::uint32_t check() const {
+    return all().double_word(kImageCheckAt);
+  }                                                                         ///< CRC-32 of the image
+  [[nodiscard]] Bytes reserved() const { return all().from(kReservedAt); }  ///< all 0
 };
 
 /// The header: kMagic, the sequence number, Info, and the CRC-32 of all these; numbers high byte first.
@@ -66,7 +78,9 @@ static_assert(kImageSectors <= kActivated);
 
 /// Of a slot, its first bytes: header and marks.
 constexpr std::size_t kSlotHeadSize = 128;
-using SlotHead = std::array<std::uint8_t, kSlotHeadSize>;
+/// Over the beginning of a header, these make it invalid.
+constexpr std::array<std::uint8_t, 8> kNoMagic{};
+static_assert(kNoMagic.size() == kMagic.size());
 
 inline std::uint32_t crc32(Bytes bytes) {
   Crc32 crc;
@@ -76,8 +90,8 @@ inline std::uint32_t crc32(Bytes bytes) {
   return crc.value();
 }
 
-/// Writes the header; the marks are the caller's.
-void write_header(const Info& info, std::uint32_t sequence, SlotHead& head);
+using Header = std::array<std::uint8_t, kHeaderSize>;
+Header header_of(const Info& info, std::uint32_t sequence);
 
 /// What a slot says about itself.
 struct Slot {

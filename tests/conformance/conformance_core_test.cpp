@@ -21,7 +21,7 @@ namespace {
 class Conformance : public testing::Test {
  protected:
   static void SetUpTestSuite() {
-    runs_ = all_runs();
+    runs_ = all_runs(Updates::Simulated);
     for (Played& run : runs_) {
       runner::CoreTarget target(&coverage_);
       play_run(run, target);

@@ -12,7 +12,7 @@ namespace ex9000::conformance {
 namespace {
 
 TEST(Conformance, TheImagesForThePicoPassEveryTranscriptOfTheManualsModels) {
-  std::vector<Played> runs = runs_of_the_manuals();
+  std::vector<Played> runs = runs_of_the_manuals(Updates::Images);
   const auto played = play_all_on_pico(runs);
   expect_all_steps_passed("pico", runs);
   std::printf("in %lld s of virtual time\n",

@@ -47,11 +47,11 @@ void play_over(Over over, std::vector<Played> runs) {
 }
 
 TEST(Conformance, TheSimulatorPassesEveryTranscriptOverItsPseudoTerminal) {
-  play_over(Over::PseudoTerminal, all_runs());
+  play_over(Over::PseudoTerminal, all_runs(Updates::Simulated));
 }
 
 TEST(Conformance, TheSimulatorPassesTheTranscriptsAboutFramingOverTcp) {
-  std::vector<Played> runs = all_runs();
+  std::vector<Played> runs = all_runs(Updates::Simulated);
   const auto others = std::remove_if(runs.begin(), runs.end(), [](const Played& run) {
     return std::filesystem::path(run.transcript.file).parent_path().filename() != "framing";
   });

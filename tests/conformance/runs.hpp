@@ -54,13 +54,29 @@ inline bool continues(const std::string& whole, const std::string& begin) {
          whole.rfind(begin + " ", 0) == 0;
 }
 
-/// Returns all runs of all files, or those that EX9000_PLAY selects. The runs have not been played yet.
-/// Throws std::invalid_argument if EX9000_PLAY selects none.
-inline std::vector<Played> all_runs() {
+/// How a target can be updated, which decides about three folders with transcripts.
+enum class Updates {
+  Simulated,  ///< any image can be activated
+  Images,     ///< as Simulated, but an image that is activated must be one
+  None,       ///< the board has no image slots
+};
+
+/// `path`: of a transcript, below the folder of this header.
+inline bool can_play(Updates updates, const std::string& path) {
+  return updates == Updates::None
+             ? !continues(path, "modbus/update") && !continues(path, "modbus/update-simulated")
+             : !continues(path, "modbus/no-update") &&
+                   (updates == Updates::Simulated || !continues(path, "modbus/update-simulated"));
+}
+
+/// Returns the runs of all files for targets like these, or those that EX9000_PLAY selects. The runs have not
+/// been played yet. Throws std::invalid_argument if EX9000_PLAY selects none.
+inline std::vector<Played> all_runs(Updates updates) {
   const std::string wanted = selection();
   std::vector<Played> runs;
   for (const std::string& file : play::transcript_files(EX9000_CONFORMANCE_DIR)) {
-    if (!continues(path_of(file), wanted) && !continues(wanted, path_of(file))) {
+    if (!can_play(updates, path_of(file)) ||
+        (!continues(path_of(file), wanted) && !continues(wanted, path_of(file)))) {
       continue;
     }
     for (play::Transcript& transcript : runner::load_transcripts(file)) {
@@ -83,8 +99,8 @@ inline constexpr std::array<std::string_view, 8> kModelsOfTheManuals{
     "EX9042D", "EX9042D-M", "EX9043D", "EX9043D-M", "EX9052D", "EX9052D-M", "EX9068D-M", "EX9068AD-M"};
 
 /// Returns the runs of `all_runs` for the models in the manuals.
-inline std::vector<Played> runs_of_the_manuals() {
-  std::vector<Played> runs = all_runs();
+inline std::vector<Played> runs_of_the_manuals(Updates updates) {
+  std::vector<Played> runs = all_runs(updates);
   const auto others = std::remove_if(runs.begin(), runs.end(), [](const Played& run) {
     return std::count(kModelsOfTheManuals.begin(), kModelsOfTheManuals.end(),
                       run.transcript.model->designation) == 0;

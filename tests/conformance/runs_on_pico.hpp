@@ -31,7 +31,7 @@ inline std::chrono::nanoseconds play_all_on_pico(std::vector<Played>& runs,
 
 /// Returns the runs of `all_runs` for a model.
 inline std::vector<Played> runs_of(std::string_view designation) {
-  std::vector<Played> runs = all_runs();
+  std::vector<Played> runs = all_runs(Updates::Images);
   const auto others = std::remove_if(runs.begin(), runs.end(), [designation](const Played& run) {
     return run.transcript.model->designation != designation;
   });

@@ -9,6 +9,7 @@
 
 #include "firmware/line/timing.hpp"
 #include "hal/doubles/kept_word.hpp"
+#include "hal/doubles/no_image_slots.hpp"
 #include "tests/support/instant_memory.hpp"
 
 namespace ex9000::hal {
@@ -49,6 +50,7 @@ struct StillBoard {
   };
   struct Watchdog {
     static void feed() {}
+    static void restart() {}
   };
 
   Clock clock;
@@ -62,6 +64,7 @@ struct StillBoard {
   Led status_led;
   Watchdog watchdog;
   doubles::KeptWord kept_word;
+  doubles::NoImageSlots slots;
 };
 
 TEST(Device, AJobThatTheMemoryCompletesAtOnceWaitsForNoPoll) {

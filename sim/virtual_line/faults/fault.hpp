@@ -40,6 +40,7 @@ struct LineFaults {
 struct ModuleFaults {
   bool no_supply = false;
   bool hangs = false;
+  bool bad_images = false;
   std::uint32_t rate = 0;  ///< 0: the module's own rate
   VirtualTime driver_late_by{0};
 };

@@ -88,6 +88,8 @@ void cut_supply(const Fault& /*fault*/, ModuleFaults& module) { module.no_supply
 
 void hang(const Fault& /*fault*/, ModuleFaults& module) { module.hangs = true; }
 
+void spoil_images(const Fault& /*fault*/, ModuleFaults& module) { module.bad_images = true; }
+
 }  // namespace
 
 const std::vector<FaultKind>& fault_kinds() {
@@ -117,6 +119,8 @@ const std::vector<FaultKind>& fault_kinds() {
        "cuts the supply, for 1s by default"},
       {"hang", Value::None, "every 10s", Lasts::Moment, hang,
        "stops the main loop until the module watchdog resets the module"},
+      {"bad-image", Value::None, "", Lasts::Open, spoil_images,
+       "makes each image of an update hang when it starts, so the module takes it back"},
   };
   return kinds;
 }

@@ -201,6 +201,7 @@ void Faults::take_effect() {
     apply_at<FaultKind::OnModule>(i, faults);
     modules_[i]->interrupt_supply(faults.no_supply);
     modules_[i]->force_rate(faults.rate);
+    modules_[i]->start_bad_images(faults.bad_images);
     modules_[i]->release_driver_late(faults.driver_late_by);
     if (faults.hangs) {
       modules_[i]->hang();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "firmware/expect.hpp"
 #include "sim/text/values.hpp"
 
 namespace ex9000::sim {
@@ -21,7 +22,7 @@ SimulatedModule::Mcu::Mcu(SimulatedModule& module)
       watchdog(module.clock_),
       device(module.model_, {module.clock_, line, silence_timer, wake_timer, module.inputs_, module.outputs_,
                              hal::TwoPlaces<hal::doubles::Memory&>(module.memory_), module.init_switch_,
-                             module.led_, watchdog, module.kept_word_}) {}
+                             module.led_, watchdog, module.kept_word_, module.slots_}) {}
 
 SimulatedModule::SimulatedModule(Wires& wires, const Model& model, TimingAt timing_at)
     : clock_(wires.clock()),
@@ -29,6 +30,7 @@ SimulatedModule::SimulatedModule(Wires& wires, const Model& model, TimingAt timi
       timing_at_(timing_at),
       end_(wires.attach(*this)),
       memory_(clock_),
+      slots_(clock_, model),
       wire_(clock_, end_) {}
 
 void SimulatedModule::power(bool on) {
@@ -80,7 +82,9 @@ std::string SimulatedModule::why_outputs_change() const {
 
 void SimulatedModule::restart(ResetReason reason) {
   if (powered()) {
-    say(reason == ResetReason::ModuleWatchdog ? "reset by the module watchdog" : "reset");
+    say(reason == ResetReason::ModuleWatchdog ? "reset by the module watchdog"
+        : reason == ResetReason::Software     ? "reset into a new image"
+                                              : "reset");
     stop();
     start(reason);
     settle();
@@ -91,10 +95,20 @@ void SimulatedModule::start(ResetReason reason) {
   hangs_until_ = VirtualTime(0);
   in_dcon_frame_ = false;
   stores_ = 0;
+  const std::uint16_t earlier = slots_.version();
+  [[maybe_unused]] const bool boots = slots_.boot();
+  EX9000_EXPECT(boots);
+  if (slots_.version() != earlier) {
+    say("version " + hex_word_text(slots_.version()));
+  }
   mcu_.emplace(*this);
+  mcu_->device.module().pretend_version(slots_.version());
   mcu_->line.release_late(driver_late_by_);
   mcu_->tick.start();
   mcu_->device.start(reason, serial_number_);
+  if (images_are_bad_ && slots_.unconfirmed()) {
+    hangs_until_ = kNever;
+  }
   turn();
 }
 
@@ -104,6 +118,7 @@ void SimulatedModule::stop() {
   wire_.abort();
   // First, because a memory job uses buffers in `mcu_`.
   memory_.cut();
+  slots_.cut();
   mcu_.reset();
   outputs_.drive(0);
 }
@@ -187,7 +202,7 @@ std::vector<std::uint8_t> SimulatedModule::memory_image(const Model& model, cons
 }
 
 bool SimulatedModule::pending() const {
-  return wire_.next() != kNever || memory_.next() != kNever ||
+  return wire_.next() != kNever || memory_.next() != kNever || slots_.next() != kNever ||
          (mcu_ &&
           (mcu_->silence_timer.next() != kNever || mcu_->line.sending() || !mcu_->device.module().at_rest()));
 }
@@ -200,7 +215,7 @@ void SimulatedModule::settle() {
   }
   if (mcu_) {
     const VirtualTime sends = std::min(wire_.next(), mcu_->line.next());
-    const VirtualTime stores = memory_.next();
+    const VirtualTime stores = std::min(memory_.next(), slots_.next());
     VirtualTime wakes = std::min(mcu_->wake_timer.next(), mcu_->tick.next());
     if (hangs_until_ != VirtualTime(0)) {
       wakes = std::min(wakes, hangs_until_);
@@ -217,6 +232,10 @@ void SimulatedModule::run() {
   if (next_without_silence_ > clock_.virtual_now()) {
     end_silence();  // only the silence timer can be due
     work_or_wait();
+    return;
+  }
+  if (mcu_->watchdog.restarts()) {
+    restart(ResetReason::Software);
     return;
   }
   if (mcu_->watchdog.has_expired()) {
@@ -269,8 +288,9 @@ void SimulatedModule::run_line() {
 }
 
 void SimulatedModule::run_memory() {
-  if (memory_.next() <= clock_.virtual_now()) {
+  if (std::min(memory_.next(), slots_.next()) <= clock_.virtual_now()) {
     memory_.run();
+    slots_.run();
     mcu_->device.on_memory();
   }
 }

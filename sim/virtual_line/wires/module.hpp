@@ -12,6 +12,7 @@
 #include "firmware/model/model.hpp"
 #include "firmware/settings/settings.hpp"
 #include "hal/device.hpp"
+#include "hal/doubles/image_slots.hpp"
 #include "hal/doubles/init_switch.hpp"
 #include "hal/doubles/inputs.hpp"
 #include "hal/doubles/kept_word.hpp"
@@ -58,6 +59,8 @@ class SimulatedModule final : public Station {
   void pulse_input(unsigned channel, std::uint32_t count);
   /// Stops the main loop, by default until the next reset. Interrupts go on.
   void hang(VirtualTime time = kNever);
+  /// From now on, an image that an update has brought hangs when it starts.
+  void start_bad_images(bool bad) { images_are_bad_ = bad; }
   /// Keeps the driver enabled `by` longer after each reply, through resets and power cycles.
   void release_driver_late(VirtualTime by);
   /// Overrides the rate of the settings; 0: no longer. A reply that has begun keeps its rate.
@@ -87,6 +90,7 @@ class SimulatedModule final : public Station {
   [[nodiscard]] bool led_lit() const { return led_.lit(); }
   hal::doubles::Memory& memory() { return memory_; }
   [[nodiscard]] const hal::doubles::Memory& memory() const { return memory_; }
+  hal::doubles::ImageSlots& slots() { return slots_; }
   hal::doubles::Outputs& output_pins() { return outputs_; }
   hal::doubles::StatusLed& led() { return led_; }
   /// Starting, waiting for the end of a silence (not of a shared ear's) or of a turn-around time, processing
@@ -117,6 +121,7 @@ class SimulatedModule final : public Station {
     hal::doubles::StatusLed& status_led;
     hal::doubles::Watchdog& watchdog;
     hal::doubles::KeptWord& kept_word;
+    hal::doubles::ImageSlots& slots;
   };
 
   /// The parts that lose their state at a reset.
@@ -176,6 +181,8 @@ class SimulatedModule final : public Station {
   hal::doubles::StatusLed led_;
   hal::doubles::InitSwitch init_switch_;
   hal::doubles::KeptWord kept_word_;
+  hal::doubles::ImageSlots slots_;
+  bool images_are_bad_ = false;
   VirtualTime driver_late_by_{0};
   std::uint32_t serial_number_ = 0;
   VirtualTime skew_{0};

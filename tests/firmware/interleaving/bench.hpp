@@ -8,6 +8,7 @@
 
 #include "hal/device.hpp"
 #include "hal/doubles/kept_word.hpp"
+#include "hal/doubles/no_image_slots.hpp"
 #include "hal/eeprom/two_places.hpp"
 #include "hal/stellaris/gpio.hpp"
 #include "hal/stellaris/uart.hpp"
@@ -28,6 +29,7 @@ struct Board {
   StatusLed status_led;
   Watchdog watchdog;
   hal::doubles::KeptWord kept_word;
+  hal::doubles::NoImageSlots slots;
 };
 
 class Bench {
