@@ -11,7 +11,7 @@
 namespace ex9000::update {
 
 /// The slot whose image starts; none if both are damaged. `Slots`:
-///     std::array<std::uint8_t, kSlotHeadSize> head(unsigned slot)
+///     SlotHead head(unsigned slot)
 ///     bool load(unsigned slot, const Info& info)    Copies the image to where it runs. False: it is damaged.
 ///     bool mark_tried(unsigned slot)                False: the mark does not read back.
 /// An image that is not confirmed gets one chance, so it does not start without its mark.

@@ -4,8 +4,8 @@
 //                        marks, from kMarksAt on: one byte each, FF until something is true for ever, then 00
 //     sectors 1 to 31    the image
 //
-// A mark is programmed after what it says has become true, so a power failure during it does no harm: what
-// the byte then is, what it says is not false. Nothing but an erase of the header takes a mark back.
+// A mark is programmed after what it says has become true. If the power fails meanwhile, it may read as set
+// or not, and may change by itself, but what it says is true: it can be programmed again.
 #pragma once
 
 #include <array>
@@ -78,6 +78,7 @@ static_assert(kImageSectors <= kActivated);
 
 /// Of a slot, its first bytes: header and marks.
 constexpr std::size_t kSlotHeadSize = 128;
+using SlotHead = std::array<std::uint8_t, kSlotHeadSize>;
 /// Over the beginning of a header, these make it invalid.
 constexpr std::array<std::uint8_t, 8> kNoMagic{};
 static_assert(kNoMagic.size() == kMagic.size());
@@ -106,8 +107,8 @@ struct Slot {
   bool tried = false;
   bool confirmed = false;
 
-  /// If also the CRC of the image is right.
-  [[nodiscard]] bool may_start() const { return valid && activated && (confirmed || !tried); }
+  /// If also the CRC of the image is right. An image that is confirmed needs no other mark.
+  [[nodiscard]] bool may_start() const { return valid && (confirmed || (activated && !tried)); }
 };
 
 /// Which slot the boot loader tries first, then the other one.

@@ -25,12 +25,14 @@ void Update::start(const Origin& origin, const Model& model) {
   const Slot spare(origin.heads[slot_]);
   signature_ = signature_of(model, origin.board);
   sequence_ = running.sequence + 1;
+  secured_ = !running.valid;
   if (running.valid && !running.confirmed) {
     state_ = State::Unconfirmed;
     slot_ = running_;
     info_ = running.info;
     next_ = info_.length();
-  } else if (spare.valid && spare.sequence == sequence_) {
+  } else if (spare.valid && spare.sequence == sequence_ && spare.sectors != 0) {
+    // Without a sector, the power may have failed during the header.
     info_ = spare.info;
     marked_ = spare.sectors;
     erased_ = spare.sectors;
@@ -155,7 +157,7 @@ void Update::poll(Time now) {
 Update::Step Update::due() const {
   const bool received = next_ >= info_.length();
   if (withdraw_) {
-    return Step::Withdraw;
+    return secured_ ? Step::Withdraw : Step::Secure;
   }
   switch (state_) {
     case State::Receiving:
@@ -193,6 +195,10 @@ void Update::begin_step(Step step) {
   step_ = step;
   switch (step) {
     case Step::Idle:
+      break;
+    case Step::Secure:
+      begin_mark(kConfirmed);
+      job_.slot = running_;
       break;
     case Step::Withdraw:
       withdraw_ = false;
@@ -265,6 +271,7 @@ void Update::finish(Step step, bool good) {
       return;
     case Step::MarkConfirmed:
       if (good) {
+        secured_ = true;
         state_ = State::None;
         slot_ = 1U - running_;
         next_ = 0;
@@ -279,10 +286,14 @@ void Update::finish(Step step, bool good) {
     if (state_ != State::FlashFailed) {
       discard(State::FlashFailed);
     }
+    withdraw_ = withdraw_ && step != Step::Secure;
     answer_with(Refusal::UpdateRefused);
     return;
   }
   switch (step) {
+    case Step::Secure:
+      secured_ = true;
+      break;
     case Step::EraseHeader:
       header_erased_ = true;
       break;

@@ -70,6 +70,7 @@ class Update {
  private:
   enum class Step : std::uint8_t {
     Idle,
+    Secure,    ///< marks the running image as confirmed once more, before the other one goes: see slot.hpp
     Withdraw,  ///< programs zeros over the beginning of the header: an erase that the power ends is none
     EraseHeader,
     WriteHeader,
@@ -107,6 +108,7 @@ class Update {
   std::uint32_t verified_ = 0;  ///< bytes
   Crc32 crc_;
 
+  bool secured_ = true;  ///< the mark of the running image lasts
   bool withdraw_ = false;
   bool header_erased_ = false;
   bool header_written_ = false;

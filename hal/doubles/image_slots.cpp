@@ -64,8 +64,8 @@ std::uint16_t ImageSlots::version() const {
 
 bool ImageSlots::unconfirmed() const { return !Slot({heads_[running_].data(), kSlotHeadSize}).confirmed; }
 
-std::array<std::uint8_t, kSlotHeadSize> ImageSlots::head(unsigned slot) const {
-  std::array<std::uint8_t, kSlotHeadSize> head{};
+SlotHead ImageSlots::head(unsigned slot) const {
+  SlotHead head{};
   for (std::uint32_t i = 0; i < head.size(); ++i) {
     head[i] = at(slot, i);
   }

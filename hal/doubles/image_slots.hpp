@@ -48,7 +48,7 @@ class ImageSlots {
 
   // --- for update::choose ---
 
-  [[nodiscard]] std::array<std::uint8_t, update::kSlotHeadSize> head(unsigned slot) const;
+  [[nodiscard]] update::SlotHead head(unsigned slot) const;
   [[nodiscard]] bool load(unsigned slot, const update::Info& info) const;
   bool mark_tried(unsigned slot);
 
@@ -59,8 +59,7 @@ class ImageSlots {
 
   const VirtualClock& clock_;
   std::array<std::vector<std::uint8_t>, update::kSlots> contents_;
-  std::array<std::array<std::uint8_t, update::kSlotHeadSize>, update::kSlots>
-      heads_{};  ///< at the last `boot`
+  std::array<update::SlotHead, update::kSlots> heads_{};  ///< at the last `boot`
   unsigned running_ = 0;
   update::SlotJob job_;
   VirtualTime ends_ = kNever;
