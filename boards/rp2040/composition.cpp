@@ -8,6 +8,7 @@
 #include "boards/cortex_m/start_up.hpp"
 #include "boards/image.hpp"
 #include "boards/rp2040/memory.hpp"
+#include "boards/rp2040/slot_head.hpp"
 #include "boards/runtime.hpp"
 #include "firmware/line/crc16.hpp"
 #include "firmware/model/built.hpp"
