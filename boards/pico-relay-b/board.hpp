@@ -3,11 +3,15 @@
 #pragma once
 
 #include <array>
+#include <string_view>
 
 #include "boards/pico/every_pico.hpp"
 #include "hal/pins/single_pins.hpp"
 
 namespace ex9000::board {
+
+/// In signatures of images: firmware/update/signature.hpp.
+inline constexpr std::string_view kBoardCode = "picb";
 
 static_assert(kMemory == Memory::Flash,
               "EX9000_MEMORY: the pins of the EEPROM lead to channel 1 of the "

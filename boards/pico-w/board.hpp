@@ -2,9 +2,14 @@
 // external LED at GP22.
 #pragma once
 
+#include <string_view>
+
 #include "boards/pico/module.hpp"
 
 namespace ex9000::board {
+
+/// In signatures of images: firmware/update/signature.hpp.
+inline constexpr std::string_view kBoardCode = kMemory == Memory::Flash ? "picw" : "piwe";
 
 inline constexpr Pin kStatusLed{22};
 

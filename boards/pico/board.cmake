@@ -3,10 +3,13 @@ set(composition rp2040/composition.cpp)
 # The start-up code of the board's processor.
 set(start_up rp2040/start_up.cpp rp2040/second_stage.cpp)
 
+# Every image contains the loader.
+set(loader rp2040/loader)
+
 # The images need libgcc, because the processor has no instruction for a division.
 set(board_libraries gcc)
 
-# The build writes the checksum of the second stage, and also writes each image as a UF2 file, which users copy to the
+# The build writes checksums of the second stage and of the image, and also writes each image as a UF2 file, which users copy to the
 # drive of the boot ROM.
 set(starts_from_uf2 ON)
 

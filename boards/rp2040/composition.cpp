@@ -8,6 +8,7 @@
 #include "boards/cortex_m/start_up.hpp"
 #include "boards/image.hpp"
 #include "boards/rp2040/memory.hpp"
+#include "boards/rp2040/slot_head.hpp"
 #include "boards/runtime.hpp"
 #include "firmware/line/crc16.hpp"
 #include "firmware/model/built.hpp"
@@ -17,6 +18,7 @@
 #include "hal/cortex_m/system_tick.hpp"
 #include "hal/device.hpp"
 #include "hal/eeprom/two_places.hpp"
+#include "hal/flash/image_slots.hpp"
 #include "hal/flash/record_log.hpp"
 #include "hal/pins/single_pins.hpp"
 #include "hal/pl011/uart.hpp"
@@ -28,6 +30,7 @@
 #include "hal/rp2040/kept_word.hpp"
 #include "hal/rp2040/outputs.hpp"
 #include "hal/rp2040/resets.hpp"
+#include "hal/rp2040/started_slot.hpp"
 #include "hal/rp2040/timer.hpp"
 #include "hal/rp2040/watchdog.hpp"
 
@@ -49,24 +52,35 @@ constexpr Pin kReceive{static_cast<std::uint8_t>(kUartPins.first_pin + 1U)};
 using Line = hal::pl011::Uart<kUart0, kHertz, hal::Transceiver<kDriverEnable, kReceive>, LineEndTimer>;
 using Watchdog = HardwareWatchdog<kClock.crystal / kMegahertz>;
 
-/// The memory that stores the settings: its driver, and the functions that start the driver and handle its
-/// interrupt.
+/// The memory that stores the settings: its driver, the functions that start the driver and handle its
+/// interrupt, and the log with which the image slots share the flash.
 template <Memory memory>
 struct MemoryOnBoard;
 template <>
 struct MemoryOnBoard<Memory::Flash> {
   using Driver = hal::flash::RecordLog<Flash, kSettingsInFlash>;
+  using Log = Driver;
+  static constexpr Log& log(Driver& driver) { return driver; }
   static void start(Driver& driver) { driver.flash().start(); }
   static void on_interrupt(Driver& /*driver*/) {}
 };
 template <>
 struct MemoryOnBoard<Memory::Eeprom> {
   using Driver = hal::TwoPlaces<hal::At24c<I2c<kI2cPins, kHertz>>>;
-  static void start(Driver& driver) { driver.eeprom().master().start(); }
+  using Log = hal::flash::NoLog<Flash>;
+  static inline Log no_log;
+  static constexpr Log& log(Driver& /*driver*/) { return no_log; }
+  static void start(Driver& driver) {
+    driver.eeprom().master().start();
+    Flash::start();
+  }
   static void on_interrupt(Driver& driver) { driver.eeprom().master().on_interrupt(); }
 };
 using Settings = MemoryOnBoard<kMemory>;
 constexpr bool kUsesI2c = kMemory == Memory::Eeprom;
+
+static_assert(kSlotsInFlash + update::kSlots * update::kSlotSize <= kSettingsInFlash);
+using ImageSlots = hal::flash::ImageSlots<Settings::Log, kSlotsInFlash>;
 
 /// See hal::Device.
 struct Board {
@@ -77,6 +91,7 @@ struct Board {
   InputPins<kInputs, kOnlyModel.inputs, kInputsActiveHigh> inputs;
   OutputPins<kOutputs, kOnlyModel.outputs, kOutputsActiveHigh> outputs;
   Settings::Driver memory;
+  ImageSlots slots{Settings::log(memory)};
   hal::InitPin<kInitSwitch> init_switch;
   hal::LedPin<kStatusLed> status_led;
   Watchdog watchdog;
@@ -133,6 +148,7 @@ void start() {
   Resets::restart(kUsesI2c ? Block::Uart0 | Block::I2c0 : 0U | Block::Uart0);
   Gpio::make_peripheral(kUartPins.mask(), Function::Uart);
   const std::uint32_t number = serial_number();
+  board.slots.begin(StartedSlot::load(), kBoardCode);  // the flash is open since `unique_id`
   Settings::start(board.memory);
   Run::start_module(reason, number);
   Interrupts::enable(start_up::numbers_of(kServed));

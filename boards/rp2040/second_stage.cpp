@@ -1,24 +1,33 @@
 // The second stage of the boot sequence. The boot ROM copies the first 256 bytes of the flash to the end of
-// the SRAM. If the checksum in the last four of these bytes is right, the boot ROM calls `second_stage`.
-// toolchain/seal-second-stage writes the checksum. Source: RP2040 data sheet, 2.8.1.
+// the SRAM. If the checksum in the last four of these bytes is right, the boot ROM calls `second_stage`,
+// which starts the loader. toolchain/seal-image writes the checksum. Source: RP2040 data sheet, 2.8.1.
 #include <cstdint>
 
+#include "boards/rp2040/memory.hpp"
+#include "firmware/update/slot.hpp"
 #include "hal/rp2040/boot.hpp"
 #include "hal/rp2040/clocks.hpp"
 
 namespace ex9000::start_up {
 
-// Symbols of the linker script. The vector table is at `image_begin`.
-extern "C" std::uint32_t image_begin[];
-extern "C" std::uint32_t image_end[];
+// Symbols of the linker script. The vector table is at `loader_begin`.
+extern "C" std::uint32_t loader_begin[];
+extern "C" std::uint32_t loader_end[];
 
 extern "C" [[noreturn]] __attribute__((section(".second_stage"), used, externally_visible)) void
 second_stage() {
-  constexpr std::uint32_t kImageInFlash = 256;
+  // Absolute symbols, with which the linker script checks its numbers.
+  __asm(
+      ".global slots_in_flash, slot_size, image_in_slot \n"
+      ".set slots_in_flash, %c0 \n"
+      ".set slot_size, %c1 \n"
+      ".set image_in_slot, %c2" ::"i"(board::kSlotsInFlash),
+      "i"(update::kSlotSize), "i"(update::kImageAt));
   hal::rp2040::Clocks::use_reference();
   hal::rp2040::Boot::use_crystal();
-  hal::rp2040::Boot::copy(kImageInFlash, image_begin, static_cast<std::uint32_t>(image_end - image_begin));
-  hal::rp2040::Boot::jump(image_begin);
+  hal::rp2040::Boot::copy(board::kLoaderInFlash, loader_begin,
+                          static_cast<std::uint32_t>(loader_end - loader_begin));
+  hal::rp2040::Boot::jump(loader_begin);
 }
 
 }  // namespace ex9000::start_up

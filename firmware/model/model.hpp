@@ -10,6 +10,17 @@ namespace ex9000 {
 /// contains its four digits in BCD.
 constexpr std::string_view kFirmwareVersion = "D01.00";
 
+/// The four digits of `Dnn.nn`.
+constexpr std::uint16_t version_in_bcd(std::string_view version = kFirmwareVersion) {
+  unsigned digits = 0;
+  for (const char character : version) {
+    if (character >= '0' && character <= '9') {
+      digits = digits << 4U | static_cast<unsigned>(character - '0');
+    }
+  }
+  return static_cast<std::uint16_t>(digits);
+}
+
 /// What `~AA0`, the host watchdog's status, can return (manuals 2.16; EX9052D 2.18).
 enum class StatusStyle : std::uint8_t {
   TimeoutOnly,       ///< 00, 04

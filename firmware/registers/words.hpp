@@ -88,15 +88,8 @@ inline Refusal write_timed_output(const State& /*state*/, unsigned index, std::u
   return Refusal::None;
 }
 
-/// `Dnn.nn` as four BCD digits.
 inline std::uint16_t read_version(const Exchange& exchange, unsigned /*index*/) {
-  unsigned digits = 0;
-  for (const char character : exchange.state.version.text()) {
-    if (character >= '0' && character <= '9') {
-      digits = digits << 4U | static_cast<unsigned>(character - '0');
-    }
-  }
-  return static_cast<std::uint16_t>(digits);
+  return version_in_bcd(exchange.state.version.text());
 }
 
 inline std::uint16_t read_seconds_up(const Exchange& exchange, unsigned index) {

@@ -13,22 +13,12 @@ namespace {
 
 constexpr std::uint8_t kErased = 0xFF;
 
-/// Of kFirmwareVersion, in BCD.
-std::uint16_t this_version() {
-  unsigned digits = 0;
-  for (const char character : kFirmwareVersion) {
-    digits =
-        character >= '0' && character <= '9' ? digits << 4U | static_cast<unsigned>(character - '0') : digits;
-  }
-  return static_cast<std::uint16_t>(digits);
-}
-
 }  // namespace
 
 ImageSlots::ImageSlots(const VirtualClock& clock, const Model& model) : clock_(clock) {
   constexpr std::array<std::uint8_t, 4> kImage{'s', 'i', 'm', '\n'};
   const Signature signature = signature_of(model, kBoard);
-  const std::uint16_t version = this_version();
+  const std::uint16_t version = version_in_bcd();
   const std::uint32_t check = crc32({kImage.data(), kImage.size()});
   Info info;
   const auto put = [&info](std::size_t offset, std::uint32_t value, unsigned bytes) {

@@ -11,6 +11,7 @@
 #include "firmware/settings/record.hpp"
 #include "firmware/time.hpp"
 #include "hal/flash.hpp"
+#include "hal/flash/log_hold.hpp"
 #include "hal/memory.hpp"
 
 namespace ex9000::hal::flash {
@@ -72,16 +73,26 @@ class RecordLog {
   }
 
   bool poll(Time now) {
-    if (!busy() && step_ == Step::Free && !erases_ahead_) {
+    if (at_rest()) {
       return false;
     }
-    const bool waits = flash_.busy();
+    const bool waits = held_ == Hold::Everything || flash_.busy();
     const bool again = waits ? wait(now) : proceed(now);
     if (busy() && (waits || !again) && deadline_.reached(now)) {
       give_up();
     }
     return again;
   }
+
+  // --- for another user of the flash (hal/flash/image_slots.hpp) ---
+
+  /// No job, no operation, and no sector to erase.
+  [[nodiscard]] bool at_rest() const { return !busy_ && step_ == Step::Free && !erases_ahead_; }
+  /// An operation of the log is running, or it can begin its job. A job that waits for an erased sector does
+  /// not need the flash as long as erases are held.
+  [[nodiscard]] bool needs_flash() const { return step_ != Step::Free || can_begin_job(); }
+  /// Other than `Nothing` only from a rest on.
+  void hold(Hold hold) { held_ = hold; }
 
   [[nodiscard]] bool busy() const { return busy_; }
   [[nodiscard]] MemoryResult result() const {
@@ -352,10 +363,16 @@ class RecordLog {
     return first_sector([this](unsigned sector) { return (erased_ & bit(sector)) != 0; });
   }
 
-  /// `poll` looks for free sectors, unless the flash holds bad records and none in force.
-  void may_erase() { erases_ahead_ = result_.source != SettingsSource::NoneGood; }
+  /// `poll` looks for free sectors, unless the flash holds bad records and none in force. An erase of before
+  /// the reset ends in any case.
+  void may_erase() {
+    erases_ahead_ = result_.source != SettingsSource::NoneGood || erase_ == Erase::Suspended;
+  }
 
   void erase_ahead(Time now) {
+    if (held_ != Hold::Nothing) {
+      return;
+    }
     erase_began_ = now;
     if (erase_ == Erase::Suspended) {
       erase_ = Erase::Running;
@@ -388,6 +405,7 @@ class RecordLog {
   Flash flash_;
   MemoryJob job_;  ///< `attempts` counts those that are left
   bool busy_ = false;
+  Hold held_ = Hold::Nothing;
   Step step_ = Step::Starting;
   MemoryResult result_;
   bool erases_ahead_ = false;  ///< `poll` is erasing a sector, or must check whether one must be erased

@@ -24,6 +24,17 @@ class Flash {
     open();
     resume();  // has no effect if nothing is suspended
   }
+  /// Instead of `start`, leaves a suspended operation as it is. The other functions can then be called.
+  static void open() {
+    constexpr std::uint32_t kDivider = 4;  // must be even; 125 MHz / 4 = 31.25 MHz; Read Data allows 50 MHz
+    constexpr Bits<Control> kBytesBothWays(7U << 16U);
+    select(false);
+    kEnable.write({});
+    kBaud.write(Bits<Baud>(kDivider));
+    kControl.write(kBytesBothWays);
+    kSlave.write(Bits<Slave>(1));
+    kEnable.write(Bits<Enable>(1));
+  }
 
   /// The number that no other chip has. Call it before `start`, because a busy flash does not answer.
   static std::array<std::uint8_t, 8> unique_id() {
@@ -126,17 +137,6 @@ class Flash {
     while (!kStatus.read().has(kReceived)) {
     }
     return static_cast<std::uint8_t>(kData.read().value());
-  }
-
-  static void open() {
-    constexpr std::uint32_t kDivider = 4;  // must be even; 125 MHz / 4 = 31.25 MHz; Read Data allows 50 MHz
-    constexpr Bits<Control> kBytesBothWays(7U << 16U);
-    select(false);
-    kEnable.write({});
-    kBaud.write(Bits<Baud>(kDivider));
-    kControl.write(kBytesBothWays);
-    kSlave.write(Bits<Slave>(1));
-    kEnable.write(Bits<Enable>(1));
   }
 
   static void command(std::uint8_t code) {

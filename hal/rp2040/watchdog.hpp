@@ -29,7 +29,7 @@ class WatchdogRegisters {
     const Bits<Reason> reason = kReason.read();
     if (reason.has(kRequest | kTimeout)) {
       // Only images write the mark: the boot ROM, too, resets the chip with the watchdog, after it has copied
-      // an image to the flash. In an image, only `fault_handler` requests a reset.
+      // an image to the flash. With the mark, only `fault_handler` requests a reset.
       return kMark.read().value() != kOfAnImage.value() ? ResetReason::Software
              : reason.has(kRequest)                     ? ResetReason::Fault
                                                         : ResetReason::ModuleWatchdog;
@@ -74,6 +74,11 @@ class HardwareWatchdog : public WatchdogRegisters {
   /// oscillator instead of a crystal of 12 MHz, ticks and countdown can take up to twelve times as long.
   static void start() {
     kMark.write(kOfAnImage);
+    start_countdown();
+  }
+
+  /// For the loader: `start` without effect on what `reset_reason` returns in the image.
+  static void start_countdown() {
     kTick.write(Bits<Tick>(reference) | kTickEnable);
     kControl.clear(kEnable);
     kResetBy.write(kAllButOscillators);
@@ -82,6 +87,12 @@ class HardwareWatchdog : public WatchdogRegisters {
   }
 
   static void feed() { kLoad.write(Bits<Load>(kCountdown)); }
+
+  /// Resets the MCU; the reason is then Software.
+  [[noreturn]] static void restart() {
+    kMark.write({});
+    reset_chip();
+  }
 
  private:
   static constexpr Duration kPeriod = milliseconds(1500);

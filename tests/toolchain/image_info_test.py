@@ -21,7 +21,7 @@ from image_info.info import info_of  # noqa: E402
 INFO = struct.pack("<8s8s24s16s40s", b"EX9INFO1", b"D01.00", b"a-board", b"EX9042D-M", b"0123abcd" * 5)
 EXPECTED = {"version": "D01.00", "board": "a-board", "model": "EX9042D-M", "commit": "0123abcd" * 5}
 STELLARIS = bytes(0xC0) + INFO + b"code"
-PICO = bytes(0x1A8) + INFO + b"code"
+PICO = bytes(0x110A8) + INFO + b"code"
 
 
 def uf2(begin: int, content: bytes) -> bytes:
@@ -39,8 +39,10 @@ def record(kind: int, address: int, data: bytes) -> bytes:
 
 
 def hex_file(begin: int, content: bytes) -> bytes:
-    file = record(4, 0, (begin >> 16).to_bytes(2, "big"))
+    file = b""
     for start in range(0, len(content), 16):
+        if start % 0x10000 == 0:
+            file += record(4, 0, ((begin + start) >> 16).to_bytes(2, "big"))
         file += record(0, (begin + start) & 0xFFFF, content[start : start + 16])
     return file + record(5, 0, bytes(4)) + record(1, 0, b"")
 
@@ -69,7 +71,7 @@ class Rejects(unittest.TestCase):
             info_of(flash_content(file))
 
     def test_a_file_without_information_is_rejected(self) -> None:
-        message = "no information about an image at 0xc0 or 0x1a8"
+        message = "no information about an image at 0xc0 or 0x110a8"
         for file in (b"text", bytes(1000), bytes(0xC1) + INFO, b"\x7fELF\x02\x01" + bytes(500)):
             self.refused(file, message)
         self.refused(b"", "contains no data")

@@ -10,20 +10,27 @@ from pathlib import Path
 from check_image.functions import demangle, without_parameters
 from elf_file import Elf, Section, Symbol
 
+# Before the start of the image only, or next to it in the flash: the same in every image of a board.
+_NOT_OF_THE_IMAGE = (".second_stage", ".loader", ".head_0", ".head_1")
+
 # The SRAM region of the system address map. It is the same on all boards (Armv7-M ARM B3.1).
 RAM = range(0x20000000, 0x40000000)
 
 
 def flash(elf: Elf) -> int:
-    """Returns the total size in bytes of the sections that are stored in flash, for example code and initial values of
-    variables."""
-    return sum(section.size for section in elf.sections if section.loaded)
+    """Returns the total size in bytes of the sections of the image that are stored in flash, for example code and
+    initial values of variables."""
+    return sum(section.size for section in _of_the_image(elf) if section.loaded)
 
 
 def static_ram(elf: Elf) -> int:
     """Returns the total size in bytes of the sections in RAM: variables, and the code of an image that runs from RAM.
     Does not count a section that reserves the stack."""
-    return sum(s.size for s in elf.sections if s.address in RAM and not s.name.startswith(".stack"))
+    return sum(s.size for s in _of_the_image(elf) if s.address in RAM and not s.name.startswith(".stack"))
+
+
+def _of_the_image(elf: Elf) -> list[Section]:
+    return [section for section in elf.sections if section.name not in _NOT_OF_THE_IMAGE]
 
 
 def by_symbol(elf: Elf) -> list[tuple[int, str]]:
@@ -88,4 +95,4 @@ def _in_flash(elf: Elf) -> list[Symbol]:
 
 
 def _is_loaded(section: Section | None) -> bool:
-    return section is not None and section.loaded
+    return section is not None and section.loaded and section.name not in _NOT_OF_THE_IMAGE

@@ -8,7 +8,7 @@ from elf_file import NotAnImage
 
 # For each family of microcontrollers, the offset of the information from the first address of the flash. The linker
 # scripts check this offset.
-PLACES = {"Stellaris and Tiva": 0xC0, "RP2040": 0x1A8}
+PLACES = {"Stellaris and Tiva": 0xC0, "RP2040": 0x110A8}
 
 MARK = b"EX9INFO1"
 _FIELDS = struct.Struct("<8s8s24s16s40s")

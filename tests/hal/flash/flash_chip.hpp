@@ -39,11 +39,13 @@ struct Tear {
 
 class FlashChip {
  public:
-  /// The address of the store. The model has no bytes outside the store.
+  /// The address of the store. The model has no bytes outside the store, except those of `add_slots`.
   static constexpr std::uint32_t kBegin = 0x1F'2000;
+  static constexpr std::uint32_t kSlots = 0x1'0000;
   static constexpr std::uint32_t kSector = 4096;
   static constexpr std::uint32_t kPageOfFlash = 256;
   static constexpr unsigned kSectorsOfStore = 14;
+  static constexpr unsigned kSectorsOfSlots = 64;
 
   enum class Operation { None, Erase, Program };
   struct Times {
@@ -60,7 +62,9 @@ class FlashChip {
     EXPECT_TRUE(!busy() && !erase_suspended_) << "an erase is ignored now";
     EXPECT_EQ(at % kSector, 0U);
     begin(Operation::Erase, at, times.erase);
-    ++erases[at / kSector];
+    if (at / kSector < kSectorsOfStore) {
+      ++erases[at / kSector];
+    }
   }
   void start_program(std::uint32_t address, Bytes source) {
     const std::size_t at = index(address, source.size);
@@ -110,6 +114,14 @@ class FlashChip {
   }
 
   // --- functions for the test ---
+
+  /// Adds the sectors from address kSlots on. Their content follows that of the store in `cells`.
+  void add_slots() {
+    constexpr std::size_t kAll = std::size_t{kSectorsOfStore + kSectorsOfSlots} * kSector;
+    cells.resize(kAll, 0xFF);
+    weak_.resize(kAll, false);
+  }
+  std::uint8_t* slots() { return &cells[std::size_t{kSectorsOfStore} * kSector]; }
 
   /// Lets time pass. Throws PowerFailure when the operation that `cut` has selected would end.
   void run(std::uint64_t microseconds) {
@@ -186,7 +198,11 @@ class FlashChip {
   std::uint64_t bytes_read = 0;
 
  private:
-  static std::size_t index(std::uint32_t address, std::size_t size) {
+  [[nodiscard]] std::size_t index(std::uint32_t address, std::size_t size) const {
+    const std::size_t in_slots = std::size_t{address} - kSlots + kSectorsOfStore * kSector;
+    if (address >= kSlots && in_slots + size <= cells.size()) {
+      return in_slots;
+    }
     const bool in_store = address >= kBegin && address + size <= kBegin + kSectorsOfStore * kSector;
     EXPECT_TRUE(in_store) << "outside the store: " << address;
     return in_store ? address - kBegin : 0;
