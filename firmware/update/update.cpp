@@ -38,8 +38,8 @@ void Update::start(const Origin& origin, const Model& model) {
     erased_ = spare.sectors;
     next_ = std::min(marked_ * kSector, info_.length());
     header_written_ = true;
-    // The boot loader has not started it, or it is no more.
-    state_ = spare.activated ? State::TakenBack : State::Receiving;
+    // If it has been activated, the boot loader has not started it now. One of its marks may have decayed.
+    state_ = spare.activated || spare.tried ? State::TakenBack : State::Receiving;
   }
 }
 

@@ -76,8 +76,9 @@ class FlashChip {
       if (!is_broken(at + i)) {
         EXPECT_EQ(cells[at + i] & source[i], source[i]) << "the byte is not erased";
       }
-      EXPECT_TRUE(!weak_[at + i] || source[i] == 0) << "this byte may be unreliable, because an operation on "
-                                                       "it was interrupted; expected an erase first";
+      EXPECT_TRUE(weak_[at + i] == 0 || source[i] == 0)
+          << "this byte may be unreliable, because an operation on "
+             "it was interrupted; expected an erase first";
     }
     source_.assign(source.begin(), source.end());
     begin(Operation::Program, at, times.program);
@@ -119,7 +120,14 @@ class FlashChip {
   void add_slots() {
     constexpr std::size_t kAll = std::size_t{kSectorsOfStore + kSectorsOfSlots} * kSector;
     cells.resize(kAll, 0xFF);
-    weak_.resize(kAll, false);
+    weak_.resize(kAll);
+  }
+  /// Changes the bytes of the slots that an interrupted operation has left, since they need not last.
+  void let_slots_decay(unsigned seed) {
+    std::mt19937 random(seed);
+    for (std::size_t at = std::size_t{kSectorsOfStore} * kSector; at < cells.size(); ++at) {
+      cells[at] = static_cast<std::uint8_t>((cells[at] & ~weak_[at]) | (random() & weak_[at]));
+    }
   }
   std::uint8_t* slots() { return &cells[std::size_t{kSectorsOfStore} * kSector]; }
 
@@ -229,11 +237,12 @@ class FlashChip {
         if (!broken_keeps || !is_broken(at_ + i)) {
           cells[at_ + i] &= source_[i];
         }
+        weak_[at_ + i] &= source_[i];
       }
     } else {
       const auto begin = static_cast<std::ptrdiff_t>(at_);
       std::fill_n(cells.begin() + begin, kSector, std::uint8_t{0xFF});
-      std::fill_n(weak_.begin() + begin, kSector, false);
+      std::fill_n(weak_.begin() + begin, kSector, std::uint8_t{0});
     }
     for (std::size_t at = broken; !broken_keeps && at < cells.size(); ++at) {
       cells[at] &= is_broken(at) ? 0xFE : 0xFF;
@@ -255,7 +264,7 @@ class FlashChip {
       const auto complete = static_cast<std::uint8_t>(cell & source_[i]);
       const auto some = static_cast<std::uint8_t>(complete | (cell & random()));
       const bool in_prefix = i < tear.prefix;
-      weak_[at_ + i] = true;
+      weak_[at_ + i] |= static_cast<std::uint8_t>(cell & ~source_[i]);
       switch (tear.kind) {
         case Tear::Kind::Nothing:
           break;
@@ -277,7 +286,7 @@ class FlashChip {
   void tear_erase(std::size_t at, Tear tear, std::mt19937& random) {
     for (std::size_t i = 0; i < kSector; ++i) {
       std::uint8_t& cell = cells[at + i];
-      weak_[at + i] = true;
+      weak_[at + i] = 0xFF;
       switch (tear.kind) {
         case Tear::Kind::Nothing:
           break;
@@ -297,7 +306,8 @@ class FlashChip {
     }
   }
 
-  std::vector<bool> weak_ = std::vector<bool>(std::size_t{kSectorsOfStore} * kSector, false);
+  /// The bits of each byte that an interrupted operation was changing.
+  std::vector<std::uint8_t> weak_ = std::vector<std::uint8_t>(std::size_t{kSectorsOfStore} * kSector);
   Operation operation_ = Operation::None;
   std::size_t at_ = 0;
   std::uint64_t left_ = 0;  ///< us until the operation ends
