@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "hal/cortex_m/interrupts.hpp"
 #include "hal/registers/register.hpp"
 #include "hal/watchdog.hpp"
 
@@ -26,6 +27,9 @@ class HardwareWatchdog {
     kClear.write(Bits<Clear>(1));  // any value clears the flag and restarts the countdown
     kLock.write(kLocked);
   }
+
+  /// Resets the MCU. It does not tell this reset from that of a fault.
+  [[noreturn]] static void restart() { cortex_m::Interrupts::reset(); }
 
  private:
   struct Load;

@@ -157,6 +157,8 @@ const COMMANDS = {
   flash: (address, size) => hexOf(board.flash.content.subarray(integer(address), integer(address) + integer(size))),
   // set-flash ADDRESS HEX: changes bytes of the flash chip
   "set-flash": (address, hex) => board.flash.content.set(bytesOf(hex), integer(address)),
+  // stick ADDRESS: from now on, a program operation does not change this byte of the flash chip
+  stick: (address) => board.flash.stuck.add(integer(address)) && "",
   // keep-flash DESCRIPTOR ADDRESS: copies an open file to the flash chip, from ADDRESS on. The function `keep` states
   // which later changes are written to the file.
   "keep-flash": (descriptor, address) => keep(board.flash, integer(descriptor), integer(address)),

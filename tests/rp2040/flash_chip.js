@@ -25,6 +25,7 @@ class FlashChip {
     this.suspending = 0; // time at which the last suspend takes effect
     this.resumed = -Infinity; // time of the last resume
     this.erased = new Map(); // number of erases, by sector
+    this.stuck = new Set(); // addresses of bytes that a program operation does not change
     this.done = time.createAlarm(() => this.finish());
     this.changed = () => {}; // is called with the first address and the number of the bytes that have changed
   }
@@ -154,7 +155,7 @@ class FlashChip {
       this.erased.set(sector, (this.erased.get(sector) ?? 0) + 1);
     } else {
       bytes.forEach((byte, index) => {
-        this.content[address + index] &= byte;
+        this.content[address + index] &= this.stuck.has(address + index) ? 0xff : byte;
       });
     }
     this.changed(kind === "erase" ? sector * SECTOR : address, kind === "erase" ? SECTOR : bytes.length);
