@@ -9,7 +9,7 @@ import sys
 import tempfile
 import unittest
 
-from sample import elf
+from sample import elf, hex_file, record, uf2
 
 TOOLCHAIN = pathlib.Path(__file__).resolve().parents[2] / "toolchain"
 sys.path.insert(0, str(TOOLCHAIN))
@@ -22,29 +22,6 @@ INFO = struct.pack("<8s8s24s16s40s", b"EX9INFO1", b"D01.00", b"a-board", b"EX904
 EXPECTED = {"version": "D01.00", "board": "a-board", "model": "EX9042D-M", "commit": "0123abcd" * 5}
 STELLARIS = bytes(0xC0) + INFO + b"code"
 PICO = bytes(0x110A8) + INFO + b"code"
-
-
-def uf2(begin: int, content: bytes) -> bytes:
-    pages = [content[start : start + 256] for start in range(0, len(content), 256)]
-    file = b""
-    for number, page in enumerate(pages):
-        header = (0x0A324655, 0x9E5D5157, 0x2000, begin + 256 * number, len(page), number, len(pages), 0xE48BFF56)
-        file += struct.pack("<8I", *header) + page.ljust(476, b"\0") + struct.pack("<I", 0x0AB16F30)
-    return file
-
-
-def record(kind: int, address: int, data: bytes) -> bytes:
-    content = bytes([len(data)]) + address.to_bytes(2, "big") + bytes([kind]) + data
-    return b":" + (content + bytes([-sum(content) % 256])).hex().upper().encode() + b"\r\n"
-
-
-def hex_file(begin: int, content: bytes) -> bytes:
-    file = b""
-    for start in range(0, len(content), 16):
-        if start % 0x10000 == 0:
-            file += record(4, 0, ((begin + start) >> 16).to_bytes(2, "big"))
-        file += record(0, (begin + start) & 0xFFFF, content[start : start + 16])
-    return file + record(5, 0, bytes(4)) + record(1, 0, b"")
 
 
 class Reads(unittest.TestCase):

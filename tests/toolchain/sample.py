@@ -97,6 +97,33 @@ def elf(*segments: tuple[int, bytes]) -> bytes:
     return b"\x7fELF\x01\x01".ljust(16, b"\0") + struct.pack("<2H5I6H", *fields) + table + content
 
 
+def uf2(begin: int, content: bytes) -> bytes:
+    """Returns a UF2 file with pages from an address on."""
+    pages = [content[start : start + 256] for start in range(0, len(content), 256)]
+    file = b""
+    for number, page in enumerate(pages):
+        header = (0x0A324655, 0x9E5D5157, 0x2000, begin + 256 * number, len(page), number, len(pages), 0xE48BFF56)
+        file += struct.pack("<8I", *header) + page.ljust(476, b"\0") + struct.pack("<I", 0x0AB16F30)
+    return file
+
+
+def record(kind: int, address: int, data: bytes) -> bytes:
+    """Returns a line of a HEX file."""
+    content = bytes([len(data)]) + address.to_bytes(2, "big") + bytes([kind]) + data
+    return b":" + (content + bytes([-sum(content) % 256])).hex().upper().encode() + b"\r\n"
+
+
+def hex_file(begin: int, content: bytes) -> bytes:
+    """Returns a HEX file with data from an address on, a multiple of 16."""
+    file = b""
+    for start in range(0, len(content), 16):
+        high, low = divmod(begin + start, 0x10000)
+        if start == 0 or low == 0:
+            file += record(4, 0, high.to_bytes(2, "big"))
+        file += record(0, low, content[start : start + 16])
+    return file + record(5, 0, bytes(4)) + record(1, 0, b"")
+
+
 def holding(code: str) -> str:
     """Returns a source that disables interrupts before the assembly code in `code` and enables them after it."""
     return f"""
