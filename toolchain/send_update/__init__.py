@@ -1,0 +1,1 @@
+"""Sends an update file to modules over the line."""
