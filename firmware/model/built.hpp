@@ -37,6 +37,7 @@ constexpr bool some_model_meets(Needs needs) {
 
 struct ChosenVersion {
   [[nodiscard]] static constexpr std::string_view text() { return kFirmwareVersion; }
+  static void pretend(std::uint16_t /*digits*/) {}
 };
 
 #else
