@@ -1,6 +1,6 @@
 // Functions that the compiler calls to copy, fill and compare memory. A freestanding program must define them
-// itself (GCC manual, "Language Standards Supported by GCC"). The manual also lists memmove, but images do
-// not need it. These functions process one byte at a time, because an image copies little data.
+// itself (GCC manual, "Language Standards Supported by GCC"). These functions process one byte at a time,
+// because an image copies little data.
 #include <cstddef>
 
 // The compiler may recognise a loop, for example as a copy, and replace the loop with a call of memcpy. In an
@@ -18,6 +18,19 @@ NO_SELF_CALL void* memcpy(void* destination, const void* source, std::size_t siz
   const auto* from = static_cast<const unsigned char*>(source);
   for (; size != 0; --size) {
     *to++ = *from++;
+  }
+  return destination;
+}
+
+NO_SELF_CALL void* memmove(void* destination, const void* source, std::size_t size) {
+  auto* to = static_cast<unsigned char*>(destination);
+  const auto* from = static_cast<const unsigned char*>(source);
+  if (to <= from) {
+    return memcpy(destination, source, size);
+  }
+  while (size != 0) {
+    --size;
+    to[size] = from[size];
   }
   return destination;
 }

@@ -114,7 +114,7 @@ Refusal write_multiple_registers(Exchange& exchange) {
   }
   const unsigned start = frame.word(2);
   const unsigned quantity = frame.word(4);
-  const WordRow* whole = find_word(exchange.model(), kWriteWholeRow, start);
+  const WordRow* whole = kBuiltUpdate ? find_word(exchange.model(), kWriteWholeRow, start) : nullptr;
   if (whole != nullptr && whole->first == start && width_of(whole->width, exchange.model()) == quantity) {
     put_echo(exchange);
     return exchange.broadcast

@@ -1,6 +1,6 @@
-// Tests memcpy, memset and memcmp of an image. The compiler generates calls of these functions. memcpy and
-// memset must write every byte of the requested range and no other byte. memcmp must compare only the
-// requested bytes (C17, 7.24.2.1, 7.24.4.1, 7.24.6.1).
+// Tests memcpy, memmove, memset and memcmp of an image. The compiler generates calls of these functions.
+// memcpy, memmove and memset must write every byte of the requested range and no other byte. memcmp must
+// compare only the requested bytes (C17, 7.24.2.1, 7.24.2.2, 7.24.4.1, 7.24.6.1).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,10 +10,12 @@
 
 // The functions are renamed because the test program already has those of the C library.
 #define memcpy memcpy_of_the_image
+#define memmove memmove_of_the_image
 #define memset memset_of_the_image
 #define memcmp memcmp_of_the_image
 #include "boards/memory_functions.cpp"
 #undef memcpy
+#undef memmove
 #undef memset
 #undef memcmp
 
@@ -43,6 +45,20 @@ TEST(MemoryFunctions, MemcpyCopiesExactlyTheRequestedBytesAtAnyAlignment) {
         EXPECT_EQ(memcpy_of_the_image(&destination.at(to), &source.at(from), size), &destination.at(to));
         ASSERT_EQ(destination, expected) << size << " bytes from offset " << from << " to offset " << to;
       }
+    }
+  }
+}
+
+TEST(MemoryFunctions, MemmoveCopiesAlsoToAnOverlappingPlace) {
+  constexpr std::size_t kSize = 20;
+  for (std::size_t from = 0; from + kSize <= kSpace; ++from) {
+    for (std::size_t to = 0; to + kSize <= kSpace; ++to) {
+      const Memory before = some_bytes(1);
+      Memory bytes = before;
+      Memory expected = before;
+      std::copy_n(before.begin() + from, kSize, expected.begin() + to);
+      EXPECT_EQ(memmove_of_the_image(&bytes.at(to), &bytes.at(from), kSize), &bytes.at(to));
+      ASSERT_EQ(bytes, expected) << "from offset " << from << " to offset " << to;
     }
   }
 }
