@@ -1,5 +1,5 @@
 // The loader: copies the image of a slot to RAM and starts it. The second stage has copied it to RAM, where
-// nothing else is (loader.ld). No update writes it.
+// nothing else is (loader_memory.ld). No update writes it.
 //
 // If no image may start, the loader tries for ever, with the outputs off.
 #include <cstdint>

@@ -18,11 +18,13 @@ extern "C" [[noreturn]] __attribute__((section(".second_stage"), used, externall
 second_stage() {
   // Absolute symbols, with which the linker script checks its numbers.
   __asm(
-      ".global slots_in_flash, slot_size, image_in_slot \n"
-      ".set slots_in_flash, %c0 \n"
-      ".set slot_size, %c1 \n"
-      ".set image_in_slot, %c2" ::"i"(board::kSlotsInFlash),
-      "i"(update::kSlotSize), "i"(update::kImageAt));
+      ".global loader_in_flash, slots_in_flash, slot_size, image_in_slot, image_in_ram \n"
+      ".set loader_in_flash, %c0 \n"
+      ".set slots_in_flash, %c1 \n"
+      ".set slot_size, %c2 \n"
+      ".set image_in_slot, %c3 \n"
+      ".set image_in_ram, %c4" ::"i"(board::kLoaderInFlash),
+      "i"(board::kSlotsInFlash), "i"(update::kSlotSize), "i"(update::kImageAt), "i"(board::kImageInRam));
   hal::rp2040::Clocks::use_reference();
   hal::rp2040::Boot::use_crystal();
   hal::rp2040::Boot::copy(board::kLoaderInFlash, loader_begin,

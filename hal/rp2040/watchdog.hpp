@@ -20,7 +20,7 @@ class WatchdogRegisters {
     }
   }
 
-  /// Of the last reset. Before the watchdog starts.
+  /// Of the last reset. Before `start`.
   [[nodiscard]] static ResetReason reset_reason() {
     constexpr Bits<Reason> kTimeout(1U << 0U);
     constexpr Bits<Reason> kRequest(1U << 1U);
