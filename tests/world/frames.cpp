@@ -179,6 +179,10 @@ std::vector<Possible> Possible::reply(const Bytes& bytes, Time begins) const {
 void Possible::replied(Time end) {
   sending_ = false;
   free_ = replied_ = end;
+  module_.replied();
+  if (activates() && !activates_since_) {
+    activates_since_ = end;
+  }
 }
 
 }  // namespace ex9000::world

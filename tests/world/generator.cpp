@@ -4,6 +4,8 @@
 #include <iterator>
 #include <utility>
 
+#include "tests/world/limits.hpp"
+
 namespace ex9000::world {
 
 namespace {
@@ -28,6 +30,7 @@ enum What : unsigned {
   kEarly,
   kOthers,
   kWatchdog,
+  kUpdate,
   kCount,
 };
 
@@ -51,6 +54,7 @@ Generator::Generator(std::uint64_t seed, const Requests& requests)
     setup_.members.push_back(member());
   }
   places_.resize(count);
+  images_.resize(count);
   setup_.masters = 1 + random_.below(3);
   // The clock of the firmware wraps after 2^32 us.
   constexpr microseconds kWrap{4'294'967'296};
@@ -93,6 +97,7 @@ Member Generator::member() {
   stored.timeout = random_.once_in(2) ? 1 + random_.below(10) : 1 + random_.below(255);
   stored.timed_out = random_.once_in(8);
   stored.restarted_by_requests = random_.once_in(4) ? 1 : 0;
+  stored.updates_allowed = random_.once_in(8) ? 0 : 1;
   stored.delay = random_.once_in(4) ? random_.below(31) : 0;
   const bool filters = random_.once_in(2);
   for (unsigned channel = 0; channel < member.row->inputs; ++channel) {
@@ -247,6 +252,42 @@ void Generator::aim_at(Time expiry, std::size_t index, const Plant& plant) {
   plan_.emplace_back(Wait{time_of(request) + microseconds(random_.below(60'000))});
 }
 
+/// A step of an update, or many. A fault often happens meanwhile, or near the end of the time after which a
+/// new image is confirmed.
+void Generator::update(std::size_t index, const Plant& plant) {
+  const reference::Module& module = plant.likely(index).module();
+  const reference::Update& now = module.update();
+  Requests::Image& image = images_[index];
+  Send request{0, {module.rate(), module.format()}, {}};
+  const auto ask = [&](Bytes bytes) {
+    request.bytes = std::move(bytes);
+    plan_.emplace_back(request);
+    if (random_.once_in(12)) {
+      plan_.emplace_back(
+          Wait{time_of(request) + microseconds(random_.below(random_.once_in(2) ? 5000 : 90'000))});
+      disturb(index, plant);
+    }
+    plan_.emplace_back(Wait{time_of(request) + milliseconds(4 + random_.below(20))});
+  };
+  if (now.state == reference::UpdateState::Unconfirmed && random_.once_in(4)) {
+    const Time ends = module.came_up().latest + (now.periods + 1) * kProvesItself;
+    const Time moment = ends - milliseconds(1500) + microseconds(random_.below(3'500'000));
+    plan_.emplace_back(Wait{std::max(Time(0), moment - plant.now())});
+    if (random_.once_in(3)) {
+      disturb(index, plant);
+    }
+    return;
+  }
+  if (now.state == reference::UpdateState::Receiving && now.spare.begin == image.begin &&
+      random_.once_in(2)) {
+    for (std::size_t offset = now.spare.size(); offset < image.content.size(); offset += 128) {
+      ask(Requests::block(module, image, offset));
+    }
+    return;
+  }
+  ask(Requests::of_update(module, random_, image));
+}
+
 /// Sends a request. If it stores settings, a fault often happens while it is stored.
 void Generator::ask(std::size_t index, const Plant& plant) {
   const Possible& target = plant.likely(index);
@@ -301,6 +342,8 @@ void Generator::decide(const Plant& plant) {
   } else if (module.expiry() && random_.once_in(3) && plant.now() < module.expiry()->earliest &&
              module.expiry()->earliest < plant.now() + milliseconds(3000)) {
     aim_at(module.expiry()->earliest, index, plant);
+  } else if (plant.powered(index) && module.runs_modbus() && often(kUpdate, 10)) {
+    update(index, plant);
   } else {
     ask(index, plant);
   }

@@ -102,8 +102,12 @@ class Possible {
   void execute(Time since, Time now, std::vector<Possible>& after) const;
   [[nodiscard]] bool first_stores() const;
   [[nodiscard]] Time first_judged_by() const;
-  [[nodiscard]] Time first_by(bool stores) const;
+  [[nodiscard]] Time first_takes() const;
+  [[nodiscard]] Time first_by(Time takes) const;
   [[nodiscard]] std::vector<reference::Stored> may_be_stored() const;
+  [[nodiscard]] std::vector<reference::Update> after_reset() const;
+  [[nodiscard]] bool activates() const;
+  void update(Time since, Time now, std::vector<Possible>& after, bool& stays) const;
 
   reference::Module module_;
   enum class Start { Begins, InputsCount, Driven, Over };
@@ -139,7 +143,10 @@ class Possible {
   std::vector<reference::Stored> ghosts_;  ///< that an interrupted store may have left
   std::optional<Moment> timeout_unsaved_;  ///< the timeout that is not stored yet
   Time memory_fails_until_ = Time::min();
-  Time flashes_since_{0};  ///< if the LED flashes
+  Time flashes_since_{0};                        ///< if the LED flashes
+  std::vector<reference::Update> before_begin_;  ///< what a begin whose erase may not be over may have left
+  Time erases_until_ = Time::min();              ///< that erase
+  std::optional<Time> activates_since_;          ///< the reply has left, and a reset follows
 };
 
 }  // namespace ex9000::world
