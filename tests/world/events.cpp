@@ -312,12 +312,17 @@ void Possible::execute(Time since, Time now, std::vector<Possible>& after) const
       if (!answer.is_block) {
         return;
       }
-      reference::Module refusing = module_;  // the erase goes on
+      reference::Module refusing = module_;
       reference::Answer refused = refusing.on_frame_without_store(first.bytes, first.bad, when, overtaken_);
       refused.programs = false;
-      done(refusing, refused, kWaitsForErase + kReplies, false);
-      Due& due = *after.back().due_;
-      due.begins.earliest = std::max(due.begins.earliest, first.judged.earliest + kWaitsForErase);
+      for (const bool goes_on : {false, true}) {  // the block may come into the flash nevertheless
+        if (goes_on) {
+          refusing.set_update(module.update());
+        }
+        done(refusing, refused, kWaitsForErase + kReplies, false);
+        Due& due = *after.back().due_;
+        due.begins.earliest = std::max(due.begins.earliest, first.judged.earliest + kWaitsForErase);
+      }
       return;
     }
     if (answer.stores || when.earliest <= first_judged_by()) {

@@ -177,9 +177,11 @@ std::vector<Possible> Possible::reply(const Bytes& bytes, Time begins) const {
 }
 
 void Possible::replied(Time end) {
+  if (sending_) {  // a reset has not cut the reply off
+    module_.replied();
+  }
   sending_ = false;
   free_ = replied_ = end;
-  module_.replied();
   if (activates() && !activates_since_) {
     activates_since_ = end;
   }
