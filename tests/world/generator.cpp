@@ -260,7 +260,7 @@ void Generator::update(std::size_t index, const Plant& plant) {
   Requests::Image& image = images_[index];
   Send request{0, {module.rate(), module.format()}, {}};
   const auto ask = [&](Bytes bytes) {
-    request.bytes = std::move(bytes);
+    request.bytes = random_.once_in(16) ? Requests::by_number(module, std::move(bytes)) : std::move(bytes);
     plan_.emplace_back(request);
     if (random_.once_in(12)) {
       plan_.emplace_back(
@@ -342,7 +342,7 @@ void Generator::decide(const Plant& plant) {
   } else if (module.expiry() && random_.once_in(3) && plant.now() < module.expiry()->earliest &&
              module.expiry()->earliest < plant.now() + milliseconds(3000)) {
     aim_at(module.expiry()->earliest, index, plant);
-  } else if (plant.powered(index) && module.runs_modbus() && often(kUpdate, 10)) {
+  } else if (plant.powered(index) && module.runs_modbus() && often(kUpdate, 12)) {
     update(index, plant);
   } else {
     ask(index, plant);

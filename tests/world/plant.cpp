@@ -185,11 +185,6 @@ void Plant::look() {
     subject->look();
     widest_ = std::max(widest_, subject->judge.size());
     gave_up_ = gave_up_ || subject->judge.gave_up();
-    const reference::UpdateState state = subject->judge.likely().module().update().state;
-    if (state != subject->update) {
-      subject->update = state;
-      ++updates_[static_cast<std::size_t>(state)];
-    }
   }
 }
 
@@ -205,6 +200,11 @@ void Plant::run_until(Time until) {
   for (const auto& subject : subjects_) {
     if (objection_.empty()) {
       subject->judge.pass(now());
+    }
+    const reference::UpdateState state = subject->judge.likely().module().update().state;
+    if (state != subject->update) {
+      subject->update = state;
+      ++updates_[static_cast<std::size_t>(state)];
     }
   }
 }

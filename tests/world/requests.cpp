@@ -153,7 +153,7 @@ Bytes Requests::of_watchdog(const Module& module, Random& random) {
 }
 
 Requests::Image Requests::new_image(const Module& module, Random& random) {
-  const unsigned blocks = random.once_in(6) ? 30 + random.below(40) : 1 + random.below(3);
+  const unsigned blocks = random.once_in(10) ? 31 + random.below(10) : 1 + random.below(3);
   const unsigned length = kBlock * (blocks - 1) + 1 + random.below(kBlock);
   Image image;
   for (unsigned i = 0; i < length; ++i) {
@@ -182,6 +182,12 @@ Bytes Requests::block(const Module& module, const Image& image, std::size_t offs
   return write_all(module, 0x2000, data);
 }
 
+Bytes Requests::by_number(const Module& module, Bytes request) {
+  request.resize(request.size() - 2);
+  by_serial_number(request, module.serial_number());
+  return with_crc(request);
+}
+
 Bytes Requests::of_update(const Module& module, Random& random, Image& image) {
   using State = reference::UpdateState;
   const reference::Update& update = module.update();
@@ -207,6 +213,21 @@ Bytes Requests::of_update(const Module& module, Random& random, Image& image) {
   }
   if (random.once_in(10)) {
     return random.once_in(2) ? any_block() : action(random.between(1, 3));
+  }
+  if (random.once_in(20)) {
+    Bytes wrong = image.begin;
+    if (random.once_in(3)) {
+      wrong[13] = 1;  // a length of about 64 to 128 KiB
+      wrong[14] = random.one_of<std::uint8_t>({0xEF, 0xF0, 0xF0, 0xF1});
+      wrong[15] = random.one_of<std::uint8_t>({0x00, 0x01});
+    } else {
+      wrong[random.below(static_cast<unsigned>(wrong.size()))] ^=
+          static_cast<std::uint8_t>(1U << random.below(8));
+    }
+    Bytes request = write_all(module, 0x1000, wrong);
+    request[0] = random.once_in(8) ? std::uint8_t{0} : request[0];
+    request.resize(request.size() - 2);
+    return with_crc(request);
   }
   if (may_begin || random.once_in(20)) {
     return write_all(module, 0x1000, image.begin);

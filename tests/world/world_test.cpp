@@ -159,9 +159,10 @@ TEST(World, DoesNothingThatTheSpecificationForbids) {
     return static_cast<unsigned long long>(figures.updates[static_cast<std::size_t>(state)]);
   };
   using State = reference::UpdateState;
-  std::printf("updates: %llu times receiving, %llu complete, %llu not confirmed, %llu taken back, %llu over\n",
-              begun(State::Receiving), begun(State::Complete), begun(State::Unconfirmed),
-              begun(State::TakenBack), begun(State::None));
+  std::printf(
+      "updates: %llu times receiving, %llu complete, %llu not confirmed, %llu taken back, %llu over\n",
+      begun(State::Receiving), begun(State::Complete), begun(State::Unconfirmed), begun(State::TakenBack),
+      begun(State::None));
 #ifdef EX9000_CHECKED
   for (const Expectation* each = Expectation::first(); each != nullptr && figures.worlds >= 300;
        each = each->next()) {
