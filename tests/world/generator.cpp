@@ -286,6 +286,12 @@ void Generator::update(std::size_t index, const Plant& plant) {
     return;
   }
   ask(Requests::of_update(module, random_, image));
+  if (now.state == reference::UpdateState::Complete && random_.once_in(3)) {
+    // A request arrives while the reply leaves, or before the reset.
+    plan_.back() = Wait{time_of(request) + microseconds(random_.below(50'000))};
+    plan_.emplace_back(send(index, plant.likely(index)));
+    plan_.emplace_back(Wait{milliseconds(random_.below(300))});
+  }
 }
 
 /// Sends a request. If it stores settings, a fault often happens while it is stored.
