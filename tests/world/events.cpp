@@ -148,11 +148,20 @@ void Possible::update(Time since, Time now, std::vector<Possible>& after, bool& 
       after.back().module_.activate_by_itself();
     }
   }
+  const bool may_fail = slots_fail_until_ >= since;
+  if (may_fail && (update.state == reference::UpdateState::Receiving || update.activates)) {
+    after.push_back(*this);
+    after.back().module_.fail_update();
+  }
   if (update.state == reference::UpdateState::Unconfirmed && start_ == Start::Over) {
     const Moment ends = module_.came_up() + (update.periods + 1) * kProvesItself;
     if (ends.earliest <= now) {
       after.push_back(*this);
       after.back().module_.end_update_period();
+      if (may_fail) {
+        after.push_back(*this);
+        after.back().module_.prolong_update_period();
+      }
       if (sending_ && !update.answered) {
         after.push_back(*this);
         after.back().module_.replied();
@@ -309,6 +318,15 @@ void Possible::execute(Time since, Time now, std::vector<Possible>& after) const
     const reference::Answer answer = module.on_frame(first.bytes, first.bad, when, overtaken_);
     if (answer.programs) {
       done(module, answer, answer.is_block ? Time(kWaitsForErase + kReplies) : Time(kStores), false);
+      if (slots_fail_until_ >= first.judged.earliest) {
+        reference::Module failing = module_;
+        reference::Answer failed = failing.on_frame_without_store(first.bytes, first.bad, when, overtaken_);
+        failed.programs = false;
+        if (module_.update().state != reference::UpdateState::Unconfirmed) {
+          failing.fail_update();
+        }
+        done(failing, failed, kWaitsForErase + kReplies, false);
+      }
       if (!answer.is_block) {
         return;
       }

@@ -23,6 +23,8 @@ enum What : unsigned {
   kMemory,
   kSpoiled,
   kNoise,
+  kSlots,
+  kBadImages,
   kInputs,
   // not a step of its own
   kDamaged,
@@ -39,8 +41,9 @@ struct Fault {
   What what;
   unsigned times;
 };
-constexpr Fault kFaults[] = {{kPower, 60}, {kReset, 60},   {kHang, 200},   {kDelay, 60}, {kTick, 400},
-                             {kInit, 40},  {kMemory, 100}, {kSpoiled, 40}, {kNoise, 60}, {kInputs, 4}};
+constexpr Fault kFaults[] = {{kPower, 60}, {kReset, 60},  {kHang, 200},     {kDelay, 60},
+                             {kTick, 400}, {kInit, 40},   {kMemory, 100},   {kSpoiled, 40},
+                             {kNoise, 60}, {kSlots, 150}, {kBadImages, 60}, {kInputs, 4}};
 
 }  // namespace
 
@@ -176,6 +179,10 @@ Step Generator::fault(unsigned what, std::size_t index, const Plant& plant) {
       return MemoryFails{index, random_.once_in(3)};
     case kSpoiled:
       return SpoilReply{index, random_.once_in(2) ? Time(0) : Time(milliseconds(random_.below(100)))};
+    case kSlots:
+      return SlotsFail{index, random_.once_in(3)};
+    case kBadImages:
+      return BadImages{index, random_.once_in(3)};
     case kNoise: {
       sim::NoiseRates rates;
       if (random_.once_in(2)) {
@@ -216,6 +223,12 @@ void Generator::add(unsigned what, std::size_t index, const Plant& plant) {
 void Generator::disturb(std::size_t index, const Plant& plant) {
   const Fault& one = kFaults[random_.below(static_cast<unsigned>(std::size(kFaults)))];
   if ((left_out_ >> one.what & 1U) != 0) {
+    return;
+  }
+  if (one.what == kSlots) {
+    plan_.emplace_back(SlotsFail{index, true});
+    plan_.emplace_back(Wait{milliseconds(random_.below(500))});
+    plan_.emplace_back(SlotsFail{index, false});
     return;
   }
   if (one.what != kMemory) {

@@ -269,6 +269,14 @@ void Plant::play(const Step& step) {
       judged(fails.module).memory_fails(fails.on, at);
       of(fails.module).memory().fail(fails.on);
     }
+    void operator()(const SlotsFail& fails) const {
+      judged(fails.module).slots_fail(fails.on, at);
+      of(fails.module).slots().fail(fails.on);
+    }
+    void operator()(const BadImages& bad) const {
+      judged(bad.module).start_bad_images(bad.on, at);
+      of(bad.module).start_bad_images(bad.on);
+    }
     void operator()(const SpoilReply& spoil) const {
       plant.subjects_[spoil.module]->spoils = true;
       plant.subjects_[spoil.module]->late_by = spoil.late_by;

@@ -58,10 +58,26 @@ std::vector<reference::Stored> Possible::may_be_stored() const {
 /// What the slots may hold at the next start, if this state ends now.
 std::vector<reference::Update> Possible::after_reset() const {
   std::vector<reference::Update> all;
-  const auto may_be = [&all](const reference::Update& update) {
+  const auto add = [&all](const reference::Update& update) {
     const reference::Update then = update.after_reset();
     if (std::find(all.begin(), all.end(), then) == all.end()) {
       all.push_back(then);
+    }
+  };
+  const auto may_be = [&add](const reference::Update& update) {
+    if (update.state != reference::UpdateState::Failed) {
+      add(update);
+      return;
+    }
+    add(update.erased());  // or what the failed flash still has
+    if (!update.spare.begin.empty()) {
+      reference::Update kept = update;
+      kept.state = reference::UpdateState::Receiving;
+      add(kept);
+      if (update.spare.size() >= update.spare.length()) {
+        kept.state = reference::UpdateState::Complete;
+        add(kept);
+      }
     }
   };
   const reference::Update& now = module_.update();
@@ -147,6 +163,9 @@ void Possible::power_on(Time now) {
   module_.power(true, {now, now + reference::kComingUp});
   start_ = Start::Begins;
   reset_at_ = now;
+  if (images_are_bad_ && module_.update().state == reference::UpdateState::Unconfirmed) {
+    hung_ = now;
+  }
 }
 
 std::vector<Possible> Possible::reset(unsigned reason, Time now) const {
@@ -208,6 +227,13 @@ void Possible::init(bool asserted, Time now) {
 void Possible::memory_fails(bool fails, Time now) {
   if (fails || memory_fails_until_ == kNever) {
     memory_fails_until_ = fails ? kNever : now + kStores;
+  }
+}
+
+/// What the flash has not taken by then may be noticed later.
+void Possible::slots_fail(bool fails, Time now) {
+  if (fails || slots_fail_until_ == kNever) {
+    slots_fail_until_ = fails ? kNever : now + kErases;
   }
 }
 

@@ -50,6 +50,8 @@ class Possible {
   void tick_stops(Time now);
   void init(bool asserted, Time now);
   void memory_fails(bool fails, Time now);
+  void slots_fail(bool fails, Time now);
+  void start_bad_images(bool bad) { images_are_bad_ = bad; }
   void input(unsigned channel, bool level, Time now) { module_.set_input(channel, level, now); }
   void pulse(unsigned channel, std::uint32_t count, Time now) { module_.pulse_input(channel, count, now); }
   /// The module begins to listen, the last step of its start.
@@ -146,7 +148,9 @@ class Possible {
   Time flashes_since_{0};                        ///< if the LED flashes
   std::vector<reference::Update> before_begin_;  ///< what a begin whose erase may not be over may have left
   Time erases_until_ = Time::min();              ///< that erase
-  std::optional<Time> activates_since_;          ///< the reply has left, and a reset follows
+  Time slots_fail_until_ = Time::min();
+  bool images_are_bad_ = false;
+  std::optional<Time> activates_since_;  ///< the reply has left, and a reset follows
 };
 
 }  // namespace ex9000::world

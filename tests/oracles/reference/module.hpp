@@ -181,6 +181,13 @@ class Module {
   void replied() { update_.answered = update_.state == UpdateState::Unconfirmed; }
   /// 60 s without a reset are over, or further 60 s.
   void end_update_period();
+  /// The same, but the flash does not take the confirmation.
+  void prolong_update_period() { update_.periods += 1; }
+  /// The flash has failed.
+  void fail_update() {
+    update_.state = UpdateState::Failed;
+    update_.activates = false;
+  }
   /// The module activates the complete image by itself.
   void activate_by_itself() {
     update_.state = UpdateState::Pending;
