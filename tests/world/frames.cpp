@@ -182,7 +182,9 @@ void Possible::replied(Time end) {
   }
   sending_ = false;
   free_ = replied_ = end;
-  if (activates() && !activates_since_) {
+  if (!activates()) {
+    activates_since_.reset();
+  } else if (!activates_since_ || (*activates_since_ == kSometime && !module_.update().activates)) {
     activates_since_ = end;
   }
 }

@@ -9,6 +9,8 @@ using reference::kLate;
 using reference::Time;
 
 inline constexpr Time kNever = Time::max();
+/// Later than anything, and has no limit.
+inline constexpr Time kSometime = Time::max() / 2;
 /// The limits of silences are exact to this (D11).
 inline constexpr std::chrono::microseconds kExact{15};
 inline constexpr std::chrono::milliseconds kReplies{20};

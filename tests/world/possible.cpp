@@ -59,9 +59,17 @@ std::vector<reference::Stored> Possible::may_be_stored() const {
 std::vector<reference::Update> Possible::after_reset() const {
   std::vector<reference::Update> all;
   const auto add = [&all](const reference::Update& update) {
-    const reference::Update then = update.after_reset();
-    if (std::find(all.begin(), all.end(), then) == all.end()) {
-      all.push_back(then);
+    reference::Update then = update.after_reset();
+    const auto take = [&] {
+      if (std::find(all.begin(), all.end(), then) == all.end()) {
+        all.push_back(then);
+      }
+    };
+    take();
+    if (then.state == reference::UpdateState::Complete && then.spare.activates_when_complete()) {
+      // The specification does not say whether an activation that a reset has prevented comes afterwards.
+      then.activates = true;
+      take();
     }
   };
   const auto may_be = [&add](const reference::Update& update) {
@@ -150,9 +158,9 @@ std::vector<Possible> Possible::power_off() const {
     next.timeout_unsaved_.reset();
     next.before_begin_.clear();
     next.erases_until_ = Time::min();
-    next.activates_since_.reset();
     for (const reference::Update& update : updates) {
       next.module_.set_update(update);
+      next.activates_since_ = update.activates ? std::optional(kSometime) : std::nullopt;
       after.push_back(next);
     }
   }

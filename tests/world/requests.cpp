@@ -197,12 +197,14 @@ Bytes Requests::of_update(const Module& module, Random& random, Image& image) {
   if (image.begin.empty() || (may_begin && random.once_in(2))) {
     image = new_image(module, random);
   }
+  // Mostly one that is there already, or the one after the next.
   const auto any_block = [&] {
-    const std::size_t offset =
-        random.below(static_cast<unsigned>(image.content.size() / kBlock + 2)) * kBlock;
+    const std::size_t there = update.state == State::Receiving ? update.spare.size() : image.content.size();
+    const std::size_t offset = random.below(static_cast<unsigned>(there / kBlock + 2)) * kBlock;
     if (random.once_in(3)) {
       Image other = image;
-      other.content[random.below(static_cast<unsigned>(other.content.size()))] ^= 1U;
+      const std::size_t changed = offset + random.below(kBlock);
+      other.content[std::min(changed, other.content.size() - 1)] ^= 1U;
       return block(module, other, offset);
     }
     return block(module, image, offset);
@@ -211,8 +213,8 @@ Bytes Requests::of_update(const Module& module, Random& random, Image& image) {
   if (random.once_in(8)) {
     return write_of(module, 0x03, 0x1010, 3);
   }
-  if (random.once_in(10)) {
-    return random.once_in(2) ? any_block() : action(random.between(1, 3));
+  if (random.once_in(7)) {
+    return random.once_in(3) ? action(random.between(1, 3)) : any_block();
   }
   if (random.once_in(20)) {
     Bytes wrong = image.begin;

@@ -163,6 +163,11 @@ TEST(World, DoesNothingThatTheSpecificationForbids) {
       "updates: %llu times receiving, %llu complete, %llu not confirmed, %llu taken back, %llu over\n",
       begun(State::Receiving), begun(State::Complete), begun(State::Unconfirmed), begun(State::TakenBack),
       begun(State::None));
+  if (figures.worlds >= 300) {
+    for (const State state : {State::Complete, State::Unconfirmed, State::TakenBack, State::Failed}) {
+      EXPECT_NE(begun(state), 0U);
+    }
+  }
 #ifdef EX9000_CHECKED
   for (const Expectation* each = Expectation::first(); each != nullptr && figures.worlds >= 300;
        each = each->next()) {
