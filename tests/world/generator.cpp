@@ -282,13 +282,18 @@ void Generator::update(std::size_t index, const Plant& plant) {
     }
     plan_.emplace_back(Wait{time_of(request) + milliseconds(4 + random_.below(20))});
   };
-  if (now.state == reference::UpdateState::Unconfirmed && random_.once_in(4)) {
-    const Time ends = module.came_up().latest + (now.periods + 1) * kProvesItself;
-    const Time moment = ends - milliseconds(1500) + microseconds(random_.below(3'500'000));
-    plan_.emplace_back(Wait{std::max(Time(0), moment - plant.now())});
+  const auto wait_for_proof = [&](Time from) {
+    const Time moment = random_.once_in(2) ? kProvesItself + microseconds(random_.below(3'500'000))
+                                           : Time(milliseconds(random_.below(62'000)));
+    plan_.emplace_back(Wait{std::max(Time(0), from + moment - milliseconds(1500) - plant.now())});
     if (random_.once_in(3)) {
       disturb(index, plant);
+    } else {
+      ask(Requests::state_of_update(module));
     }
+  };
+  if (now.state == reference::UpdateState::Unconfirmed && random_.once_in(3)) {
+    wait_for_proof(module.came_up().latest + now.periods * kProvesItself);
     return;
   }
   if (now.state == reference::UpdateState::Receiving && now.spare.begin == image.begin &&
@@ -299,7 +304,15 @@ void Generator::update(std::size_t index, const Plant& plant) {
     return;
   }
   ask(Requests::of_update(module, random_, image));
-  if (now.state == reference::UpdateState::Complete && random_.once_in(3)) {
+  if (now.state == reference::UpdateState::Unconfirmed && random_.once_in(6)) {
+    add(random_.once_in(2) ? kPower : kReset, index, plant);
+  }
+  if (now.state != reference::UpdateState::Complete) {
+    return;
+  }
+  if (random_.once_in(3)) {
+    wait_for_proof(plant.now());
+  } else if (random_.once_in(2)) {
     // A request arrives while the reply leaves, or before the reset.
     plan_.back() = Wait{time_of(request) + microseconds(random_.below(50'000))};
     plan_.emplace_back(send(index, plant.likely(index)));

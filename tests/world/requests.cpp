@@ -182,6 +182,8 @@ Bytes Requests::block(const Module& module, const Image& image, std::size_t offs
   return write_all(module, 0x2000, data);
 }
 
+Bytes Requests::state_of_update(const Module& module) { return write_of(module, 0x03, 0x1010, 3); }
+
 Bytes Requests::by_number(const Module& module, Bytes request) {
   request.resize(request.size() - 2);
   by_serial_number(request, module.serial_number());
@@ -211,7 +213,7 @@ Bytes Requests::of_update(const Module& module, Random& random, Image& image) {
   };
   const auto action = [&](unsigned value) { return write_of(module, 0x06, 0x1013, value); };
   if (random.once_in(8)) {
-    return write_of(module, 0x03, 0x1010, 3);
+    return state_of_update(module);
   }
   if (random.once_in(7)) {
     return random.once_in(3) ? action(random.between(1, 3)) : any_block();
