@@ -202,9 +202,9 @@ inline std::uint16_t read_update_offset(const Exchange& exchange, unsigned index
 
 inline Refusal write_update_action(const State& state, unsigned /*index*/, std::uint16_t value,
                                    Outcome& outcome) {
-  const auto ask = static_cast<update::Ask>(value);
-  return value >= 1 && ask <= update::Ask::Abandon ? ask_update(state, {ask, {}}, outcome)
-                                                   : Refusal::WrongValue;
+  return value >= 1 && value <= static_cast<std::uint16_t>(update::Ask::Abandon)
+             ? ask_update(state, {static_cast<update::Ask>(value), {}}, outcome)
+             : Refusal::WrongValue;
 }
 
 /// A tool for other modules sets the line of their boot loader; this module's line stays as it is.

@@ -259,37 +259,16 @@ void Update::done() {
 }
 
 void Update::finish(Step step, bool good) {
-  switch (step) {
-    case Step::Compare:
-      block_waits_ = false;
-      if (!good) {
-        answer_with(Refusal::WrongValue);
-      }
-      return;
-    case Step::Verify:
-      verify();
-      return;
-    case Step::MarkConfirmed:
-      if (good) {
-        secured_ = true;
-        state_ = State::None;
-        slot_ = 1U - running_;
-        next_ = 0;
-      } else {
-        answer_with(Refusal::UpdateRefused);  // `proved` tries again; the other image must stay
-      }
-      return;
-    default:
-      break;
+  if (step == Step::Verify) {
+    verify();
+  } else if (good) {
+    succeed(step);
+  } else {
+    fail(step);
   }
-  if (!good) {
-    if (state_ != State::FlashFailed) {
-      discard(State::FlashFailed);
-    }
-    withdraw_ = withdraw_ && step != Step::Secure;
-    answer_with(Refusal::UpdateRefused);
-    return;
-  }
+}
+
+void Update::succeed(Step step) {
   switch (step) {
     case Step::Secure:
       secured_ = true;
@@ -299,6 +278,9 @@ void Update::finish(Step step, bool good) {
       break;
     case Step::WriteHeader:
       header_written_ = true;
+      break;
+    case Step::Compare:
+      block_waits_ = false;
       break;
     case Step::EraseSector:
       ++erased_;
@@ -313,9 +295,32 @@ void Update::finish(Step step, bool good) {
     case Step::MarkActivated:
       state_ = State::Activating;
       break;
+    case Step::MarkConfirmed:
+      secured_ = true;
+      state_ = State::None;
+      slot_ = 1U - running_;
+      next_ = 0;
+      break;
     default:
       break;
   }
+}
+
+/// What has been read back is wrong.
+void Update::fail(Step step) {
+  if (step == Step::Compare) {
+    block_waits_ = false;
+    answer_with(Refusal::WrongValue);
+    return;
+  }
+  answer_with(Refusal::UpdateRefused);
+  if (step == Step::MarkConfirmed) {
+    return;  // `proved` tries again; the other image must stay
+  }
+  if (state_ != State::FlashFailed) {
+    discard(State::FlashFailed);
+  }
+  withdraw_ = withdraw_ && step != Step::Secure;
 }
 
 /// The piece that has been read.

@@ -94,6 +94,8 @@ class Update {
   void begin_mark(std::uint32_t mark);
   void begin_job(SlotJob::Kind kind, std::uint32_t offset, Bytes source);
   void finish(Step step, bool good);
+  void succeed(Step step);
+  void fail(Step step);
   void verify();
 
   State state_ = State::None;

@@ -1,5 +1,4 @@
-// Tests which image the second stage and the loader start. The image of slot 1 is that of slot 0 with another
-// version in its texts.
+// Tests which image the second stage and the loader start.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,105 +8,13 @@
 #include <iterator>
 #include <string>
 
-#include "boards/rp2040/memory.hpp"
 #include "firmware/update/signature.hpp"
-#include "firmware/update/slot.hpp"
-#include "tests/boards/pico_image.hpp"
+#include "tests/boards/pico_slots.hpp"
 
 namespace ex9000::pico {
 namespace {
 
-using play::Bytes;
-using update::kImageAt;
-using update::kMarksAt;
-
-constexpr const char* kModel = "EX9043D-M";
-constexpr const char* kOldVersion = "D01.00";
-constexpr const char* kNewVersion = "D02.34";
-
-/// What a slot contains.
-struct Content {
-  Bytes head;
-  Bytes image;
-
-  [[nodiscard]] update::Slot slot() const { return update::Slot({head.data(), head.size()}); }
-  std::uint8_t& mark(unsigned which) { return head[kMarksAt + which]; }
-  /// Makes the header right again.
-  void seal(std::uint32_t sequence) {
-    update::Info info = slot().info;
-    const std::uint32_t crc = update::crc32({image.data(), image.size()});
-    for (unsigned i = 0; i < 4; ++i) {
-      info.bytes[12 + i] = static_cast<std::uint8_t>(image.size() >> (24 - 8 * i));
-      info.bytes[20 + i] = static_cast<std::uint8_t>(crc >> (24 - 8 * i));
-    }
-    update::SlotHead sealed{};
-    std::copy(head.begin(), head.end(), sealed.begin());
-    update::write_header(info, sequence, sealed);
-    head.assign(sealed.begin(), sealed.end());
-  }
-};
-
-class PicoBoot : public PicoImage {
- protected:
-  /// The supply is off. Slot 0 has the image of the build, and slot 1 none.
-  PicoBoot() {
-    begin(kModel);
-    bench_.power(false);
-    old_ = {flash(0, 0, update::kSlotHeadSize), {}};
-    old_.image = flash(0, kImageAt, old_.slot().info.length());
-    new_ = old_;
-    const std::string version = kOldVersion;
-    auto& image = new_.image;
-    for (auto found = image.begin();
-         (found = std::search(found, image.end(), version.begin(), version.end())) != image.end();) {
-      found = std::copy_n(kNewVersion, version.size(), found);
-    }
-    new_.seal(2);
-  }
-
-  static std::string address_of(unsigned slot, std::uint32_t offset) {
-    return std::to_string(board::kSlotsInFlash + slot * update::kSlotSize + offset);
-  }
-  Bytes flash(unsigned slot, std::uint32_t offset, std::size_t size) {
-    const std::string hex = bench_.execute("flash " + address_of(slot, offset) + " " + std::to_string(size));
-    Bytes bytes;
-    for (std::size_t i = 0; i < hex.size(); i += 2) {
-      bytes.push_back(static_cast<std::uint8_t>(std::stoul(hex.substr(i, 2), nullptr, 16)));
-    }
-    return bytes;
-  }
-  void put(unsigned slot, const Content& content) {
-    set_flash(address_of(slot, 0), content.head);
-    set_flash(address_of(slot, kImageAt), content.image);
-  }
-  void set_flash(const std::string& address, const Bytes& bytes) {
-    std::string command = "set-flash " + address + " ";
-    constexpr const char* kDigits = "0123456789abcdef";
-    for (const std::uint8_t byte : bytes) {
-      command += kDigits[byte >> 4U];
-      command += kDigits[byte & 0xFU];
-    }
-    bench_.execute(command);
-  }
-  std::uint8_t mark(unsigned slot, unsigned which) { return flash(slot, kMarksAt + which, 1)[0]; }
-
-  /// Starts the module. Returns the version of the image that runs after `kComingUp`, or "" if none does.
-  std::string version_after(const char* start) {
-    bench_.execute(start);
-    bench_.come_up();
-    bench_.heard();
-    const std::string reply = ask("$01F");
-    return reply.empty() ? "" : reply.substr(3, reply.size() - 4);
-  }
-  std::string version_after_power_on() {
-    bench_.power(false);
-    bench_.power(true);
-    return version_after("heard");
-  }
-
-  Content old_;
-  Content new_;
-};
+using PicoBoot = PicoSlots;
 
 TEST_F(PicoBoot, TheHeadOfTheBuildNamesModelBoardAndVersion) {
   const update::Slot slot = old_.slot();
@@ -160,7 +67,12 @@ TEST_F(PicoBoot, OnlyACompleteImageStarts) {
       {"CRC of the header", head(47)},
       {"no image", with_length(0)},
       {"too long", with_length(update::kLargestImage + 1)},
-      {"not activated", [](Content& content) { content.mark(update::kActivated) = 0xFF; }},
+      {"not activated",
+       [](Content& content) {
+         for (const auto mark : {update::kActivated, update::kTried, update::kConfirmed}) {
+           content.mark(mark) = 0xFF;
+         }
+       }},
       {"tried, not confirmed", [](Content& content) { content.mark(update::kConfirmed) = 0xFF; }},
   };
   for (const auto& [what, damage] : kDamages) {

@@ -135,7 +135,8 @@ inline bool is_fault(const Words& words, Whose whose, std::chrono::nanoseconds n
   }
   const std::string& kind = words[0];
   const std::string value = words.size() > 1 ? words[1] : "";
-  const bool plain = kind == "lost-reply" || kind == "gone" || kind == "power-cut" || kind == "hang";
+  const bool plain =
+      kind == "lost-reply" || kind == "gone" || kind == "power-cut" || kind == "hang" || kind == "bad-image";
   const bool noise = kind == "bit-errors" || kind == "lost-bytes" || kind == "inserted-bytes";
   const bool byte = kind == "exception" || kind == "wrong-unit";
   const bool line = noise || kind == "echo" || kind == "foreign-traffic";
@@ -151,8 +152,9 @@ inline bool is_fault(const Words& words, Whose whose, std::chrono::nanoseconds n
   }
   const When schedule = when(words, plain ? 1 : 2, now);
   const bool moment = kind == "hang" || kind == "foreign-traffic";
-  const bool requires_end = schedule.every ? !moment && kind != "power-cut"
-                                           : schedule.of_replies && (kind == "gone" || kind == "wrong-rate");
+  const bool requires_end =
+      schedule.every ? !moment && kind != "power-cut"
+                     : schedule.of_replies && (kind == "gone" || kind == "wrong-rate" || kind == "bad-image");
   const auto lasts = schedule.lasts        ? schedule.lasts
                      : kind == "power-cut" ? std::optional<nanoseconds>(std::chrono::seconds(1))
                                            : std::nullopt;

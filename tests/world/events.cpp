@@ -127,14 +127,54 @@ bool Possible::futures(Time since, Time now, std::vector<Possible>& after) const
               [=](Possible& next) { next.module_.settle_input(channel); });
     }
   }
+  update(since, now, after, stays);
   if (due_) {
     return stays && now <= std::max(due_->begins.latest, hangs_until_ + kReplies);
   }
   if (!waiting_.empty() && !sending_) {
     execute(since, now, after);
-    stays = stays && now <= first_by(stores_again_ || first_stores());
+    stays = stays && now <= first_by(first_takes());
   }
   return stays;
+}
+
+/// What an update does by itself.
+void Possible::update(Time since, Time now, std::vector<Possible>& after, bool& stays) const {
+  const reference::Update& update = module_.update();
+  if (activates_since_ && activates()) {
+    stays = stays && (tick_stopped_ || now <= std::max(*activates_since_, hangs_until_) + kActivates);
+    if (update.activates) {
+      after.push_back(*this);
+      after.back().module_.activate_by_itself();
+    }
+  }
+  const bool may_fail = slots_fail_until_ >= since;
+  if (may_fail && (update.state == reference::UpdateState::Receiving || update.activates)) {
+    after.push_back(*this);
+    after.back().module_.fail_update();
+  }
+  if (update.state == reference::UpdateState::Unconfirmed && start_ == Start::Over) {
+    const Moment ends = module_.came_up() + (update.periods + 1) * kProvesItself;
+    if (ends.earliest <= now) {
+      after.push_back(*this);
+      after.back().module_.end_update_period();
+      if (may_fail) {
+        after.push_back(*this);
+        after.back().module_.prolong_update_period();
+      }
+      if (sending_ && !update.answered) {
+        after.push_back(*this);
+        after.back().module_.replied();
+        after.back().module_.end_update_period();
+      }
+      stays = stays && (tick_stopped_ || now <= std::max(ends.latest, hangs_until_) + kConfirms);
+    }
+  }
+  if (!before_begin_.empty() && std::max(since, erases_until_) <= now) {
+    after.push_back(*this);
+    after.back().before_begin_.clear();
+    stays = false;
+  }
 }
 
 /// The inputs begin to count, and later the outputs are driven.
@@ -201,6 +241,18 @@ bool Possible::first_stores() const {
   return trial.on_frame(waiting_[0].bytes, waiting_[0].bad, {}, overtaken_).stores;
 }
 
+/// How long the first frame may take.
+Time Possible::first_takes() const {
+  reference::Module trial = module_;
+  if (waiting_.empty() || due_ || sending_) {
+    return kReplies;
+  }
+  const reference::Answer answer = trial.on_frame(waiting_[0].bytes, waiting_[0].bad, {}, overtaken_);
+  return answer.is_block                                     ? Time(kWaitsForErase + kReplies)
+         : answer.programs || answer.stores || stores_again_ ? Time(kStores)
+                                                             : Time(kReplies);
+}
+
 bool Possible::would_store(const Bytes& request) const {
   const std::vector<bool> good(request.size());
   reference::Module trial = module_;
@@ -214,10 +266,10 @@ Time Possible::first_judged_by() const {
 }
 
 /// When the reply to the first frame must have begun.
-Time Possible::first_by(bool stores) const {
+Time Possible::first_by(Time takes) const {
   const Time from = std::max({waiting_[0].judged.latest, free_, replied_ + gap(), hangs_until_,
                               waiting_[0].last + module_.reply_delay()});
-  return from + (stores ? Time(kStores) : Time(kReplies));
+  return from + takes;
 }
 
 void Possible::execute(Time since, Time now, std::vector<Possible>& after) const {
@@ -229,7 +281,7 @@ void Possible::execute(Time since, Time now, std::vector<Possible>& after) const
   if (module_.expiry() && module_.expiry()->latest < when.earliest) {
     return;  // the host watchdog expires before
   }
-  const auto done = [&](const reference::Module& module, const reference::Answer& answer, bool stores,
+  const auto done = [&](const reference::Module& module, const reference::Answer& answer, Time takes,
                         bool saves) {
     const Bytes& reply = answer.reply;
     Possible next = *this;
@@ -241,12 +293,18 @@ void Possible::execute(Time since, Time now, std::vector<Possible>& after) const
     if (saves) {
       next.save();
     }
+    if (module.update().starts != module_.update().starts) {
+      next.before_begin_.push_back(module_.update());
+      next.erases_until_ = now + kErases;
+    } else if (answer.programs) {
+      next.before_begin_.clear();
+    }
     if (!reply.empty()) {
       const Time earliest = module_.runs_modbus() ? first.judged.earliest : first.last + gap() - kExact;
       next.due_ =
           Due{reply,
               answer.refusal,
-              {std::max(earliest, first.last + module_.reply_delay()) - microseconds(2), first_by(stores)},
+              {std::max(earliest, first.last + module_.reply_delay()) - microseconds(2), first_by(takes)},
               module.address() != module_.address()};
     }
     after.push_back(next);
@@ -258,21 +316,48 @@ void Possible::execute(Time since, Time now, std::vector<Possible>& after) const
   };
   for_each_choice(module_, [&](reference::Module& module) {
     const reference::Answer answer = module.on_frame(first.bytes, first.bad, when, overtaken_);
+    if (answer.programs) {
+      done(module, answer, answer.is_block ? Time(kWaitsForErase + kReplies) : Time(kStores), false);
+      if (slots_fail_until_ >= first.judged.earliest) {
+        reference::Module failing = module_;
+        reference::Answer failed = failing.on_frame_without_store(first.bytes, first.bad, when, overtaken_);
+        failed.programs = false;
+        if (module_.update().state != reference::UpdateState::Unconfirmed) {
+          failing.fail_update();
+        }
+        done(failing, failed, kWaitsForErase + kReplies, false);
+      }
+      if (!answer.is_block) {
+        return;
+      }
+      reference::Module refusing = module_;
+      reference::Answer refused = refusing.on_frame_without_store(first.bytes, first.bad, when, overtaken_);
+      refused.programs = false;
+      for (const bool goes_on : {false, true}) {  // the block may come into the flash nevertheless
+        if (goes_on) {
+          refusing.set_update(module.update());
+        }
+        done(refusing, refused, kWaitsForErase + kReplies, false);
+        Due& due = *after.back().due_;
+        due.begins.earliest = std::max(due.begins.earliest, first.judged.earliest + kWaitsForErase);
+      }
+      return;
+    }
     if (answer.stores || when.earliest <= first_judged_by()) {
-      done(module, answer, answer.stores, answer.stores);
+      done(module, answer, answer.stores ? kStores : kReplies, answer.stores);
     }
     const bool stores_again = (stores_again_ || timeout_unsaved_) && answer.sets && !answer.stores;
     if (stores_again) {
       reference::Module again = module;
       again.store_again();
-      done(again, answer, true, true);
+      done(again, answer, kStores, true);
     }
     if ((answer.stores || stores_again) && memory_fails_until_ >= now) {
       reference::Module refusing = module_;
       const reference::Answer refused =
           refusing.on_frame_without_store(first.bytes, first.bad, when, overtaken_);
       refusing.doubt_memory();
-      done(refusing, refused, true, false);
+      done(refusing, refused, kStores, false);
       after.back().ghosts_.push_back(module.stored());
       after.back().stores_again_ = true;
     }

@@ -177,8 +177,16 @@ std::vector<Possible> Possible::reply(const Bytes& bytes, Time begins) const {
 }
 
 void Possible::replied(Time end) {
+  if (sending_) {  // a reset has not cut the reply off
+    module_.replied();
+  }
   sending_ = false;
   free_ = replied_ = end;
+  if (!activates()) {
+    activates_since_.reset();
+  } else if (!activates_since_ || (*activates_since_ == kSometime && !module_.update().activates)) {
+    activates_since_ = end;
+  }
 }
 
 }  // namespace ex9000::world

@@ -4,6 +4,8 @@
 #include <iterator>
 #include <utility>
 
+#include "tests/world/limits.hpp"
+
 namespace ex9000::world {
 
 namespace {
@@ -21,6 +23,8 @@ enum What : unsigned {
   kMemory,
   kSpoiled,
   kNoise,
+  kSlots,
+  kBadImages,
   kInputs,
   // not a step of its own
   kDamaged,
@@ -28,6 +32,7 @@ enum What : unsigned {
   kEarly,
   kOthers,
   kWatchdog,
+  kUpdate,
   kCount,
 };
 
@@ -36,8 +41,9 @@ struct Fault {
   What what;
   unsigned times;
 };
-constexpr Fault kFaults[] = {{kPower, 60}, {kReset, 60},   {kHang, 200},   {kDelay, 60}, {kTick, 400},
-                             {kInit, 40},  {kMemory, 100}, {kSpoiled, 40}, {kNoise, 60}, {kInputs, 4}};
+constexpr Fault kFaults[] = {{kPower, 60}, {kReset, 60},  {kHang, 200},     {kDelay, 60},
+                             {kTick, 400}, {kInit, 40},   {kMemory, 100},   {kSpoiled, 40},
+                             {kNoise, 60}, {kSlots, 150}, {kBadImages, 60}, {kInputs, 4}};
 
 }  // namespace
 
@@ -51,6 +57,7 @@ Generator::Generator(std::uint64_t seed, const Requests& requests)
     setup_.members.push_back(member());
   }
   places_.resize(count);
+  images_.resize(count);
   setup_.masters = 1 + random_.below(3);
   // The clock of the firmware wraps after 2^32 us.
   constexpr microseconds kWrap{4'294'967'296};
@@ -93,6 +100,7 @@ Member Generator::member() {
   stored.timeout = random_.once_in(2) ? 1 + random_.below(10) : 1 + random_.below(255);
   stored.timed_out = random_.once_in(8);
   stored.restarted_by_requests = random_.once_in(4) ? 1 : 0;
+  stored.updates_allowed = random_.once_in(8) ? 0 : 1;
   stored.delay = random_.once_in(4) ? random_.below(31) : 0;
   const bool filters = random_.once_in(2);
   for (unsigned channel = 0; channel < member.row->inputs; ++channel) {
@@ -171,6 +179,10 @@ Step Generator::fault(unsigned what, std::size_t index, const Plant& plant) {
       return MemoryFails{index, random_.once_in(3)};
     case kSpoiled:
       return SpoilReply{index, random_.once_in(2) ? Time(0) : Time(milliseconds(random_.below(100)))};
+    case kSlots:
+      return SlotsFail{index, random_.once_in(3)};
+    case kBadImages:
+      return BadImages{index, random_.once_in(3)};
     case kNoise: {
       sim::NoiseRates rates;
       if (random_.once_in(2)) {
@@ -213,6 +225,12 @@ void Generator::disturb(std::size_t index, const Plant& plant) {
   if ((left_out_ >> one.what & 1U) != 0) {
     return;
   }
+  if (one.what == kSlots) {
+    plan_.emplace_back(SlotsFail{index, true});
+    plan_.emplace_back(Wait{milliseconds(random_.below(500))});
+    plan_.emplace_back(SlotsFail{index, false});
+    return;
+  }
   if (one.what != kMemory) {
     add(one.what, index, plant);
     return;
@@ -245,6 +263,61 @@ void Generator::aim_at(Time expiry, std::size_t index, const Plant& plant) {
   }
   plan_.emplace_back(request);
   plan_.emplace_back(Wait{time_of(request) + microseconds(random_.below(60'000))});
+}
+
+/// A step of an update, or many. A fault often happens meanwhile, or near the end of the time after which a
+/// new image is confirmed.
+void Generator::update(std::size_t index, const Plant& plant) {
+  const reference::Module& module = plant.likely(index).module();
+  const reference::Update& now = module.update();
+  Requests::Image& image = images_[index];
+  Send request{0, {module.rate(), module.format()}, {}};
+  const auto ask = [&](Bytes bytes) {
+    request.bytes = random_.once_in(16) ? Requests::by_number(module, std::move(bytes)) : std::move(bytes);
+    plan_.emplace_back(request);
+    if (random_.once_in(12)) {
+      plan_.emplace_back(
+          Wait{time_of(request) + microseconds(random_.below(random_.once_in(2) ? 5000 : 90'000))});
+      disturb(index, plant);
+    }
+    plan_.emplace_back(Wait{time_of(request) + milliseconds(4 + random_.below(20))});
+  };
+  const auto wait_for_proof = [&](Time from) {
+    const Time moment = random_.once_in(2) ? kProvesItself + microseconds(random_.below(3'500'000))
+                                           : Time(milliseconds(random_.below(62'000)));
+    plan_.emplace_back(Wait{std::max(Time(0), from + moment - milliseconds(1500) - plant.now())});
+    if (random_.once_in(3)) {
+      disturb(index, plant);
+    } else {
+      ask(Requests::state_of_update(module));
+    }
+  };
+  if (now.state == reference::UpdateState::Unconfirmed && random_.once_in(3)) {
+    wait_for_proof(module.came_up().latest + now.periods * kProvesItself);
+    return;
+  }
+  if (now.state == reference::UpdateState::Receiving && now.spare.begin == image.begin &&
+      random_.once_in(2)) {
+    for (std::size_t offset = now.spare.size(); offset < image.content.size(); offset += 128) {
+      ask(Requests::block(module, image, offset));
+    }
+    return;
+  }
+  ask(Requests::of_update(module, random_, image));
+  if (now.state == reference::UpdateState::Unconfirmed && random_.once_in(6)) {
+    add(random_.once_in(2) ? kPower : kReset, index, plant);
+  }
+  if (now.state != reference::UpdateState::Complete) {
+    return;
+  }
+  if (random_.once_in(3)) {
+    wait_for_proof(plant.now());
+  } else if (random_.once_in(2)) {
+    // A request arrives while the reply leaves, or before the reset.
+    plan_.back() = Wait{time_of(request) + microseconds(random_.below(50'000))};
+    plan_.emplace_back(send(index, plant.likely(index)));
+    plan_.emplace_back(Wait{milliseconds(random_.below(300))});
+  }
 }
 
 /// Sends a request. If it stores settings, a fault often happens while it is stored.
@@ -301,6 +374,8 @@ void Generator::decide(const Plant& plant) {
   } else if (module.expiry() && random_.once_in(3) && plant.now() < module.expiry()->earliest &&
              module.expiry()->earliest < plant.now() + milliseconds(3000)) {
     aim_at(module.expiry()->earliest, index, plant);
+  } else if (plant.powered(index) && module.runs_modbus() && often(kUpdate, 12)) {
+    update(index, plant);
   } else {
     ask(index, plant);
   }

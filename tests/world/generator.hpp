@@ -29,6 +29,7 @@ class Generator {
   void add(unsigned what, std::size_t index, const Plant& plant);
   void disturb(std::size_t index, const Plant& plant);
   void aim_at(Time expiry, std::size_t index, const Plant& plant);
+  void update(std::size_t index, const Plant& plant);
   void ask(std::size_t index, const Plant& plant);
   void decide(const Plant& plant);
 
@@ -38,6 +39,7 @@ class Generator {
   unsigned loud_;      ///< a mask: and has more of another
   Setup setup_;
   std::vector<Requests::Place> places_;  ///< for each module
+  std::vector<Requests::Image> images_;  ///< for each module
   std::deque<Step> plan_;                ///< the next steps
   std::optional<std::size_t> aim_;       ///< the module that gets the next step
 };

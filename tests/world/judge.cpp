@@ -167,6 +167,14 @@ void Judge::memory_fails(bool fails, Time now) {
   each(now, [&](Possible& each) { each.memory_fails(fails, now); });
 }
 
+void Judge::slots_fail(bool fails, Time now) {
+  each(now, [&](Possible& each) { each.slots_fail(fails, now); });
+}
+
+void Judge::start_bad_images(bool bad, Time now) {
+  each(now, [&](Possible& each) { each.start_bad_images(bad); });
+}
+
 void Judge::input(unsigned channel, bool level, Time now) {
   each(now, [&](Possible& each) { each.input(channel, level, now); });
 }

@@ -31,6 +31,8 @@ class Judge {
   void tick_stops(Time now);
   void init(bool asserted, Time now);
   void memory_fails(bool fails, Time now);
+  void slots_fail(bool fails, Time now);
+  void start_bad_images(bool bad, Time now);
   void input(unsigned channel, bool level, Time now);
   void pulse(unsigned channel, std::uint32_t count, Time now);
   void hear(std::uint8_t byte, bool good, Time end);

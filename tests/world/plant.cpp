@@ -4,6 +4,7 @@
 
 #include "sim/notation/module_notation.hpp"
 #include "tests/oracles/reference/hexadecimal.hpp"
+#include "tests/world/limits.hpp"
 
 namespace ex9000::world {
 
@@ -33,6 +34,7 @@ sim::ModuleSpec spec_of(const Member& member) {
   settings.inverted_inputs = static_cast<std::uint16_t>(stored.inversion);
   settings.fed_by_requests = stored.restarted_by_requests != 0;
   settings.serial_number = stored.serial_number;
+  settings.updates_allowed = stored.updates_allowed != 0;
   settings.response_delay = static_cast<std::uint8_t>(stored.delay);
   return spec;
 }
@@ -56,10 +58,13 @@ struct Plant::Subject final : sim::Station, sim::WireObserver {
     }
     its_line.wires().observe(*this);
     module.tell([this](const std::string& text) {
-      if (text == "reset by the module watchdog") {
+      const unsigned reason = text == "reset by the module watchdog" ? kResetByWatchdog
+                              : text == "reset into a new image"     ? kResetByUpdate
+                                                                     : 0;
+      if (reason != 0) {
         const Time now = clock.virtual_now();
         sends = false;
-        later([=] { judge.reset(2, now); });
+        later([=] { judge.reset(reason, now); });
       }
     });
     module.output_pins().on_change([this](std::uint16_t channels) {
@@ -150,6 +155,7 @@ struct Plant::Subject final : sim::Station, sim::WireObserver {
   bool sends = false;
   bool drives = false;
   bool spoils = false;
+  reference::UpdateState update{};  ///< the last one seen
   Time late_by{0};
 };
 
@@ -194,6 +200,11 @@ void Plant::run_until(Time until) {
   for (const auto& subject : subjects_) {
     if (objection_.empty()) {
       subject->judge.pass(now());
+    }
+    const reference::UpdateState state = subject->judge.likely().module().update().state;
+    if (state != subject->update) {
+      subject->update = state;
+      ++updates_[static_cast<std::size_t>(state)];
     }
   }
 }
@@ -257,6 +268,14 @@ void Plant::play(const Step& step) {
     void operator()(const MemoryFails& fails) const {
       judged(fails.module).memory_fails(fails.on, at);
       of(fails.module).memory().fail(fails.on);
+    }
+    void operator()(const SlotsFail& fails) const {
+      judged(fails.module).slots_fail(fails.on, at);
+      of(fails.module).slots().fail(fails.on);
+    }
+    void operator()(const BadImages& bad) const {
+      judged(bad.module).start_bad_images(bad.on, at);
+      of(bad.module).start_bad_images(bad.on);
     }
     void operator()(const SpoilReply& spoil) const {
       plant.subjects_[spoil.module]->spoils = true;

@@ -1,6 +1,7 @@
 // A line with modules, and a judge for each of them.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <memory>
 #include <string>
@@ -32,6 +33,9 @@ class Plant {
   [[nodiscard]] std::size_t widest() const { return widest_; }
   [[nodiscard]] std::uint64_t requests() const { return requests_; }
   [[nodiscard]] std::uint64_t replies() const { return replies_; }
+  /// How often each state of an update has begun.
+  using Updates = std::array<std::uint64_t, 7>;
+  [[nodiscard]] const Updates& updates() const { return updates_; }
 
  private:
   struct Subject;
@@ -48,6 +52,7 @@ class Plant {
   std::size_t widest_ = 0;
   std::uint64_t requests_ = 0;
   std::uint64_t replies_ = 0;
+  Updates updates_{};
 };
 
 }  // namespace ex9000::world

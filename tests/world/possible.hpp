@@ -50,6 +50,8 @@ class Possible {
   void tick_stops(Time now);
   void init(bool asserted, Time now);
   void memory_fails(bool fails, Time now);
+  void slots_fail(bool fails, Time now);
+  void start_bad_images(bool bad) { images_are_bad_ = bad; }
   void input(unsigned channel, bool level, Time now) { module_.set_input(channel, level, now); }
   void pulse(unsigned channel, std::uint32_t count, Time now) { module_.pulse_input(channel, count, now); }
   /// The module begins to listen, the last step of its start.
@@ -102,8 +104,12 @@ class Possible {
   void execute(Time since, Time now, std::vector<Possible>& after) const;
   [[nodiscard]] bool first_stores() const;
   [[nodiscard]] Time first_judged_by() const;
-  [[nodiscard]] Time first_by(bool stores) const;
+  [[nodiscard]] Time first_takes() const;
+  [[nodiscard]] Time first_by(Time takes) const;
   [[nodiscard]] std::vector<reference::Stored> may_be_stored() const;
+  [[nodiscard]] std::vector<reference::Update> after_reset() const;
+  [[nodiscard]] bool activates() const;
+  void update(Time since, Time now, std::vector<Possible>& after, bool& stays) const;
 
   reference::Module module_;
   enum class Start { Begins, InputsCount, Driven, Over };
@@ -139,7 +145,12 @@ class Possible {
   std::vector<reference::Stored> ghosts_;  ///< that an interrupted store may have left
   std::optional<Moment> timeout_unsaved_;  ///< the timeout that is not stored yet
   Time memory_fails_until_ = Time::min();
-  Time flashes_since_{0};  ///< if the LED flashes
+  Time flashes_since_{0};                        ///< if the LED flashes
+  std::vector<reference::Update> before_begin_;  ///< what a begin whose erase may not be over may have left
+  Time erases_until_ = Time::min();              ///< that erase
+  Time slots_fail_until_ = Time::min();
+  bool images_are_bad_ = false;
+  std::optional<Time> activates_since_;  ///< the reply has left, and a reset follows
 };
 
 }  // namespace ex9000::world

@@ -76,6 +76,25 @@ Bytes write_of(const Module& module, unsigned function, unsigned row, unsigned v
       {byte(module.address()), byte(function), byte(row / 256), byte(row), byte(value / 256), byte(value)});
 }
 
+constexpr unsigned kBlock = 128;
+
+/// Appends a number, high byte first.
+void put(Bytes& to, unsigned bytes, unsigned value) {
+  while (bytes-- != 0) {
+    to.push_back(static_cast<std::uint8_t>(bytes < 4 ? value >> 8 * bytes : 0));
+  }
+}
+
+/// A write of as many registers as there are words.
+Bytes write_all(const Module& module, unsigned first, const Bytes& data) {
+  Bytes frame{static_cast<std::uint8_t>(module.address()), 0x10};
+  put(frame, 2, first);
+  put(frame, 2, static_cast<unsigned>(data.size() / 2));
+  put(frame, 1, static_cast<unsigned>(data.size()));
+  frame.insert(frame.end(), data.begin(), data.end());
+  return with_crc(frame);
+}
+
 }  // namespace
 
 Requests::Requests() {
@@ -131,6 +150,103 @@ Bytes Requests::of_watchdog(const Module& module, Random& random) {
          : which == 3 ? line_of(module, '~', "5S")
          : which == 4 ? line_of(module, '~', "0")
                       : line_of(module, '~', "1");
+}
+
+Requests::Image Requests::new_image(const Module& module, Random& random) {
+  const unsigned blocks = random.once_in(10) ? 31 + random.below(10) : 1 + random.below(3);
+  const unsigned length = kBlock * (blocks - 1) + 1 + random.below(kBlock);
+  Image image;
+  for (unsigned i = 0; i < length; ++i) {
+    image.content.push_back(any_byte(random));
+  }
+  const std::uint32_t crc = reference::crc32(image.content, length) ^ (random.once_in(12) ? 1U : 0U);
+  image.content.resize(kBlock * blocks, 0xFF);
+  const std::string signature = module.signature();
+  image.begin.assign(signature.begin(), signature.end());
+  image.begin.resize(12);
+  put(image.begin, 4, length);
+  put(image.begin, 2, random.below(10) << 8 | random.below(10) << 4 | random.below(10));
+  put(image.begin, 2, random.once_in(3) ? 1 : 0);
+  put(image.begin, 4, crc);
+  put(image.begin, 8, 0);
+  return image;
+}
+
+Bytes Requests::block(const Module& module, const Image& image, std::size_t offset) {
+  Bytes data;
+  put(data, 4, static_cast<unsigned>(offset));
+  const std::size_t first = std::min(offset / kBlock * kBlock, image.content.size() - kBlock);
+  const auto from = image.content.begin() + static_cast<std::ptrdiff_t>(first);
+  data.insert(data.end(), from, from + kBlock);
+  put(data, 4, reference::crc32(data, data.size()));
+  return write_all(module, 0x2000, data);
+}
+
+Bytes Requests::state_of_update(const Module& module) { return write_of(module, 0x03, 0x1010, 3); }
+
+Bytes Requests::by_number(const Module& module, Bytes request) {
+  request.resize(request.size() - 2);
+  by_serial_number(request, module.serial_number());
+  return with_crc(request);
+}
+
+Bytes Requests::of_update(const Module& module, Random& random, Image& image) {
+  using State = reference::UpdateState;
+  const reference::Update& update = module.update();
+  const bool known = !image.begin.empty() && update.spare.begin == image.begin;
+  const bool may_begin = update.state == State::None || update.state == State::TakenBack ||
+                         update.state == State::Failed || (update.state == State::Receiving && !known);
+  if (image.begin.empty() || (may_begin && random.once_in(2))) {
+    image = new_image(module, random);
+  }
+  // Mostly one that is there already, or the one after the next.
+  const auto any_block = [&] {
+    const std::size_t there = update.state == State::Receiving ? update.spare.size() : image.content.size();
+    const std::size_t offset = random.below(static_cast<unsigned>(there / kBlock + 2)) * kBlock;
+    if (random.once_in(3)) {
+      Image other = image;
+      const std::size_t changed = offset + random.below(kBlock);
+      other.content[std::min(changed, other.content.size() - 1)] ^= 1U;
+      return block(module, other, offset);
+    }
+    return block(module, image, offset);
+  };
+  const auto action = [&](unsigned value) { return write_of(module, 0x06, 0x1013, value); };
+  if (random.once_in(8)) {
+    return state_of_update(module);
+  }
+  if (random.once_in(7)) {
+    return random.once_in(3) ? action(random.between(1, 3)) : any_block();
+  }
+  if (random.once_in(20)) {
+    Bytes wrong = image.begin;
+    if (random.once_in(3)) {
+      wrong[13] = 1;  // a length of about 64 to 128 KiB
+      wrong[14] = random.one_of<std::uint8_t>({0xEF, 0xF0, 0xF0, 0xF1});
+      wrong[15] = random.one_of<std::uint8_t>({0x00, 0x01});
+    } else {
+      wrong[random.below(static_cast<unsigned>(wrong.size()))] ^=
+          static_cast<std::uint8_t>(1U << random.below(8));
+    }
+    Bytes request = write_all(module, 0x1000, wrong);
+    request[0] = random.once_in(8) ? std::uint8_t{0} : request[0];
+    request.resize(request.size() - 2);
+    return with_crc(request);
+  }
+  if (may_begin || random.once_in(20)) {
+    return write_all(module, 0x1000, image.begin);
+  }
+  switch (update.state) {
+    case State::Receiving:
+      return block(module, image, update.spare.size());
+    case State::Complete:
+      return action(1);
+    default:
+      return random.once_in(4)   ? action(2)
+             : random.once_in(3) ? write_of(module, 0x03, 0x0300, 2)
+             : random.once_in(2) ? any_block()
+                                 : write_of(module, 0x03, 0x00FA, 6);
+  }
 }
 
 Bytes Requests::next(const Module& module, Random& random, Place& place) const {

@@ -31,6 +31,18 @@ class Requests {
   Bytes next(const reference::Module& module, reference::Random& random, Place& place) const;
   /// A request that sets the filter time of an input.
   static Bytes set_filter(const reference::Module& module, unsigned channel, reference::Random& random);
+  /// An image for updates.
+  struct Image {
+    Bytes begin;    ///< the 32 bytes that announce it
+    Bytes content;  ///< in whole blocks
+  };
+  static Image new_image(const reference::Module& module, reference::Random& random);
+  /// The next request of an update, or another one that fits its state. `image`: the module's last one.
+  static Bytes of_update(const reference::Module& module, reference::Random& random, Image& image);
+  static Bytes state_of_update(const reference::Module& module);
+  /// The same request by serial number.
+  static Bytes by_number(const reference::Module& module, Bytes request);
+  static Bytes block(const reference::Module& module, const Image& image, std::size_t offset);
   /// A request that concerns the host watchdog.
   static Bytes of_watchdog(const reference::Module& module, reference::Random& random);
 

@@ -44,6 +44,12 @@ struct Text {
   std::string operator()(const MemoryFails& fails) const {
     return number(fails.module) + " memory fails" + on_off(fails.on);
   }
+  std::string operator()(const SlotsFail& fails) const {
+    return number(fails.module) + " slots fail" + on_off(fails.on);
+  }
+  std::string operator()(const BadImages& bad) const {
+    return number(bad.module) + " bad images" + on_off(bad.on);
+  }
   std::string operator()(const SpoilReply& spoil) const {
     return number(spoil.module) + " next reply late by " + std::to_string(spoil.late_by.count()) + " ns";
   }

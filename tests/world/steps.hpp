@@ -56,6 +56,16 @@ struct MemoryFails {
   std::size_t module;
   bool on;
 };
+/// The flash of the slots.
+struct SlotsFail {
+  std::size_t module;
+  bool on;
+};
+/// A new image hangs when it starts.
+struct BadImages {
+  std::size_t module;
+  bool on;
+};
 /// The next reply does not reach the wires, or late.
 struct SpoilReply {
   std::size_t module;
@@ -66,7 +76,7 @@ struct Noise {
 };
 
 using Step = std::variant<Send, Wait, Power, Reset, Init, Input, Pulse, Hang, TickStops, MemoryFails,
-                          SpoilReply, Noise>;
+                          SlotsFail, BadImages, SpoilReply, Noise>;
 
 std::string text_of(const Step& step);
 /// The module that the step concerns; null: none.

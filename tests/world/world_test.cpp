@@ -95,6 +95,7 @@ struct Figures {
   unsigned long long replies = 0;
   std::size_t widest = 0;
   Time line_time{0};
+  Plant::Updates updates{};
 };
 
 /// Returns what the specification forbids; empty if there is nothing.
@@ -117,6 +118,9 @@ std::string play(std::uint64_t seed, const Requests& requests, Figures& figures)
   figures.requests += plant.requests();
   figures.replies += plant.replies();
   figures.widest = std::max(figures.widest, plant.widest());
+  for (std::size_t state = 0; state < figures.updates.size(); ++state) {
+    figures.updates[state] += plant.updates()[state];
+  }
   figures.line_time += plant.now() - setup.begins;
   if (plant.objection().empty()) {
     return "";
@@ -151,6 +155,19 @@ TEST(World, DoesNothingThatTheSpecificationForbids) {
       "at most %zu states of a module; %llu worlds given up\n",
       figures.worlds, first, std::chrono::duration<double, std::ratio<3600>>(figures.line_time).count(),
       figures.requests, figures.replies, figures.widest, figures.given_up);
+  const auto begun = [&figures](reference::UpdateState state) {
+    return static_cast<unsigned long long>(figures.updates[static_cast<std::size_t>(state)]);
+  };
+  using State = reference::UpdateState;
+  std::printf(
+      "updates: %llu times receiving, %llu complete, %llu not confirmed, %llu taken back, %llu over\n",
+      begun(State::Receiving), begun(State::Complete), begun(State::Unconfirmed), begun(State::TakenBack),
+      begun(State::None));
+  if (figures.worlds >= 300) {
+    for (const State state : {State::Complete, State::Unconfirmed, State::TakenBack, State::Failed}) {
+      EXPECT_NE(begun(state), 0U);
+    }
+  }
 #ifdef EX9000_CHECKED
   for (const Expectation* each = Expectation::first(); each != nullptr && figures.worlds >= 300;
        each = each->next()) {

@@ -224,7 +224,7 @@ std::string Module::dollar_command(const std::string& body) {
     return "!" + first_second(outputs_, levels_) + "00";
   }
   if (body == "F") {
-    return "!" + aa() + "D01.00";
+    return "!" + aa() + version_text();
   }
   if (body == "M") {
     return "!" + aa() + stored_.name;

@@ -15,6 +15,8 @@ std::vector<ExtensionRow> extension_rows(const ModelRow& model) {
       {Extension::Inversion, "0x0250", 0x0250, inputs != 0 ? 1U : 0U, true, false, (1U << inputs) - 1},
       {Extension::Setting, "0x0251", 0x0251, 1, true, false, 1, &Stored::restarted_by_requests},
       {Extension::Setting, "0x0252", 0x0252, 1, true, false, kLongestDelay, &Stored::delay},
+      {Extension::Setting, "0x0254", 0x0254, model.both_protocols ? 1U : 0U, true, false, 1,
+       &Stored::updates_allowed, true},
       {Extension::WideCounters, "0x0260", 0x0260, 2 * inputs, false, true},
       {Extension::TimedOutputs, "0x0280", 0x0280, model.outputs, true, false, 0xFFFF},
       {Extension::Version, "0x0300", 0x0300, 1},
@@ -62,7 +64,7 @@ unsigned Module::extension_value(unsigned address) {
     case Extension::TimedOutputs:
       return time_left(address - row.first);
     case Extension::Version:
-      return 0x0100;  // D01.00
+      return update_.running.version();
     case Extension::ResetReason:
       return reset_reason_;
     case Extension::Uptime:
@@ -159,6 +161,9 @@ std::string Module::extension_command(const std::string& body) {
   const unsigned value = *digits & 0xFFFFU;
   if (value > row.highest) {
     throw Refused{std::string("~AAXRRRRVVVV ") + row.name + " out of range"};
+  }
+  if (row.permission && !permission()) {
+    throw Refused{std::string("~AAXRRRRVVVV ") + row.name + " without permission"};
   }
   if (row.row == Extension::TimedOutputs && refuses_outputs()) {
     return "!";

@@ -35,6 +35,7 @@ struct ExtensionRow {
   bool wide = false;     ///< values of 32 bits, each in two registers
   unsigned highest = 0;  ///< of the values that can be written
   unsigned Stored::*setting = nullptr;
+  bool permission = false;  ///< a write requires the configuration permission
 };
 
 /// Returns the table for a model. A row without registers has the count 0.

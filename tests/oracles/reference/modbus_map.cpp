@@ -84,7 +84,16 @@ struct TextRow {
 constexpr TextRow kLine{0x006E, 3};
 constexpr TextRow kModelText{0x00C8, 20};
 constexpr TextRow kVersionText{0x00FA, 16};
+constexpr TextRow kSignatureText{0x0122, 12};
 constexpr TextRow kBootLoaderText{0x014A, 8};
+/// Of an update: extensions.md.
+constexpr TextRow kUpdateState{0x1010, 3};
+constexpr unsigned kUpdateAction = 0x1013;
+constexpr unsigned kBeginFirst = 0x1000;
+constexpr unsigned kBlockFirst = 0x2000;
+constexpr unsigned kBeginCount = 16;
+constexpr unsigned kBlockCount = 68;
+constexpr unsigned kLinePreparation = 0x0083;
 
 bool is_in(TextRow row, unsigned address) { return address >= row.first && address < row.first + row.count; }
 
@@ -100,7 +109,9 @@ bool register_listed(const ModelRow& model, unsigned address, unsigned function)
   const bool setting = address == 0x01E4 || address == 0x01E5 || address == 0x01E8;
   const bool own_address = address == 0x0080;
   const bool text = is_in(kLine, address) || is_in(kModelText, address) || is_in(kVersionText, address) ||
-                    is_in(kBootLoaderText, address);
+                    is_in(kSignatureText, address) || is_in(kBootLoaderText, address) ||
+                    is_in(kUpdateState, address);
+  const bool action = address == kUpdateAction || address == kLinePreparation;
   const ExtensionRow extension = extension_row(model, address);
   switch (function) {
     case 0x03:
@@ -108,7 +119,7 @@ bool register_listed(const ModelRow& model, unsigned address, unsigned function)
     case 0x04:
       return counter || own_address || text || extension.row != Extension::None;
     default:
-      return setting || own_address || extension.written;
+      return setting || own_address || action || extension.written;
   }
 }
 
@@ -203,15 +214,21 @@ unsigned Module::register_value(unsigned address) {
         return address == 0x006E ? rate() / 100 : address == 0x006F ? kParity[format] : format == 1 ? 2 : 1;
       }
       if (is_in(kModelText, address)) {
-        std::string text = std::string(row_->designation).substr(2);
-        text.erase(std::remove(text.begin(), text.end(), '-'), text.end());
-        return character(text, address - kModelText.first);
+        return character(model_text(), address - kModelText.first);
       }
       if (is_in(kVersionText, address)) {
-        return character("D01.00", address - kVersionText.first);
+        return character(version_text(), address - kVersionText.first);
+      }
+      if (is_in(kSignatureText, address)) {
+        return character(signature(), address - kSignatureText.first);
       }
       if (is_in(kBootLoaderText, address)) {
-        return 0;
+        return character("1.0", address - kBootLoaderText.first);
+      }
+      if (is_in(kUpdateState, address)) {
+        return address == kUpdateState.first       ? static_cast<unsigned>(update_.state)
+               : address == kUpdateState.first + 1 ? next_offset() >> 16U
+                                                   : next_offset() & 0xFFFFU;
       }
       return address < 16 ? counters_[address] : extension_word(address);
   }
@@ -357,6 +374,11 @@ Bytes Module::write_coils(const Bytes& frame) {
 }
 
 void Module::judge_registers(unsigned first, const std::vector<unsigned>& values) {
+  const ExtensionRow row = extension_row(*row_, first);
+  // The specification does not say whether the permission or the value is judged first.
+  if (row.permission && !permission() && (values[0] <= row.highest || choice(2) == 0)) {
+    throw Exception{0x04, std::string("register ") + row.name + " 04 without permission"};
+  }
   for (unsigned i = 0; i < values.size(); ++i) {
     const unsigned value = values[i];
     switch (first + i) {
@@ -379,6 +401,14 @@ void Module::judge_registers(unsigned first, const std::vector<unsigned>& values
         if (value == 0 && stored_.enabled) {
           throw Exception{0x03, "register 0x01E8 03 value 0 while enabled"};
         }
+        break;
+      case kLinePreparation:
+        if (value != 1) {
+          throw Exception{0x03, "register 0x0083 03"};
+        }
+        break;
+      case kUpdateAction:
+        judge_update_action(value);
         break;
       default:
         if (value > extension_row(*row_, first + i).highest) {
@@ -414,6 +444,11 @@ void Module::set_registers(unsigned first, const std::vector<unsigned>& values) 
         set().timeout = values[i];
         restart_host_watchdog();
         break;
+      case kLinePreparation:
+        break;
+      case kUpdateAction:
+        act_on_update(values[i]);
+        break;
       default:
         set_extension(first + i, values[i]);
         break;
@@ -424,7 +459,8 @@ void Module::set_registers(unsigned first, const std::vector<unsigned>& values) 
 /// Returns whether the module ignores a broadcast that writes registers from `first` on. The result is the
 /// same for all registers that one request can write.
 bool Module::broadcast_ignored(unsigned first) {
-  if (first == 0x0080 || first == 0x01E4 || first == 0x01E5) {
+  if (first == 0x0080 || first == 0x01E4 || first == 0x01E5 || first == kUpdateAction ||
+      first == kLinePreparation) {
     return true;
   }
   if (extension_row(*row_, first).row == Extension::TimedOutputs) {
@@ -459,6 +495,14 @@ Bytes Module::write_registers(const Bytes& frame) {
     throw Exception{0x03, "FC10 03 byte count"};
   }
   length_must_be(frame, 7 + 2 * quantity);
+  const bool begins = first == kBeginFirst && quantity == kBeginCount;
+  if (begins || (first == kBlockFirst && quantity == kBlockCount)) {
+    if (frame[0] != 0) {
+      const Bytes data(frame.begin() + 7, frame.end());
+      begins ? begin_update(data) : receive_block(data);
+    }
+    return Bytes(frame.begin(), frame.begin() + 6);
+  }
   all_registers_listed(*row_, first, quantity, 0x10);
   std::vector<unsigned> values;
   for (unsigned i = 0; i < quantity; ++i) {

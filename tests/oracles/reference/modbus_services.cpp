@@ -80,7 +80,7 @@ Bytes Module::device_identification(const Bytes& frame) {
   if (asked < 0x01 || asked > 0x04) {
     throw Exception{0x03, "FC2B 03 code"};
   }
-  const std::string texts[] = {"OpenEX9000",   row_->designation, "D01.00",    "",
+  const std::string texts[] = {"OpenEX9000",   row_->designation, version_text(), "",
                                row_->in_words, row_->designation, stored_.name};
   if (asked == 0x04 && object == 0x80) {  // extensions.md: the serial number
     Bytes reply = {frame[0], 0x2B, 0x0E, 0x04, 0x82, 0x00, 0x00, 0x01, 0x80, 0x08};

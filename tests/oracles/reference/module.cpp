@@ -264,7 +264,7 @@ Answer Module::on_frame(const Bytes& bytes, const std::vector<bool>& bad, Moment
   Answer answer;
   now_ = when;
   overtaken_ = overtaken;
-  own_ = sets_ = false;
+  own_ = sets_ = programs_ = is_block_ = false;
   refusal_.clear();
   const Stored before = stored_;
   if (runs_modbus_) {
@@ -283,6 +283,8 @@ Answer Module::on_frame(const Bytes& bytes, const std::vector<bool>& bad, Moment
     outputs_ = stored_.safe;
   }
   answer.sets = sets_;
+  answer.programs = programs_;
+  answer.is_block = is_block_;
   answer.refusal = refusal_;
   answer.stores = !(stored_ == before);
   if (answer.stores) {
@@ -298,7 +300,7 @@ bool Module::is_like(const Module& other) const {
                     m.address_, m.baud_code_, m.checksum_, m.counts_rising_, m.outputs_, m.reset_status_,
                     m.terminals_, m.last_edges_, m.levels_, m.latch_high_, m.latch_low_, m.counters_,
                     m.wide_counters_, m.sample_, m.counts_, m.reset_reason_, m.timeouts_, m.stores_,
-                    m.read_blank_memory_, m.doubts_memory_);
+                    m.read_blank_memory_, m.doubts_memory_, m.update_);
   };
   const auto same = [](const std::optional<Moment>& a, const std::optional<Moment>& b) {
     return a.has_value() == b.has_value();

@@ -17,6 +17,7 @@
 
 #include "firmware/model/line_format.hpp"
 #include "tests/oracles/reference/models.hpp"
+#include "tests/oracles/reference/update.hpp"
 
 namespace ex9000::reference {
 
@@ -78,23 +79,26 @@ struct Stored {
   std::array<unsigned, 16> filters{};  ///< the filter times of the inputs, in ms
   unsigned inversion = 0;              ///< bit n is input n
   unsigned serial_number = 0;          ///< 0: that of the board
+  unsigned updates_allowed = 1;        ///< register 0x0254
 };
 
 inline bool operator==(const Stored& a, const Stored& b) {
   const auto members = [](const Stored& s) {
     return std::tie(s.address, s.baud_code, s.format, s.modbus, s.name, s.power_on, s.safe, s.enabled,
                     s.timeout, s.timed_out, s.restarted_by_requests, s.delay, s.filters, s.inversion,
-                    s.serial_number);
+                    s.serial_number, s.updates_allowed);
   };
   return members(a) == members(b);
 }
 
 /// The module's reaction to a request.
 struct Answer {
-  Bytes reply;          ///< empty: no reply
-  std::string refusal;  ///< why the request is refused, for people
-  bool sets = false;    ///< gives settings values, which they may already have
-  bool stores = false;  ///< settings change; storing takes up to 200 ms
+  Bytes reply;            ///< empty: no reply
+  std::string refusal;    ///< why the request is refused, for people
+  bool sets = false;      ///< gives settings values, which they may already have
+  bool stores = false;    ///< settings change; storing takes up to 200 ms
+  bool programs = false;  ///< a slot changes before the reply
+  bool is_block = false;  ///< by a block, which may wait for an erase
 };
 
 /// A module. Its supply is off at first.
@@ -171,6 +175,24 @@ class Module {
   void timeout_stored();
   void end_timed_output(unsigned channel);
   void settle_input(unsigned channel);
+  /// What the slots hold, and what is known about it.
+  void set_update(const Update& update) { update_ = update; }
+  /// A reply has left.
+  void replied() { update_.answered = update_.state == UpdateState::Unconfirmed; }
+  /// 60 s without a reset are over, or further 60 s.
+  void end_update_period();
+  /// The same, but the flash does not take the confirmation.
+  void prolong_update_period() { update_.periods += 1; }
+  /// The flash has failed.
+  void fail_update() {
+    update_.state = UpdateState::Failed;
+    update_.activates = false;
+  }
+  /// The module activates the complete image by itself.
+  void activate_by_itself() {
+    update_.state = UpdateState::Pending;
+    update_.activates = false;
+  }
 
   /// Returns whether the modules differ at most in their moments.
   [[nodiscard]] bool is_like(const Module& other) const;
@@ -205,10 +227,14 @@ class Module {
   [[nodiscard]] const Stored& stored() const { return stored_; }
   [[nodiscard]] unsigned reset_reason() const { return reset_reason_; }
   [[nodiscard]] const ModelRow& row() const { return *row_; }
+  [[nodiscard]] const Update& update() const { return update_; }
+  /// Of the model and the board, as an update begins with it.
+  [[nodiscard]] std::string signature() const;
 
   /// When the module changes by itself. A moment is longer than an instant if its cause, for example a
   /// command or a reset, is not visible from outside.
   [[nodiscard]] const std::optional<Moment>& expiry() const { return expiry_; }
+  [[nodiscard]] const Moment& came_up() const { return came_up_; }
   [[nodiscard]] const std::optional<Moment>& end_of_output(unsigned channel) const {
     return timers_[channel];
   }
@@ -317,6 +343,17 @@ class Module {
   std::string delay_command(const std::string& body);
   std::string extension_command(const std::string& body);
 
+  // extensions.md, update.cpp
+  [[nodiscard]] std::string model_text() const;
+  [[nodiscard]] std::string version_text() const;
+  [[nodiscard]] unsigned next_offset() const;
+  void begin_update(const Bytes& data);
+  [[nodiscard]] std::string block_refusal(unsigned offset, const Bytes& bytes, bool crc_is_right) const;
+  void receive_block(const Bytes& data);
+  void judge_update_action(unsigned value) const;
+  void act_on_update(unsigned value);
+  void confirm_update();
+
   const ModelRow* row_;
   unsigned crashes_ = 0;
   unsigned serial_number_of_board_ = 0;
@@ -362,11 +399,14 @@ class Module {
   unsigned stores_ = 0;             ///< register 0x0305
   bool read_blank_memory_ = false;  ///< the last reset found nothing stored
   bool doubts_memory_ = false;
+  Update update_;
 
   // State of the latest frame.
   Moment now_{};
   Counts received_;  ///< what its receipt counts
   bool sets_ = false;
+  bool programs_ = false;
+  bool is_block_ = false;
   bool own_ = false;  ///< it is for this module alone
   std::string refusal_;
   std::optional<unsigned> overtaken_;

@@ -40,7 +40,7 @@ TEST(Fault, EveryKindAffectsEitherTheLineOrAModule) {
               std::string(text) + ": concerns the line, not a module; add it as a fault of the line");
   }
   for (const char* text : {"lost-reply", "late-reply 1s", "exception 02", "wrong-unit 02", "late-driver 1s",
-                           "wrong-rate 1200", "gone", "power-cut", "hang"}) {
+                           "wrong-rate 1200", "gone", "power-cut", "hang", "bad-image"}) {
     EXPECT_EQ(parse_fault(text, 3).module, 3U);
   }
 }
