@@ -79,7 +79,8 @@ class StoredCopy {
   /// the copy end with the last setting that differs from its factory value, but not before the end of the
   /// safe value.
   static std::size_t bytes_of(const Settings& settings) {
-    const std::size_t end = settings.serial_number != 0     ? kSerialNumber + 4
+    const std::size_t end = !settings.updates_allowed       ? kUpdatesAllowed + 1
+                            : settings.serial_number != 0   ? kSerialNumber + 4
                             : settings.response_delay != 0  ? kResponseDelay + 1
                             : settings.fed_by_requests      ? kFedByRequests + 1
                             : settings.inverted_inputs != 0 ? kInverted + 2
@@ -111,7 +112,8 @@ class StoredCopy {
   static constexpr std::size_t kFedByRequests = kInverted + 2;
   static constexpr std::size_t kResponseDelay = kFedByRequests + 1;
   static constexpr std::size_t kSerialNumber = kResponseDelay + 1;
-  static constexpr std::size_t kEnd = kSerialNumber + 4;
+  static constexpr std::size_t kUpdatesAllowed = kSerialNumber + 4;
+  static constexpr std::size_t kEnd = kUpdatesAllowed + 1;
 
   void read_extensions(Settings& settings) const {
     for (unsigned channel = 0; channel < kMaxInputs && reaches(kFilters, 32); ++channel) {
@@ -122,6 +124,7 @@ class StoredCopy {
     settings.response_delay = byte(kResponseDelay, 0);
     settings.serial_number =
         reaches(kSerialNumber, 4) ? word(kSerialNumber) | std::uint32_t{word(kSerialNumber + 2)} << 16U : 0;
+    settings.updates_allowed = byte(kUpdatesAllowed, 1) != 0;
   }
 
   [[nodiscard]] std::size_t check_at() const { return std::size_t{4} + bytes_[1]; }
@@ -179,7 +182,7 @@ class StoredCopy {
     const unsigned beyond = ~((1U << model_.outputs) - 1U);
     const unsigned beyond_inputs = ~((1U << model_.inputs) - 1U);
     bool extensions = (found.inverted_inputs & beyond_inputs) == 0 && found.response_delay <= 30 &&
-                      byte(kFedByRequests, 0) <= 1 &&
+                      byte(kFedByRequests, 0) <= 1 && byte(kUpdatesAllowed, 1) <= 1 &&
                       (found.serial_number == 0 || found.serial_number >> 16U == 0x0D00);
     for (unsigned channel = 0; channel < kMaxInputs; ++channel) {
       extensions = extensions && found.input_filters.of(channel) <= (channel < model_.inputs ? 2000 : 0);

@@ -68,6 +68,7 @@ std::optional<Settings> SettingsReader::read_ascii() {
     return std::nullopt;
   }
   Settings settings;
+  settings.updates_allowed = true;  // no storing command changes it
   settings.address = hex_byte(configuration, 1);
   settings.baud_code = hex_byte(configuration, 5);
   settings.format = hex_byte(configuration, 7);
@@ -114,6 +115,7 @@ std::optional<Settings> SettingsReader::read_modbus(std::uint8_t format) {
     return std::nullopt;
   }
   Settings settings;
+  settings.updates_allowed = true;  // no storing command changes it
   settings.address = static_cast<std::uint8_t>(word(address_and_rate, 3));
   settings.baud_code = static_cast<std::uint8_t>(word(address_and_rate, 5));
   settings.format = format;

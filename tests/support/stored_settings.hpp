@@ -22,15 +22,19 @@ inline Settings settings_from(const Model& model, const std::uint8_t* memory) {
 /// setting that only newer firmware supports.
 inline std::uint8_t unknown_byte(std::size_t index) { return static_cast<std::uint8_t>(0xC1U ^ index); }
 
-/// Extends the valid record at `place` to `length` bytes of settings. The record must have at least 19 bytes
-/// of settings, because the factory value of each later setting is 0, except that of the last one, 1. The
-/// settings that this firmware supports, but that the record lacks, get their factory values. The bytes after
-/// them get the values of `unknown_byte`.
+/// Returns the byte at position `index` of the settings of a longer record, from 19 on: the factory values,
+/// which are 0 except the last one, 1, and after the settings that this firmware supports, `unknown_byte`.
+inline std::uint8_t later_byte(std::size_t index) {
+  constexpr std::size_t kLast = StoredCopy::bytes_of_all() - 1;
+  return index > kLast ? unknown_byte(index) : std::uint8_t{index == kLast};
+}
+
+/// Extends the valid record at `place`, which has at least 19 bytes of settings, to `length` bytes, with
+/// `later_byte`.
 inline void lengthen(const Model& model, std::uint8_t* memory, std::size_t place, std::uint8_t length) {
   std::uint8_t* bytes = memory + place;
-  constexpr std::size_t kLast = StoredCopy::bytes_of_all() - 1;
   for (std::size_t index = bytes[1]; index < length; ++index) {
-    bytes[4 + index] = index <= kLast ? std::uint8_t{index == kLast} : unknown_byte(index);
+    bytes[4 + index] = later_byte(index);
   }
   bytes[1] = length;
   StoredCopy::seal(model, memory, place);

@@ -36,6 +36,7 @@ inline Stored changed_settings() {
   settings.watchdog_enabled = true;
   settings.watchdog_timeout = 0x64;
   settings.timeout_status = true;
+  settings.updates_allowed = true;  // the factory value, so the record does not contain it
   return {settings, 0xBEEF};
 }
 
@@ -124,6 +125,7 @@ inline Stored random_settings(const Model& which, std::mt19937& random) {
   settings.name = Name(name);
   settings.power_on_value = static_cast<std::uint16_t>(random() & which.output_mask());
   settings.safe_value = static_cast<std::uint16_t>(random() & which.output_mask());
+  settings.updates_allowed = true;
   return {settings, static_cast<std::uint16_t>(random())};
 }
 

@@ -23,7 +23,7 @@ Record with_length(const Stored& stored, std::size_t length) {
   Record record = record_of(stored);
   Record settings(record.begin() + kSettingsAt, record.begin() + kCheckAt);
   for (std::size_t more = settings.size(); more < length; ++more) {
-    settings.push_back(more < kSupported ? std::uint8_t{0} : unknown_byte(more));
+    settings.push_back(later_byte(more));
   }
   settings.resize(length);
   record.resize(kSettingsAt);

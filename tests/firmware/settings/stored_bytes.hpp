@@ -76,6 +76,7 @@ inline StoredBytes read_stored_bytes(const std::filesystem::path& path) {
   settings.name = Name(std::string_view(values.at("name")));
   settings.power_on_value = static_cast<std::uint16_t>(number("power_on_value"));
   settings.safe_value = static_cast<std::uint16_t>(number("safe_value"));
+  settings.updates_allowed = true;  // the factory value of what no file contains
   return stored;
 }
 
