@@ -304,8 +304,18 @@ void Generator::update(std::size_t index, const Plant& plant) {
     return;
   }
   ask(Requests::of_update(module, random_, image));
-  if (now.state == reference::UpdateState::Unconfirmed && random_.once_in(6)) {
-    add(random_.once_in(2) ? kPower : kReset, index, plant);
+  if ((left_out_ >> kReset & 1U) == 0 &&
+      random_.once_in(now.state == reference::UpdateState::Unconfirmed ? 6 : 12)) {
+    if (random_.once_in(2)) {
+      plan_.emplace_back(Reset{index});
+    } else {
+      plan_.emplace_back(Power{index, false});
+      plan_.emplace_back(Wait{milliseconds(random_.below(100))});
+      plan_.emplace_back(Power{index, true});
+    }
+    plan_.emplace_back(Wait{milliseconds(60)});
+    ask(Requests::state_of_update(module));
+    return;
   }
   if (now.state != reference::UpdateState::Complete) {
     return;
