@@ -273,7 +273,9 @@ void Generator::update(std::size_t index, const Plant& plant) {
   Requests::Image& image = images_[index];
   Send request{0, {module.rate(), module.format()}, {}};
   const auto ask = [&](Bytes bytes) {
-    request.bytes = random_.once_in(16) ? Requests::by_number(module, std::move(bytes)) : std::move(bytes);
+    request.bytes = random_.once_in(16)   ? Requests::by_number(module, std::move(bytes))
+                    : random_.once_in(16) ? Requests::broadcast(std::move(bytes))
+                                          : std::move(bytes);
     plan_.emplace_back(request);
     if (random_.once_in(12)) {
       plan_.emplace_back(

@@ -182,6 +182,12 @@ Bytes Requests::block(const Module& module, const Image& image, std::size_t offs
   return write_all(module, 0x2000, data);
 }
 
+Bytes Requests::broadcast(Bytes request) {
+  request.resize(request.size() - 2);
+  request[0] = 0;
+  return with_crc(request);
+}
+
 Bytes Requests::state_of_update(const Module& module) { return write_of(module, 0x03, 0x1010, 3); }
 
 Bytes Requests::by_number(const Module& module, Bytes request) {
@@ -228,10 +234,7 @@ Bytes Requests::of_update(const Module& module, Random& random, Image& image) {
       wrong[random.below(static_cast<unsigned>(wrong.size()))] ^=
           static_cast<std::uint8_t>(1U << random.below(8));
     }
-    Bytes request = write_all(module, 0x1000, wrong);
-    request[0] = random.once_in(8) ? std::uint8_t{0} : request[0];
-    request.resize(request.size() - 2);
-    return with_crc(request);
+    return write_all(module, 0x1000, wrong);
   }
   if (may_begin || random.once_in(20)) {
     return write_all(module, 0x1000, image.begin);
