@@ -33,6 +33,7 @@ enum What : unsigned {
   kOthers,
   kWatchdog,
   kUpdate,
+  kLongImages,
   kCount,
 };
 
@@ -305,7 +306,7 @@ void Generator::update(std::size_t index, const Plant& plant) {
     }
     return;
   }
-  ask(Requests::of_update(module, random_, image));
+  ask(Requests::of_update(module, random_, image, often(kLongImages, 10)));
   if ((left_out_ >> kReset & 1U) == 0 &&
       random_.once_in(now.state == reference::UpdateState::Unconfirmed ? 6 : 12)) {
     if (random_.once_in(2)) {

@@ -152,8 +152,8 @@ Bytes Requests::of_watchdog(const Module& module, Random& random) {
                       : line_of(module, '~', "1");
 }
 
-Requests::Image Requests::new_image(const Module& module, Random& random) {
-  const unsigned blocks = random.once_in(10) ? 31 + random.below(10) : 1 + random.below(3);
+Requests::Image Requests::new_image(const Module& module, Random& random, bool is_long) {
+  const unsigned blocks = is_long ? 31 + random.below(10) : 1 + random.below(3);
   const unsigned length = kBlock * (blocks - 1) + 1 + random.below(kBlock);
   Image image;
   for (unsigned i = 0; i < length; ++i) {
@@ -196,14 +196,14 @@ Bytes Requests::by_number(const Module& module, Bytes request) {
   return with_crc(request);
 }
 
-Bytes Requests::of_update(const Module& module, Random& random, Image& image) {
+Bytes Requests::of_update(const Module& module, Random& random, Image& image, bool may_be_long) {
   using State = reference::UpdateState;
   const reference::Update& update = module.update();
   const bool known = !image.begin.empty() && update.spare.begin == image.begin;
   const bool may_begin = update.state == State::None || update.state == State::TakenBack ||
                          update.state == State::Failed || (update.state == State::Receiving && !known);
   if (image.begin.empty() || (may_begin && random.once_in(2))) {
-    image = new_image(module, random);
+    image = new_image(module, random, may_be_long);
   }
   // Mostly one that is there already, or the one after the next.
   const auto any_block = [&] {
