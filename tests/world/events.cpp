@@ -295,7 +295,7 @@ void Possible::execute(Time since, Time now, std::vector<Possible>& after) const
     }
     if (module.update().starts != module_.update().starts) {
       next.before_begin_.push_back(module_.update());
-      next.erases_until_ = now + kErases;
+      next.erases_until_ = slots_fail_until_ >= now ? kNever : now + kErases;
     } else if (answer.programs) {
       next.before_begin_.clear();
     }

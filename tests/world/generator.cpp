@@ -33,6 +33,7 @@ enum What : unsigned {
   kOthers,
   kWatchdog,
   kUpdate,
+  kLongImages,
   kCount,
 };
 
@@ -273,7 +274,9 @@ void Generator::update(std::size_t index, const Plant& plant) {
   Requests::Image& image = images_[index];
   Send request{0, {module.rate(), module.format()}, {}};
   const auto ask = [&](Bytes bytes) {
-    request.bytes = random_.once_in(16) ? Requests::by_number(module, std::move(bytes)) : std::move(bytes);
+    request.bytes = random_.once_in(16)   ? Requests::by_number(module, std::move(bytes))
+                    : random_.once_in(16) ? Requests::broadcast(std::move(bytes))
+                                          : std::move(bytes);
     plan_.emplace_back(request);
     if (random_.once_in(12)) {
       plan_.emplace_back(
@@ -303,9 +306,19 @@ void Generator::update(std::size_t index, const Plant& plant) {
     }
     return;
   }
-  ask(Requests::of_update(module, random_, image));
-  if (now.state == reference::UpdateState::Unconfirmed && random_.once_in(6)) {
-    add(random_.once_in(2) ? kPower : kReset, index, plant);
+  ask(Requests::of_update(module, random_, image, often(kLongImages, 10)));
+  if ((left_out_ >> kReset & 1U) == 0 &&
+      random_.once_in(now.state == reference::UpdateState::Unconfirmed ? 6 : 12)) {
+    if (random_.once_in(2)) {
+      plan_.emplace_back(Reset{index});
+    } else {
+      plan_.emplace_back(Power{index, false});
+      plan_.emplace_back(Wait{milliseconds(random_.below(100))});
+      plan_.emplace_back(Power{index, true});
+    }
+    plan_.emplace_back(Wait{milliseconds(60)});
+    ask(Requests::state_of_update(module));
+    return;
   }
   if (now.state != reference::UpdateState::Complete) {
     return;

@@ -215,7 +215,7 @@ void Possible::hang(Time time, Time now) {
     hung_ = now;
   } else {
     hangs_until_ = now + time;
-    erases_until_ = std::max(erases_until_, erases_until_ + time);
+    erases_until_ += erases_until_ == kNever ? Time(0) : time;
   }
 }
 
@@ -242,6 +242,9 @@ void Possible::memory_fails(bool fails, Time now) {
 void Possible::slots_fail(bool fails, Time now) {
   if (fails || slots_fail_until_ == kNever) {
     slots_fail_until_ = fails ? kNever : now + kErases;
+  }
+  if (fails) {
+    erases_until_ = kNever;  // the flash may keep what it has, until it takes something else
   }
 }
 

@@ -152,8 +152,8 @@ Bytes Requests::of_watchdog(const Module& module, Random& random) {
                       : line_of(module, '~', "1");
 }
 
-Requests::Image Requests::new_image(const Module& module, Random& random) {
-  const unsigned blocks = random.once_in(10) ? 31 + random.below(10) : 1 + random.below(3);
+Requests::Image Requests::new_image(const Module& module, Random& random, bool is_long) {
+  const unsigned blocks = is_long ? 31 + random.below(10) : 1 + random.below(3);
   const unsigned length = kBlock * (blocks - 1) + 1 + random.below(kBlock);
   Image image;
   for (unsigned i = 0; i < length; ++i) {
@@ -182,6 +182,12 @@ Bytes Requests::block(const Module& module, const Image& image, std::size_t offs
   return write_all(module, 0x2000, data);
 }
 
+Bytes Requests::broadcast(Bytes request) {
+  request.resize(request.size() - 2);
+  request[0] = 0;
+  return with_crc(request);
+}
+
 Bytes Requests::state_of_update(const Module& module) { return write_of(module, 0x03, 0x1010, 3); }
 
 Bytes Requests::by_number(const Module& module, Bytes request) {
@@ -190,14 +196,14 @@ Bytes Requests::by_number(const Module& module, Bytes request) {
   return with_crc(request);
 }
 
-Bytes Requests::of_update(const Module& module, Random& random, Image& image) {
+Bytes Requests::of_update(const Module& module, Random& random, Image& image, bool may_be_long) {
   using State = reference::UpdateState;
   const reference::Update& update = module.update();
   const bool known = !image.begin.empty() && update.spare.begin == image.begin;
   const bool may_begin = update.state == State::None || update.state == State::TakenBack ||
                          update.state == State::Failed || (update.state == State::Receiving && !known);
   if (image.begin.empty() || (may_begin && random.once_in(2))) {
-    image = new_image(module, random);
+    image = new_image(module, random, may_be_long);
   }
   // Mostly one that is there already, or the one after the next.
   const auto any_block = [&] {
@@ -228,10 +234,7 @@ Bytes Requests::of_update(const Module& module, Random& random, Image& image) {
       wrong[random.below(static_cast<unsigned>(wrong.size()))] ^=
           static_cast<std::uint8_t>(1U << random.below(8));
     }
-    Bytes request = write_all(module, 0x1000, wrong);
-    request[0] = random.once_in(8) ? std::uint8_t{0} : request[0];
-    request.resize(request.size() - 2);
-    return with_crc(request);
+    return write_all(module, 0x1000, wrong);
   }
   if (may_begin || random.once_in(20)) {
     return write_all(module, 0x1000, image.begin);

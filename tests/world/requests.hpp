@@ -36,11 +36,14 @@ class Requests {
     Bytes begin;    ///< the 32 bytes that announce it
     Bytes content;  ///< in whole blocks
   };
-  static Image new_image(const reference::Module& module, reference::Random& random);
+  /// `is_long`: about as long as a sector.
+  static Image new_image(const reference::Module& module, reference::Random& random, bool is_long);
   /// The next request of an update, or another one that fits its state. `image`: the module's last one.
-  static Bytes of_update(const reference::Module& module, reference::Random& random, Image& image);
+  static Bytes of_update(const reference::Module& module, reference::Random& random, Image& image,
+                         bool may_be_long);
   static Bytes state_of_update(const reference::Module& module);
-  /// The same request by serial number.
+  /// The same request as a broadcast, or by serial number.
+  static Bytes broadcast(Bytes request);
   static Bytes by_number(const reference::Module& module, Bytes request);
   static Bytes block(const reference::Module& module, const Image& image, std::size_t offset);
   /// A request that concerns the host watchdog.
