@@ -15,6 +15,7 @@
 #define EX9000_ADDRESS_SANITIZER
 #endif
 #ifdef EX9000_ADDRESS_SANITIZER
+#include <sanitizer/asan_interface.h>
 #include <sanitizer/common_interface_defs.h>
 #endif
 
@@ -57,7 +58,13 @@ Fiber::Fiber(std::function<void()> body) : body_(std::move(body)) {
   makecontext(&inside_.context, &Fiber::begin, 0);
 }
 
-Fiber::~Fiber() { munmap(const_cast<void*>(inside_.stack), inside_.stack_size); }
+Fiber::~Fiber() {
+#ifdef EX9000_ADDRESS_SANITIZER
+  // The frames that the fiber has not left are poisoned; something else may be mapped there later.
+  __asan_unpoison_memory_region(inside_.stack, inside_.stack_size);
+#endif
+  munmap(const_cast<void*>(inside_.stack), inside_.stack_size);
+}
 
 void Fiber::resume() {
   the_beginning = this;

@@ -6,6 +6,7 @@
 #include <iterator>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "sim/app/exports/description.hpp"
@@ -64,9 +65,12 @@ bool is_accepted(const reference::ModelRow& model, unsigned function, unsigned a
 void add_accepted(const reference::ModelRow& model, const char* table, const std::vector<unsigned>& functions,
                   std::set<std::string>& all) {
   for (const unsigned function : functions) {
-    for (unsigned address = 0; address < 0x3040; address = address == 0x08FF ? 0x3030 : address + 1) {
-      if (is_accepted(model, function, address)) {
-        all.insert(access_of(table, address, function));
+    for (const auto& [first, last] :
+         {std::pair(0U, 0x08FFU), {0x0FF0U, 0x1020U}, {0x1FF0U, 0x2050U}, {0x3030U, 0x303FU}}) {
+      for (unsigned address = first; address <= last; ++address) {
+        if (is_accepted(model, function, address)) {
+          all.insert(access_of(table, address, function));
+        }
       }
     }
   }
