@@ -16,7 +16,7 @@ constexpr std::uint8_t kErased = 0xFF;
 }  // namespace
 
 ImageSlots::ImageSlots(const VirtualClock& clock, const Model& model) : clock_(clock) {
-  constexpr std::array<std::uint8_t, 4> kImage{'s', 'i', 'm', '\n'};
+  constexpr std::array<std::uint8_t, 4> kImage{kErased, kErased, kErased, kErased};  // so takes no memory
   const Signature signature = signature_of(model, kBoard);
   const std::uint16_t version = version_in_bcd();
   const std::uint32_t check = crc32({kImage.data(), kImage.size()});
@@ -32,9 +32,8 @@ ImageSlots::ImageSlots(const VirtualClock& clock, const Model& model) : clock_(c
   put(kImageCheckAt, check, 4);
   const Header header = header_of(info, 1);
   std::vector<std::uint8_t>& slot = contents_[0];
-  slot.assign(kImageAt, kMarked);
+  slot.assign(kSlotHeadSize, kMarked);
   std::copy(header.begin(), header.end(), slot.begin());
-  slot.insert(slot.end(), kImage.begin(), kImage.end());
 }
 
 // --- the boot loader ---
