@@ -161,9 +161,10 @@ class Csv(unittest.TestCase):
         self.assertEqual({len(row) for row in rows}, {13})
         # 25 commands, 3 x 13 coils for outputs, 3 other coils and 5 holding registers. The tables of the holding
         # registers and of the input registers both contain the host OK and the extensions: 2 settings, 13 timed
-        # outputs, 15 others, and 50 of the identity (wire.md, extensions.md).
+        # outputs, 15 others, 50 of the identity, and 16 of the update, which has 2 more that can only be written
+        # (wire.md, extensions.md).
         count = sum(row[0] == "EX9042D-M" for row in rows)
-        self.assertEqual(count, 25 + 3 * 13 + 3 + 5 + 2 * (1 + 2 + 13 + 15 + 50) + 2 * (1 + 12 + 1 + 2) + 2)
+        self.assertEqual(count, 25 + 3 * 13 + 3 + 5 + 2 * (1 + 2 + 13 + 15 + 50 + 16) + 2)
 
     def test_commands_and_coils_are_rows(self):
         rows = list(csv.reader(io.StringIO(describe("EX9042D-M", "--format", "csv")), strict=True))
