@@ -110,12 +110,12 @@ void Update::accept(const Request& request, Time now) {
   }
 }
 
-void Update::begin(Bytes data) {
-  const bool same = equal(data.first(kInfoSize), info_.all());
+void Update::begin(Bytes info) {
+  const bool same = equal(info.first(kInfoSize), info_.all());
   if (same && (state_ == State::Receiving || state_ == State::Complete)) {
     return;
   }
-  std::copy_n(data.begin(), kInfoSize, info_.bytes.begin());
+  std::copy_n(info.begin(), kInfoSize, info_.bytes.begin());
   header_ = header_of(info_, sequence_);
   discard(State::Receiving);
 }
