@@ -56,6 +56,9 @@ Update Update::after_reset() const {
   next.periods = 0;
   switch (state) {
     case UpdateState::Receiving:
+      if (spare.size() < kSector) {
+        return erased();
+      }
       if (spare.size() % kSector != 0) {
         Bytes kept = *spare.content;
         kept.resize(kept.size() / kSector * kSector);
