@@ -65,17 +65,13 @@ class PicoUpdate : public PicoSlots {
     if (meanwhile) {
       meanwhile();
     }
-    Bytes reply = bench_.receive(5, patience);
-    while (reply.size() >= 5 && with_crc(Bytes(reply.begin(), reply.end() - 2)) != reply) {
-      const Bytes more = bench_.receive(1, milliseconds(2));
-      if (more.empty()) {
-        break;
-      }
-      reply.insert(reply.end(), more.begin(), more.end());
-    }
-    longest_ = std::max(longest_, bench_.now() - end);
+    Bytes reply = bench_.receive(1, patience);
+    const Bytes rest = bench_.receive(256, milliseconds(1));
+    reply.insert(reply.end(), rest.begin(), rest.end());
+    longest_ = std::max(longest_, bench_.now() - milliseconds(1) - end);
     bench_.run_for(milliseconds(2));  // the silence
-    return reply.size() < 4 ? Bytes() : Bytes(reply.begin() + 1, reply.end() - 2);
+    const bool right = reply.size() >= 5 && with_crc(Bytes(reply.begin(), reply.end() - 2)) == reply;
+    return right ? Bytes(reply.begin() + 1, reply.end() - 2) : Bytes();
   }
   /// -1: no reply.
   int read(unsigned address) {
