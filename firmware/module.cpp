@@ -27,6 +27,7 @@ void Module::start(std::uint16_t input_levels, Time now, const Reset& reset) {
   state_.statistics.reset_reason = reset.reason;
   state_.board_serial_number = reset.serial_number;
   crash_count_.begin(reset.reason, reset.crashes);
+  // not covered: kBuiltUpdate is a constant
   if (kBuiltUpdate && reset.origin.heads[0].size != 0) {
     state_.update.start(reset.origin, state_.model());
   }
@@ -169,6 +170,7 @@ void Module::update_statistics(Time now) {
     second_began_ = second_began_ + kSecond;
     ++state_.statistics.seconds_up;
     crash_count_.lived(state_.statistics.seconds_up);
+    // not covered: kBuiltUpdate is a constant
     if (kBuiltUpdate && replied_ && state_.statistics.seconds_up % kProof == 0) {
       state_.update.proved();
     }

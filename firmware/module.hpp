@@ -105,11 +105,13 @@ class Module {
   void memory_done(const MemoryResult& result) { keeper_.done(result); }
 
   /// The same, for the image slots.
+  // not covered: kBuiltUpdate is a constant
   [[nodiscard]] bool needs_slots() const { return kBuiltUpdate && state_.update.busy(); }
   [[nodiscard]] const update::SlotJob& slot_job() const { return state_.update.job(); }
   void slot_done() { state_.update.done(); }
   /// A new image has been activated. Reset the board when it `wants_reset`, which no event announces.
   [[nodiscard]] bool activating() const {
+    // not covered: kBuiltUpdate is a constant
     return kBuiltUpdate && state_.update.state() == update::State::Activating;
   }
   [[nodiscard]] bool wants_reset() const { return activating() && cycle_.at_rest() && !keeper_.busy(); }

@@ -165,10 +165,9 @@ inline std::uint16_t read_version_text(const Exchange& exchange, unsigned index)
 
 // --- the update, extensions.md, firmware update ---
 
-inline std::uint16_t read_boot_loader(const Exchange& exchange, unsigned index) {
-  const bool there = kBuiltUpdate && exchange.state.update.available();
-  const std::string_view text = update::kBootLoaderVersion;
-  return there && index < text.size() ? static_cast<std::uint8_t>(text[index]) : 0;
+inline std::uint16_t read_boot_loader(const Exchange& /*exchange*/, unsigned index) {
+  constexpr std::string_view text = kBuiltUpdate ? update::kBootLoaderVersion : "";
+  return index < text.size() ? static_cast<std::uint8_t>(text[index]) : 0;
 }
 
 inline std::uint16_t read_signature(const Exchange& exchange, unsigned index) {

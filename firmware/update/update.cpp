@@ -57,11 +57,10 @@ Refusal Update::judge(const Request& request, bool allowed) const {
     case Ask::Confirm:
       return state_ == State::Unconfirmed ? Refusal::None : Refusal::UpdateRefused;
     case Ask::Abandon:
-      return receives ? Refusal::None : Refusal::UpdateRefused;
-    case Ask::Nothing:
+    case Ask::Nothing:  // not covered: a request asks for something
       break;
   }
-  return Refusal::None;
+  return receives ? Refusal::None : Refusal::UpdateRefused;
 }
 
 Refusal Update::judge_begin(Bytes data) const {
@@ -193,7 +192,7 @@ void Update::begin_step(Step step) {
   using Kind = SlotJob::Kind;
   const std::uint32_t block = kImageAt + block_at_;
   step_ = step;
-  switch (step) {
+  switch (step) {  // not covered: the enumeration has no other value
     case Step::Idle:
       break;
     case Step::Secure:

@@ -38,8 +38,6 @@ class Update {
 
   // --- registers ---
 
-  /// After `start`.
-  [[nodiscard]] bool available() const { return signature_[0] != 0; }
   [[nodiscard]] State state() const { return state_; }
   /// Offset of the next block in the image, in bytes.
   [[nodiscard]] std::uint32_t next() const { return next_; }

@@ -37,11 +37,14 @@ struct Slots {
            crc32({&cells[slot][kImageAt], info.length()}) == info.check();
   }
   bool mark_tried(unsigned slot) {
-    cells[slot][kMarksAt + kTried] = kMarked;
-    return true;
+    if (marks) {
+      cells[slot][kMarksAt + kTried] = kMarked;
+    }
+    return marks;
   }
 
   Buffer cells[kSlots];
+  bool marks = true;  ///< a mark can be programmed
 };
 
 class Bench {

@@ -240,10 +240,66 @@ TEST(Update, AnImageThatIsDamagedAfterItsActivationIsTakenBack) {
   EXPECT_EQ(bench.update().state(), State::TakenBack);
 }
 
+TEST(Update, NothingBeginsWhileAnActivationIsPending) {
+  const Buffer image = image_of(100);
+  Bench bench;
+  bench.begin(image);
+  bench.blocks(image);
+  bench.ask(Ask::Activate);
+  ASSERT_EQ(bench.update().state(), State::Activating);
+  EXPECT_EQ(bench.begin(image, 0x0102), Refusal::UpdateRefused);
+  EXPECT_EQ(bench.block(image, 0), Refusal::WrongValue);
+}
+
+TEST(Update, AnImageThatHasBeenTriedIsTakenBackEvenIfTheMarkOfItsActivationHasDecayed) {
+  const Buffer image = image_of(100);
+  Bench bench;
+  bench.begin(image);
+  bench.blocks(image);
+  bench.ask(Ask::Activate);
+  bench.slots().mark_tried(1);
+  bench.spare()[kMarksAt + kActivated] = 0x55;
+  bench.reset();
+  EXPECT_EQ(bench.update().state(), State::TakenBack);
+}
+
+/// A debug probe has written it to RAM.
+TEST(Update, ARunningImageThatIsInNoSlotCanBeUpdated) {
+  SlotHead no_head{};
+  Update update;
+  update.start(
+      {0, kTestBoard, {Bytes{no_head.data(), no_head.size()}, Bytes{no_head.data(), no_head.size()}}},
+      the_model());
+  EXPECT_EQ(update.state(), State::None);
+  const Buffer info = info_of(image_of(100));
+  update.accept({Ask::Begin, {info.data(), info.size()}}, Time(1));
+  update.poll(Time(1));
+  EXPECT_EQ(update.job().slot, 1) << "its slot must not be written";
+}
+
+TEST(Boot, AnImageWhoseMarkIsNotKeptDoesNotStart) {
+  const Buffer image = image_of(100);
+  Bench bench;
+  bench.begin(image);
+  bench.blocks(image);
+  bench.ask(Ask::Activate);
+  bench.slots().marks = false;
+  EXPECT_EQ(choose(bench.slots()), 0U);
+  bench.slots().marks = true;
+  EXPECT_EQ(choose(bench.slots()), 1U);
+}
+
+TEST(Boot, NoDamagedImageStarts) {
+  Slots slots;
+  slots.cells[0][kImageAt] ^= 1U;
+  EXPECT_EQ(choose(slots), std::nullopt);
+  slots.cells[1] = slots.cells[0];
+  EXPECT_EQ(choose(slots), std::nullopt);
+}
+
 TEST(Update, WithoutSlotsThereIsNothingToDo) {
   Update update;
   update.poll(Time(5));
-  EXPECT_FALSE(update.available());
   EXPECT_FALSE(update.busy());
 }
 
