@@ -166,8 +166,8 @@ inline std::uint16_t read_version_text(const Exchange& exchange, unsigned index)
 // --- the update, extensions.md, firmware update ---
 
 inline std::uint16_t read_boot_loader(const Exchange& /*exchange*/, unsigned index) {
-  constexpr std::string_view text = kBuiltUpdate ? update::kBootLoaderVersion : "";
-  return index < text.size() ? static_cast<std::uint8_t>(text[index]) : 0;
+  constexpr std::string_view kText = kBuiltUpdate ? update::kBootLoaderVersion : "";
+  return index < kText.size() ? static_cast<std::uint8_t>(kText[index]) : 0;
 }
 
 inline std::uint16_t read_signature(const Exchange& exchange, unsigned index) {
