@@ -74,7 +74,8 @@ TEST_F(Update, SendUpdateReportsAnImageThatIsTakenBack) {
   const Finished sent = send(
       simulator, {"--wait", "modbus-tcp:127.0.0.1:" + std::to_string(simulator.tcp_port()), "FILE", "1"});
   EXPECT_EQ(sent.status, 1);
-  EXPECT_NE((sent.output + sent.error).find("has taken the image back"), std::string::npos) << sent.output << sent.error;
+  EXPECT_NE((sent.output + sent.error).find("has taken the image back"), std::string::npos)
+      << sent.output << sent.error;
   EXPECT_TRUE(simulator.wait_for("version 0100"));
 }
 
