@@ -65,7 +65,9 @@ std::vector<Possible> Possible::frame_ends(Moment received, Moment judged) const
           : 0;
   const bool host_ok =
       module_.runs_modbus()
-          ? is_whole() && (frame.bytes.size() == 8 + prefix || frame.bytes.size() == 9 + prefix) &&
+          ? is_whole() &&
+                (frame.bytes.size() == 8 + prefix ||
+                 (frame.bytes[0] == 0 && frame.bytes.size() == 9 + prefix)) &&  // after a turn-around byte
                 reference::word(frame.bytes, frame.bytes.size() - 6) == 0x3038 &&
                 (frame.bytes[frame.bytes.size() - 7] == 3 || frame.bytes[frame.bytes.size() - 7] == 4) &&
                 reference::word(frame.bytes, frame.bytes.size() - 4) <= 1
