@@ -1,4 +1,4 @@
-// Updates simulated modules with toolchain/send-update, and with mbpoll and the script in
+// Updates simulated modules with the program ex9000, and with mbpoll and the script in
 // firmware/update-a-module.md. The requests of the script are those of Wiren Board's wb-mcu-fw-flasher: the
 // information block, then each block, from the file.
 #include <gtest/gtest.h>
@@ -34,7 +34,7 @@ std::string write_update(const std::string& directory) {
 class Update : public testing::Test {
  protected:
   Finished send(const SimulatorProcess& simulator, const std::vector<std::string>& arguments) {
-    std::vector<std::string> command{"/usr/bin/python3", in_repository("toolchain/send-update")};
+    std::vector<std::string> command{in_repository(EX9000_UTILITY), "update"};
     for (const std::string& argument : arguments) {
       command.push_back(argument == "FILE" ? write_update(simulator.directory()) : argument);
     }
@@ -42,37 +42,37 @@ class Update : public testing::Test {
   }
 };
 
-TEST_F(Update, SendUpdateUpdatesSeveralModulesAndWaitsUntilTheyAreConfirmed) {
+TEST_F(Update, TheUtilityUpdatesSeveralModulesAndWaitsUntilTheyAreConfirmed) {
   SimulatorProcess simulator({"EX9042D-M@01,baud=115200", "EX9042D-M@02,baud=115200,serial=1F3A",
                               "EX9052D-M@03,baud=115200", "--speed=10", "--log"});
   const Finished sent =
-      send(simulator, {"--baud", "115200", "--wait", simulator.tty(), "FILE", "1", "0D001F3A"});
+      send(simulator, {"--baud", "115200", "--wait", simulator.tty(), "1", "0D001F3A", "FILE"});
   EXPECT_EQ(sent.status, 0) << sent.output << sent.error;
   EXPECT_TRUE(simulator.wait_for("version 0107", 2));
 }
 
-TEST_F(Update, SendUpdateRefusesModulesThatTheFileIsNotFor) {
+TEST_F(Update, TheUtilityRefusesModulesThatTheFileIsNotFor) {
   SimulatorProcess simulator({"EX9042D-M@01", "EX9052D-M@03"});
-  const Finished sent = send(simulator, {simulator.tty(), "FILE", "1", "3"});
+  const Finished sent = send(simulator, {simulator.tty(), "1", "3", "FILE"});
   EXPECT_EQ(sent.status, 1);
   EXPECT_NE((sent.output + sent.error).find("9052DM.pico"), std::string::npos) << sent.output << sent.error;
   EXPECT_EQ(simulator.output().find("version 0107"), std::string::npos);
 }
 
-TEST_F(Update, SendUpdateRepeatsWhatIsLost) {
+TEST_F(Update, TheUtilityRepeatsWhatIsLost) {
   SimulatorProcess simulator(
       {"EX9042D-M@01,baud=115200,fault=lost-reply every 7th reply", "--port=tcp:0", "--speed=10", "--log"});
   const Finished sent =
-      send(simulator, {"tcp:127.0.0.1:" + std::to_string(simulator.tcp_port()), "FILE", "1"});
+      send(simulator, {"tcp:127.0.0.1:" + std::to_string(simulator.tcp_port()), "1", "FILE"});
   EXPECT_EQ(sent.status, 0) << sent.output << sent.error;
   EXPECT_TRUE(simulator.wait_for("version 0107"));
 }
 
-TEST_F(Update, SendUpdateReportsAnImageThatIsTakenBack) {
+TEST_F(Update, TheUtilityReportsAnImageThatIsTakenBack) {
   SimulatorProcess simulator(
       {"EX9042D-M@01,baud=115200,fault=bad-image", "--port=modbus-tcp:0", "--speed=10", "--log"});
   const Finished sent = send(
-      simulator, {"--wait", "modbus-tcp:127.0.0.1:" + std::to_string(simulator.tcp_port()), "FILE", "1"});
+      simulator, {"--wait", "modbus-tcp:127.0.0.1:" + std::to_string(simulator.tcp_port()), "1", "FILE"});
   EXPECT_EQ(sent.status, 1);
   EXPECT_NE((sent.output + sent.error).find("has taken the image back"), std::string::npos)
       << sent.output << sent.error;

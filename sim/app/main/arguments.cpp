@@ -184,13 +184,6 @@ void reject_other_arguments(const std::string& printing, const CLI::App& app) {
 
 }  // namespace
 
-std::string one_line(std::string text) {
-  std::replace_if(
-      text.begin(), text.end(), [](unsigned char character) { return std::iscntrl(character) != 0; }, ' ');
-  text.erase(text.find_last_not_of(' ') + 1);
-  return text;
-}
-
 Parsed parse_arguments(int argc, const char* const* argv) {
   CLI::App app(kDescription, "ex9000-sim");
   app.set_help_flag("-h,--help", "print this help");

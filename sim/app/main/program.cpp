@@ -16,7 +16,7 @@
 #include "sim/app/main/standard_stream.hpp"
 #include "sim/app/play/play.hpp"
 #include "sim/app/running_program/running_program.hpp"
-#include "sim/app/running_program/stop_signals.hpp"
+#include "sim/files_and_ports/ports/stop_signals.hpp"
 
 namespace ex9000::sim {
 

@@ -11,9 +11,9 @@
 
 #include "sim/app/running_line/running_line.hpp"
 #include "sim/app/running_program/stepper.hpp"
-#include "sim/app/running_program/stop_signals.hpp"
 #include "sim/app/setup/setup.hpp"
 #include "sim/files_and_ports/files/new_file.hpp"
+#include "sim/files_and_ports/ports/stop_signals.hpp"
 #include "sim/front_ends/control_socket/control.hpp"
 #include "sim/front_ends/control_socket/control_socket.hpp"
 #include "sim/front_ends/panel/panel.hpp"

@@ -1,10 +1,6 @@
 #include "sim/files_and_ports/ports/serial_port.hpp"
 
-#include <fcntl.h>
-#include <linux/serial.h>
-#include <sys/file.h>
 #include <sys/ioctl.h>
-#include <termios.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -13,11 +9,9 @@
 #include <stdexcept>
 #include <utility>
 
-#include "sim/files_and_ports/files/file_descriptor.hpp"
-#include "sim/files_and_ports/ports/termios_format.hpp"
+#include "sim/files_and_ports/ports/serial_device.hpp"
 #include "sim/text/fail.hpp"
 #include "sim/text/system_error.hpp"
-#include "sim/text/values.hpp"
 
 namespace ex9000::sim {
 
@@ -26,50 +20,13 @@ namespace {
 /// A reply is held back this long, or until it is complete: delays of the host must not cause gaps in it.
 constexpr std::chrono::milliseconds kCushion{10};
 
-/// Else an adapter may hold bytes back for up to 16 ms, and split frames. Not all drivers support it.
-void ask_for_low_latency(int fd) {
-  serial_struct settings{};
-  if (ioctl(fd, TIOCGSERIAL, &settings) == 0) {
-    settings.flags |= ASYNC_LOW_LATENCY;
-    ioctl(fd, TIOCSSERIAL, &settings);
-  }
-}
-
-constexpr const char* kInUse = "is in use by another program; end that program or name another port";
-
-void set_up(int fd, hal::SerialMode mode) {
-  termios before{};
-  if (tcgetattr(fd, &before) != 0) {
-    fail("is not a serial port; name one, for example /dev/ttyUSB0");
-  }
-  if (flock(fd, LOCK_EX | LOCK_NB) != 0 || ioctl(fd, TIOCEXCL) != 0) {
-    unavailable(kInUse);
-  }
-  termios settings = before;
-  cfmakeraw(&settings);
-  // No XON/XOFF: the port could send XOFF. With parity, the kernel marks line errors (see ParityMarks).
-  settings.c_iflag = has_parity(mode.format) ? INPCK | PARMRK : 0;
-  settings.c_cflag &= ~static_cast<tcflag_t>(kTermiosFormat | CRTSCTS);
-  settings.c_cflag |= CLOCAL | CREAD | termios_format(mode.format);
-  termios taken{};  // tcsetattr succeeds even if it applies only a part of the settings
-  if (cfsetspeed(&settings, mode.baud) != 0 || tcsetattr(fd, TCSANOW, &settings) != 0 ||
-      tcgetattr(fd, &taken) != 0 || cfgetospeed(&taken) != cfgetospeed(&settings) ||
-      ((taken.c_cflag ^ settings.c_cflag) & kTermiosFormat) != 0) {
-    tcsetattr(fd, TCSANOW, &before);
-    fail("cannot be set to " + mode_text(mode.baud, mode.format) +
-         "; choose another rate or format for the line");
-  }
-  ask_for_low_latency(fd);
-  tcflush(fd, TCIOFLUSH);
-}
-
 /// The caller must close it.
 int open_port(const std::string& device, hal::SerialMode mode) {
-  FileDescriptor port(open(device.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
-  if (!port.is_open()) {
-    unavailable(errno == EBUSY ? kInUse : reason() + "; name a serial port that can be read and written");
+  FileDescriptor port = open_serial_device(device);
+  if (ioctl(port.get(), TIOCEXCL) != 0) {
+    unavailable(reason() + "; name another port");
   }
-  set_up(port.get(), mode);
+  set_serial_mode(port.get(), mode);
   return port.release();
 }
 

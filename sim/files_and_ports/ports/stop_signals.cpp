@@ -1,4 +1,4 @@
-#include "sim/app/running_program/stop_signals.hpp"
+#include "sim/files_and_ports/ports/stop_signals.hpp"
 
 #include <csignal>
 

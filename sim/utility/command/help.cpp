@@ -1,0 +1,49 @@
+#include "sim/utility/command/help.hpp"
+
+#include <algorithm>
+
+#include "sim/text/help_row.hpp"
+
+namespace ex9000::utility {
+
+namespace {
+
+constexpr std::size_t kColumn = 30;
+
+constexpr const char* kWords = R"(
+PORT is a serial port, for example /dev/ttyUSB0, or a pseudo-terminal; tcp:HOST:PORT for the bytes of a
+line over TCP; or modbus-tcp:HOST[:PORT] for a gateway.
+MODULE is an address, 1 to 247, or a serial number with 8 hex digits.
+)";
+
+std::string shape_of(const sim::Setting<Options>& option) {
+  const std::string name = "--" + std::string(option.name);
+  return option.form == sim::Form::Flag ? name : name + " " + std::string(option.value);
+}
+
+}  // namespace
+
+std::string program_help() {
+  std::string text =
+      "Finds, sets up, updates and verifies EX9000 modules on an RS-485 line.\n"
+      "Usage: ex9000 COMMAND ARGUMENTS [OPTIONS]\n\nCommands:\n";
+  for (const Verb& verb : verbs) {
+    text += sim::help_row(std::string(verb.shape), verb.does, kColumn);
+  }
+  text += "\nOptions:\n" + sim::help_row("-h,--help", "print this help, or that of a command", kColumn) +
+          sim::help_row("--version", "print the version", kColumn);
+  return text + kWords;
+}
+
+std::string help_of(const Verb& verb) {
+  std::string text = "Usage: ex9000 " + std::string(verb.shape) + " [OPTIONS]\n\n" + std::string(verb.does) +
+                     "\n" + std::string(verb.more) + "\nOptions:\n";
+  for (const sim::Setting<Options>& option : known_options) {
+    if (verb.takes(option.name)) {
+      text += sim::help_row(shape_of(option), option.does, kColumn);
+    }
+  }
+  return text + kWords;
+}
+
+}  // namespace ex9000::utility

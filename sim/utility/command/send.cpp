@@ -1,0 +1,104 @@
+#include "sim/utility/command/send.hpp"
+
+#include <numeric>
+
+#include "firmware/line/crc16.hpp"
+#include "sim/line_monitor/frames/frame_meaning.hpp"
+#include "sim/text/values.hpp"
+#include "sim/utility/modbus/module.hpp"
+
+namespace ex9000::utility {
+
+namespace {
+
+constexpr std::size_t kCrcSize = 2;
+
+bool is_dcon(const std::string& text) { return std::string("#$%@~").find(text[0]) != std::string::npos; }
+
+Data frame_of(const std::string& text, bool checksum) {
+  if (is_dcon(text)) {
+    Data frame(text.begin(), text.end());
+    if (checksum) {
+      const std::string digits = sim::hex_byte_text(std::accumulate(frame.begin(), frame.end(), 0U));
+      frame.insert(frame.end(), digits.begin(), digits.end());
+    }
+    frame.push_back('\r');
+    return frame;
+  }
+  Data frame = sim::parse_hex_bytes(text);
+  if (frame.size() < 2) {
+    sim::fail("'" + text +
+              "': expected a DCON command, as $01M, or an address and a function in hex, as 01 11");
+  }
+  const Crc16 crc = crc16({frame.data(), frame.size()});
+  frame.push_back(crc.low_byte());
+  frame.push_back(crc.high_byte());
+  return frame;
+}
+
+bool is_broadcast(const Data& frame) { return sim::looks_like_dcon(frame) ? frame[1] == '*' : frame[0] == 0; }
+
+/// A DCON reply ends with CR, any other one with a silence.
+Data reply_on(Connection& connection, bool dcon) {
+  constexpr std::chrono::milliseconds kPatience{1000};
+  constexpr std::chrono::milliseconds kEnd{50};  // an adapter may hold bytes back for 16 ms
+  Data reply = connection.receive(kPatience);
+  while (!reply.empty() && (!dcon || reply.back() != '\r')) {
+    const Data more = connection.receive(kEnd);
+    if (more.empty()) {
+      break;
+    }
+    reply.insert(reply.end(), more.begin(), more.end());
+  }
+  return reply;
+}
+
+/// As on a line, with a CRC.
+Data reply_of_gateway(Connection& connection, const Data& frame) {
+  const Data pdu = tcp_master(connection)
+                       ->exchange(at_address(frame[0]),
+                                  any_reply({frame.begin() + 1, frame.end() - kCrcSize}), Module::kPatience);
+  if (pdu.empty()) {
+    return {};
+  }
+  Data reply{frame[0]};
+  reply.insert(reply.end(), pdu.begin(), pdu.end());
+  return frame_of(sim::hex_text(reply), false);
+}
+
+void print(Environment& environment, const char* direction, const Data& frame, sim::Speaker speaker) {
+  const std::string meaning = sim::meaning(frame, speaker);
+  environment.output << direction << " " << sim::shown(frame) << (meaning.empty() ? "" : "  ; " + meaning)
+                     << std::endl;
+}
+
+}  // namespace
+
+bool send(Environment& environment, const sim::Words& args, const Options& options) {
+  const Port port = parse_port(args[0]);
+  const std::string text = sim::joined({args.begin() + 1, args.end()});
+  const Data frame = frame_of(text, options.checksum);
+  const bool gateway = port.kind == Port::Kind::ModbusTcp;
+  if (gateway && is_dcon(text)) {
+    sim::fail("'" + text + "': Modbus TCP carries no DCON; name another port");
+  }
+  const std::unique_ptr<Connection> connection = environment.open(port, options.line);
+  print(environment, ">", frame, sim::Speaker::Master);
+  Data reply;
+  if (gateway) {
+    reply = reply_of_gateway(*connection, frame);
+  } else {
+    connection->send(frame);
+    reply = reply_on(*connection, is_dcon(text));
+  }
+  if (!reply.empty()) {
+    print(environment, "<", reply, sim::Speaker::Module);
+  } else if (is_broadcast(frame)) {
+    environment.output << "no reply, as always to all modules" << std::endl;
+  } else {
+    environment.error << "ex9000: no reply" << std::endl;
+  }
+  return !reply.empty() || is_broadcast(frame);
+}
+
+}  // namespace ex9000::utility

@@ -1,0 +1,40 @@
+// The commands of the program.
+#pragma once
+
+#include <algorithm>
+#include <string_view>
+#include <vector>
+
+#include "sim/notation/setting.hpp"
+#include "sim/text/words.hpp"
+#include "sim/utility/console/environment.hpp"
+
+namespace ex9000::utility {
+
+struct Options {
+  hal::SerialMode line{9600, LineFormat::k8N1};
+  bool checksum = false;  ///< of DCON frames
+  bool wait = false;
+  sim::Places places;
+};
+
+extern const std::vector<sim::Setting<Options>> known_options;
+
+struct Verb {
+  std::string_view shape;  ///< the command and its arguments, see sim/notation/shape.hpp
+  std::string_view does;   ///< for help: a verb phrase
+  std::string_view more;   ///< lines for its own help
+  std::vector<std::string_view> options;
+  /// Gets the arguments, which have the form of `shape`. Returns whether all is well; what is not has been
+  /// reported. Throws std::invalid_argument for wrong input, std::runtime_error for what breaks.
+  bool (*run)(Environment& environment, const sim::Words& args, const Options& options);
+
+  [[nodiscard]] std::string_view name() const { return shape.substr(0, shape.find(' ')); }
+  [[nodiscard]] bool takes(std::string_view option) const {
+    return std::find(options.begin(), options.end(), option) != options.end();
+  }
+};
+
+extern const std::vector<Verb> verbs;
+
+}  // namespace ex9000::utility

@@ -1,0 +1,47 @@
+// A master's end of a line.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <stdexcept>
+#include <vector>
+
+#include "hal/serial_mode.hpp"
+
+namespace ex9000::utility {
+
+using Time = std::chrono::nanoseconds;
+using Data = std::vector<std::uint8_t>;
+
+/// The user wants the program to end.
+struct Interrupted : std::runtime_error {
+  Interrupted() : std::runtime_error("stopped") {}
+};
+
+/// The functions throw std::runtime_error if the line is gone; `receive` also throws Interrupted.
+class Connection {
+ public:
+  Connection() = default;
+  Connection(const Connection&) = delete;
+  Connection& operator=(const Connection&) = delete;
+  virtual ~Connection() = default;
+
+  /// From now on. A gateway on the network has its own mode: this changes nothing there. Throws
+  /// std::invalid_argument if the port cannot have this mode.
+  virtual void set_mode(hal::SerialMode mode) = 0;
+  virtual void send(const Data& bytes) = 0;
+  /// What has arrived, as soon as there is something; nothing after `patience`.
+  virtual Data receive(Time patience) = 0;
+  /// Since any moment.
+  virtual Time now() = 0;
+
+  /// Drops what arrives meanwhile.
+  void pause(Time time) {
+    const Time end = now() + time;
+    for (Time left = time; left > Time(0); left = end - now()) {
+      receive(left);
+    }
+  }
+};
+
+}  // namespace ex9000::utility

@@ -1,0 +1,89 @@
+#include <algorithm>
+#include <array>
+
+#include "firmware/line/crc16.hpp"
+#include "sim/utility/modbus/master.hpp"
+
+namespace ex9000::utility {
+
+namespace {
+
+constexpr std::size_t kCrcSize = 2;
+
+/// The frame of this size that begins so, without its CRC, or nothing: noise or the echo of the request may
+/// precede it.
+Data frame_in(const Data& received, const Data& begin, std::size_t size) {
+  auto at = std::search(received.begin(), received.end(), begin.begin(), begin.end());
+  while (static_cast<std::size_t>(received.end() - at) >= size) {
+    if (crc16({&*at, size}).value() == 0) {
+      return {at, at + static_cast<std::ptrdiff_t>(size - kCrcSize)};
+    }
+    at = std::search(at + 1, received.end(), begin.begin(), begin.end());
+  }
+  return {};
+}
+
+class RtuMaster final : public Master {
+ public:
+  RtuMaster(Connection& connection, hal::SerialMode mode)
+      : connection_(connection), character_(Time(std::chrono::seconds(kBitsOfACharacter)) / mode.baud) {}
+
+  Data exchange(const Addressee& to, const Request& request, Time patience) override {
+    wait_for_silence();
+    Data frame = to.request;
+    frame.insert(frame.end(), request.pdu.begin(), request.pdu.end());
+    const Crc16 crc = crc16({frame.data(), frame.size()});
+    frame.push_back(crc.low_byte());
+    frame.push_back(crc.high_byte());
+    connection_.send(frame);
+
+    const std::size_t size = to.reply.size() + request.reply_size + kCrcSize;
+    const std::size_t exception_size = to.reply.size() + 2 + kCrcSize;
+    Data reply = to.reply;
+    Data exception = to.reply;
+    reply.insert(reply.end(), request.reply.begin(), request.reply.end());
+    exception.push_back(request.pdu[0] | kExceptionBit);
+    const Time end = connection_.now() + patience + character_ * (frame.size() + size);
+    Data received;
+    while (received.size() < kMostBytes) {
+      const Data more = connection_.receive(end - connection_.now());
+      if (more.empty()) {
+        break;
+      }
+      received.insert(received.end(), more.begin(), more.end());
+      for (const auto& [begin, length] : {std::pair{&reply, size}, std::pair{&exception, exception_size}}) {
+        const Data found = frame_in(received, *begin, length);
+        if (!found.empty()) {
+          return {found.begin() + static_cast<std::ptrdiff_t>(to.reply.size()), found.end()};
+        }
+      }
+    }
+    return {};
+  }
+
+  Connection& connection() override { return connection_; }
+
+ private:
+  static constexpr int kBitsOfACharacter = 11;  // Modbus over Serial Line V1.02, 2.5.1
+  static constexpr std::chrono::microseconds kShortestSilence{1750};
+  // A line that is never silent must not keep `exchange` for ever.
+  static constexpr std::size_t kMostBytes = 1000;
+  static constexpr unsigned kMostReadings = 100;
+
+  void wait_for_silence() {
+    const Time silence = std::max<Time>(character_ * 7 / 2, kShortestSilence);
+    for (unsigned i = 0; i < kMostReadings && !connection_.receive(silence).empty(); ++i) {
+    }
+  }
+
+  Connection& connection_;
+  Time character_;
+};
+
+}  // namespace
+
+std::unique_ptr<Master> rtu_master(Connection& connection, hal::SerialMode mode) {
+  return std::make_unique<RtuMaster>(connection, mode);
+}
+
+}  // namespace ex9000::utility

@@ -1,1 +1,0 @@
-"""Sends an update file to modules over the line."""
