@@ -1,10 +1,8 @@
 #include "sim/utility/command/send.hpp"
 
-#include <numeric>
-
-#include "firmware/line/crc16.hpp"
 #include "sim/line_monitor/frames/frame_meaning.hpp"
 #include "sim/text/values.hpp"
+#include "sim/utility/master_line/master_line.hpp"
 #include "sim/utility/modbus/module.hpp"
 
 namespace ex9000::utility {
@@ -17,22 +15,14 @@ bool is_dcon(const std::string& text) { return std::string("#$%@~").find(text[0]
 
 Data frame_of(const std::string& text, bool checksum) {
   if (is_dcon(text)) {
-    Data frame(text.begin(), text.end());
-    if (checksum) {
-      const std::string digits = sim::hex_byte_text(std::accumulate(frame.begin(), frame.end(), 0U));
-      frame.insert(frame.end(), digits.begin(), digits.end());
-    }
-    frame.push_back('\r');
-    return frame;
+    return dcon_frame(text, checksum);
   }
   Data frame = sim::parse_hex_bytes(text);
   if (frame.size() < 2) {
     sim::fail("'" + text +
               "': expected a DCON command, as $01M, or an address and a function in hex, as 01 11");
   }
-  const Crc16 crc = crc16({frame.data(), frame.size()});
-  frame.push_back(crc.low_byte());
-  frame.push_back(crc.high_byte());
+  append_crc(frame);
   return frame;
 }
 
@@ -54,16 +44,16 @@ Data reply_on(Connection& connection, bool dcon) {
 }
 
 /// As on a line, with a CRC.
-Data reply_of_gateway(Connection& connection, const Data& frame) {
-  const Data pdu = tcp_master(connection)
-                       ->exchange(at_address(frame[0]),
-                                  any_reply({frame.begin() + 1, frame.end() - kCrcSize}), Module::kPatience);
-  if (pdu.empty()) {
-    return {};
+Data reply_of_gateway(Master& master, const Data& frame) {
+  const Data pdu = master.exchange(at_address(frame[0]),
+                                   any_reply({frame.begin() + 1, frame.end() - kCrcSize}), Module::kPatience);
+  Data reply;
+  if (!pdu.empty()) {
+    reply.push_back(frame[0]);
+    reply.insert(reply.end(), pdu.begin(), pdu.end());
+    append_crc(reply);
   }
-  Data reply{frame[0]};
-  reply.insert(reply.end(), pdu.begin(), pdu.end());
-  return frame_of(sim::hex_text(reply), false);
+  return reply;
 }
 
 void print(Environment& environment, const char* direction, const Data& frame, sim::Speaker speaker) {
@@ -78,18 +68,17 @@ bool send(Environment& environment, const sim::Words& args, const Options& optio
   const Port port = parse_port(args[0]);
   const std::string text = sim::joined({args.begin() + 1, args.end()});
   const Data frame = frame_of(text, options.checksum);
-  const bool gateway = port.kind == Port::Kind::ModbusTcp;
-  if (gateway && is_dcon(text)) {
+  if (port.kind == Port::Kind::ModbusTcp && is_dcon(text)) {
     sim::fail("'" + text + "': Modbus TCP carries no DCON; name another port");
   }
-  const std::unique_ptr<Connection> connection = environment.open(port, options.line);
+  MasterLine line(environment, port, options.line);
   print(environment, ">", frame, sim::Speaker::Master);
   Data reply;
-  if (gateway) {
-    reply = reply_of_gateway(*connection, frame);
+  if (line.carries_all()) {
+    line.connection().send(frame);
+    reply = reply_on(line.connection(), is_dcon(text));
   } else {
-    connection->send(frame);
-    reply = reply_on(*connection, is_dcon(text));
+    reply = reply_of_gateway(line.modbus(), frame);
   }
   if (!reply.empty()) {
     print(environment, "<", reply, sim::Speaker::Module);

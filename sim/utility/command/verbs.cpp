@@ -1,5 +1,6 @@
 #include "sim/text/values.hpp"
 #include "sim/utility/command/send.hpp"
+#include "sim/utility/master_line/master_line.hpp"
 #include "sim/utility/update/session.hpp"
 
 namespace ex9000::utility {
@@ -18,10 +19,8 @@ bool update(Environment& environment, const sim::Words& args, const Options& opt
     }
   }
   const UpdateFile file = read_update_file(args.back());
-  const std::unique_ptr<Connection> connection = environment.open(port, options.line);
-  const std::unique_ptr<Master> master =
-      port.kind == Port::Kind::ModbusTcp ? tcp_master(*connection) : rtu_master(*connection, options.line);
-  return update_modules(environment, *master, modules, file, options.wait);
+  MasterLine line(environment, port, options.line);
+  return update_modules(environment, line.modbus(), modules, file, options.wait);
 }
 
 }  // namespace

@@ -22,6 +22,9 @@ class Master {
   virtual Connection& connection() = 0;
 };
 
+/// Makes a request or a reply a frame.
+void append_crc(Data& frame);
+
 /// RTU frames. `mode`: of the line, also if the connection is one to a gateway.
 std::unique_ptr<Master> rtu_master(Connection& connection, hal::SerialMode mode);
 /// A gateway does not carry requests by serial number.

@@ -32,9 +32,7 @@ class RtuMaster final : public Master {
     wait_for_silence();
     Data frame = to.request;
     frame.insert(frame.end(), request.pdu.begin(), request.pdu.end());
-    const Crc16 crc = crc16({frame.data(), frame.size()});
-    frame.push_back(crc.low_byte());
-    frame.push_back(crc.high_byte());
+    append_crc(frame);
     connection_.send(frame);
 
     const std::size_t size = to.reply.size() + request.reply_size + kCrcSize;
@@ -81,6 +79,12 @@ class RtuMaster final : public Master {
 };
 
 }  // namespace
+
+void append_crc(Data& frame) {
+  const Crc16 crc = crc16({frame.data(), frame.size()});
+  frame.push_back(crc.low_byte());
+  frame.push_back(crc.high_byte());
+}
 
 std::unique_ptr<Master> rtu_master(Connection& connection, hal::SerialMode mode) {
   return std::make_unique<RtuMaster>(connection, mode);

@@ -1,0 +1,39 @@
+// A DCON master.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "sim/utility/connection/connection.hpp"
+
+namespace ex9000::utility {
+
+/// The command with its checksum, if it gets one, and CR.
+Data dcon_frame(const std::string& command, bool checksum);
+
+class DconMaster {
+ public:
+  /// A reply begins within 20 ms, 200 ms after a store, plus a response delay (wire.md section 3); an adapter
+  /// may hold its bytes back for 16 ms.
+  static constexpr std::chrono::milliseconds kPatience{300};
+
+  DconMaster(Connection& connection, hal::SerialMode mode)
+      : connection_(connection), character_(Time(std::chrono::seconds(kBitsOfACharacter)) / mode.baud) {}
+
+  /// Of requests and replies.
+  void set_checksum(bool on) { checksum_ = on; }
+  [[nodiscard]] bool checksum() const { return checksum_; }
+
+  /// The reply without checksum and CR, from its lead `!`, `>` or `?` on; bytes before it, as those of an
+  /// echo, are skipped. nullopt: none, or one with a wrong checksum. Throws what Connection throws.
+  std::optional<std::string> ask(const std::string& command, Time patience = kPatience);
+
+ private:
+  static constexpr int kBitsOfACharacter = 11;
+
+  Connection& connection_;
+  Time character_;
+  bool checksum_ = false;
+};
+
+}  // namespace ex9000::utility
