@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "sim/text/help_row.hpp"
+#include "sim/utility/device/property.hpp"
 
 namespace ex9000::utility {
 
@@ -15,6 +16,15 @@ PORT is a serial port, for example /dev/ttyUSB0, or a pseudo-terminal; tcp:HOST:
 line over TCP; or modbus-tcp:HOST[:PORT] for a gateway.
 MODULE is an address, 1 to 247, or a serial number with 8 hex digits.
 )";
+
+std::string keys() {
+  std::string text = "\nKEY=VALUE is one of:\n";
+  for (const Property& property : properties) {
+    text +=
+        sim::help_row(std::string(property.key) + "=" + std::string(property.value), property.does, kColumn);
+  }
+  return text;
+}
 
 std::string shape_of(const sim::Setting<Options>& option) {
   const std::string name = "--" + std::string(option.name);
@@ -43,7 +53,7 @@ std::string help_of(const Verb& verb) {
       text += sim::help_row(shape_of(option), option.does, kColumn);
     }
   }
-  return text + kWords;
+  return text + (verb.shape.find("KEY=VALUE") == std::string_view::npos ? "" : keys()) + kWords;
 }
 
 }  // namespace ex9000::utility

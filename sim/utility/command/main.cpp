@@ -9,6 +9,6 @@
 int main(int argc, char** argv) {
   static_cast<void>(std::signal(SIGPIPE, SIG_IGN));  // else it would end the program at a write
   ex9000::utility::Environment environment{ex9000::utility::open, std::cout, std::cerr,
-                                           isatty(STDERR_FILENO) != 0};
+                                           isatty(STDOUT_FILENO) != 0, isatty(STDERR_FILENO) != 0};
   return ex9000::utility::run_program(argc, argv, environment);
 }

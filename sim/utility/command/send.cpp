@@ -10,6 +10,8 @@ namespace ex9000::utility {
 namespace {
 
 constexpr std::size_t kCrcSize = 2;
+/// Before a frame: T3.5 at 1200 baud.
+constexpr std::chrono::milliseconds kSilence{33};
 
 bool is_dcon(const std::string& text) { return std::string("#$%@~").find(text[0]) != std::string::npos; }
 
@@ -75,6 +77,7 @@ bool send(Environment& environment, const sim::Words& args, const Options& optio
   print(environment, ">", frame, sim::Speaker::Master);
   Data reply;
   if (line.carries_all()) {
+    line.connection().pause(kSilence);
     line.connection().send(frame);
     reply = reply_on(line.connection(), is_dcon(text));
   } else {

@@ -7,15 +7,27 @@
 
 #include "sim/notation/setting.hpp"
 #include "sim/text/words.hpp"
-#include "sim/utility/console/environment.hpp"
+#include "sim/utility/device/find.hpp"
 
 namespace ex9000::utility {
 
 struct Options {
   hal::SerialMode line{9600, LineFormat::k8N1};
   bool checksum = false;  ///< of DCON frames
+  Speaks speaks = Speaks::Unknown;
+  std::string model;  ///< empty: as the module says
+  std::string entry;  ///< of a file with several modules; empty: that of the module
+  bool dry_run = false;
+  Time every = std::chrono::seconds(1);
+  std::uint32_t rounds = 0;  ///< 0: without end
+  bool fast = false;
+  std::string addresses;  ///< empty: all
+  Time timeout = std::chrono::milliseconds(80);
+  bool json = false;
   bool wait = false;
   sim::Places places;
+
+  [[nodiscard]] bool is_given(std::string_view option) const { return places.count(option) != 0; }
 };
 
 extern const std::vector<sim::Setting<Options>> known_options;

@@ -29,6 +29,8 @@ class Connection {
   /// From now on. A gateway on the network has its own mode: this changes nothing there. Throws
   /// std::invalid_argument if the port cannot have this mode.
   virtual void set_mode(hal::SerialMode mode) = 0;
+  /// A pseudo-terminal carries bytes without parity and stop bits, so all formats are one there.
+  [[nodiscard]] virtual bool has_formats() const { return true; }
   virtual void send(const Data& bytes) = 0;
   /// What has arrived, as soon as there is something; nothing after `patience`.
   virtual Data receive(Time patience) = 0;

@@ -47,6 +47,8 @@ class SerialConnection final : public AsioConnection<boost::asio::posix::stream_
     }
   }
 
+  [[nodiscard]] bool has_formats() const override { return has_formats_; }
+
  private:
   void take(Bytes bytes, Data& received) override {
     if (!marks_) {

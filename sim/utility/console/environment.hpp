@@ -13,6 +13,7 @@ struct Environment {
   std::function<std::unique_ptr<Connection>(const Port& port, hal::SerialMode mode)> open;
   std::ostream& output;
   std::ostream& error;
+  bool output_is_terminal = false;
   bool error_is_terminal = false;
 };
 

@@ -13,6 +13,12 @@ Progress::~Progress() {
   }
 }
 
+void Progress::clear() {
+  if (shown_ && environment_.error_is_terminal) {
+    environment_.error << "\r\033[K" << std::flush;
+  }
+}
+
 void Progress::show(std::uint64_t done, std::uint64_t of) {
   constexpr std::size_t kWidth = 40;
   constexpr unsigned kPercent = 100;

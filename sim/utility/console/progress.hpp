@@ -18,6 +18,8 @@ class Progress {
   ~Progress();
 
   void show(std::uint64_t done, std::uint64_t of);
+  /// Before other output to the terminal.
+  void clear();
 
  private:
   Environment& environment_;

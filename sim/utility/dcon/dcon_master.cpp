@@ -49,6 +49,7 @@ std::optional<std::string> DconMaster::ask(const std::string& command, Time pati
   connection_.send(frame);
   const Time end = connection_.now() + patience + character_ * (frame.size() + kLongestReply);
   Data received;
+  garbled_ = false;
   for (Data more; !(more = connection_.receive(end - connection_.now())).empty();) {
     received.insert(received.end(), more.begin(), more.end());
     std::optional<std::string> reply = reply_in(received);
@@ -58,12 +59,14 @@ std::optional<std::string> DconMaster::ask(const std::string& command, Time pati
     if (checksum_) {
       const std::size_t size = reply->size() - std::min(reply->size(), kChecksumDigits);
       if (size == 0 || checksum_of(reply->substr(0, size)) != reply->substr(size)) {
+        garbled_ = true;
         return std::nullopt;
       }
       reply->resize(size);
     }
     return reply;
   }
+  garbled_ = !received.empty() && received != frame;
   return std::nullopt;
 }
 

@@ -20,6 +20,12 @@ class Master {
   /// beginning of the reply. Throws what Connection throws.
   virtual Data exchange(const Addressee& to, const Request& request, Time patience) = 0;
   virtual Connection& connection() = 0;
+  /// Of the last exchange: bytes have arrived that are no reply and no echo: noise, damage, another mode, or
+  /// several modules at once.
+  [[nodiscard]] bool garbled() const { return garbled_; }
+
+ protected:
+  bool garbled_ = false;
 };
 
 /// Makes a request or a reply a frame.

@@ -13,8 +13,9 @@ constexpr std::uint8_t kExceptionBit = 0x80;
 
 struct Request {
   Data pdu;
-  Data reply;                  ///< with what the PDU of the reply begins
-  std::size_t reply_size = 0;  ///< of the whole PDU; 0: any, only for Modbus TCP
+  Data reply;  ///< with what the PDU of the reply begins
+  std::size_t reply_size =
+      0;  ///< of the whole PDU; 0: the byte after `reply` counts the rest, Modbus TCP: any
 };
 
 /// `function`: 3 or 4; `read_bits`: 1 or 2.
@@ -25,6 +26,8 @@ Request write_bit(unsigned address, bool on);
 /// `data`: an even number of bytes, high byte first.
 Request write_words(unsigned address, Bytes data);
 
+/// Function 11: code, FF, and the name.
+inline Request report_server_id() { return {{0x11}, {0x11}, 0}; }
 inline Request any_reply(Data pdu) { return {std::move(pdu), {}, 0}; }
 
 /// Big-endian.

@@ -10,17 +10,21 @@ namespace {
 
 constexpr std::size_t kCrcSize = 2;
 
-/// The frame of this size that begins so, without its CRC, or nothing: noise or the echo of the request may
-/// precede it.
+/// The frame that begins so, without its CRC, or nothing: noise or the echo of the request may precede it.
+/// `size`: of the frame; 0: the byte after `begin` counts those between it and the CRC.
 Data frame_in(const Data& received, const Data& begin, std::size_t size) {
-  auto at = std::search(received.begin(), received.end(), begin.begin(), begin.end());
-  while (static_cast<std::size_t>(received.end() - at) >= size) {
-    if (crc16({&*at, size}).value() == 0) {
-      return {at, at + static_cast<std::ptrdiff_t>(size - kCrcSize)};
+  for (auto at = received.begin();; ++at) {
+    at = std::search(at, received.end(), begin.begin(), begin.end());
+    const auto left = static_cast<std::size_t>(received.end() - at);
+    if (left <= begin.size()) {
+      return {};
     }
-    at = std::search(at + 1, received.end(), begin.begin(), begin.end());
+    const std::size_t whole =
+        size != 0 ? size : begin.size() + 1 + at[static_cast<std::ptrdiff_t>(begin.size())] + kCrcSize;
+    if (whole <= left && crc16({&*at, whole}).value() == 0) {
+      return {at, at + static_cast<std::ptrdiff_t>(whole - kCrcSize)};
+    }
   }
-  return {};
 }
 
 class RtuMaster final : public Master {
@@ -35,14 +39,16 @@ class RtuMaster final : public Master {
     append_crc(frame);
     connection_.send(frame);
 
-    const std::size_t size = to.reply.size() + request.reply_size + kCrcSize;
+    const std::size_t size = request.reply_size == 0 ? 0 : to.reply.size() + request.reply_size + kCrcSize;
     const std::size_t exception_size = to.reply.size() + 2 + kCrcSize;
     Data reply = to.reply;
     Data exception = to.reply;
     reply.insert(reply.end(), request.reply.begin(), request.reply.end());
     exception.push_back(request.pdu[0] | kExceptionBit);
-    const Time end = connection_.now() + patience + character_ * (frame.size() + size);
+    const Time end =
+        connection_.now() + patience + character_ * (frame.size() + (size == 0 ? kLongestFrame : size));
     Data received;
+    garbled_ = false;
     while (received.size() < kMostBytes) {
       const Data more = connection_.receive(end - connection_.now());
       if (more.empty()) {
@@ -56,6 +62,7 @@ class RtuMaster final : public Master {
         }
       }
     }
+    garbled_ = !received.empty() && received != frame;
     return {};
   }
 
@@ -65,6 +72,7 @@ class RtuMaster final : public Master {
   static constexpr int kBitsOfACharacter = 11;  // Modbus over Serial Line V1.02, 2.5.1
   static constexpr std::chrono::microseconds kShortestSilence{1750};
   // A line that is never silent must not keep `exchange` for ever.
+  static constexpr std::size_t kLongestFrame = 256;
   static constexpr std::size_t kMostBytes = 1000;
   static constexpr unsigned kMostReadings = 100;
 

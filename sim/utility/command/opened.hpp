@@ -1,0 +1,27 @@
+// The module of a command line, found and identified.
+#pragma once
+
+#include <string>
+
+#include "sim/utility/command/verb.hpp"
+#include "sim/utility/device/find.hpp"
+
+namespace ex9000::utility {
+
+class Opened {
+ public:
+  /// Throws like find_device; std::invalid_argument if `--model` is wrong or must be given.
+  Opened(Environment& environment, const std::string& port, const std::string& module,
+         const Options& options);
+
+  MasterLine line;
+  Device device;
+  Identity identity;
+  /// The functions of the tables need one.
+  const Model* model;
+};
+
+/// Leads an error of a module: its name.
+std::string of(const Device& device, const Failed& error);
+
+}  // namespace ex9000::utility

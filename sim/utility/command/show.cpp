@@ -1,0 +1,100 @@
+#include "sim/utility/command/show.hpp"
+
+#include "sim/text/values.hpp"
+#include "sim/utility/command/opened.hpp"
+#include "sim/utility/device/fact.hpp"
+#include "sim/utility/device/property.hpp"
+
+namespace ex9000::utility {
+
+namespace {
+
+constexpr std::size_t kValueColumn = 20;
+
+std::string row(std::string_view name, const std::string& value) {
+  std::string text = "  " + std::string(name);
+  text.resize(std::max(text.size() + 1, kValueColumn), ' ');
+  return text + value + "\n";
+}
+
+/// "" if the module does not have it.
+template <class Row>
+std::string value_of(const Row& row, Opened& opened) {
+  try {
+    return meets(*opened.model, row.needs) ? row.read(opened.device, *opened.model) : "";
+  } catch (const Absent&) {
+    return "";
+  }
+}
+
+std::string head(Opened& opened) {
+  const Identity& identity = opened.identity;
+  std::string text = std::string(opened.model->designation) + " '" + identity.name + "'";
+  text += identity.version.empty() ? "" : ", firmware " + identity.version;
+  text += identity.serial_number ? ", serial number " + sim::hex_long_text(*identity.serial_number) : "";
+  text += opened.device.speaks_modbus() ? ", Modbus" : ", ASCII";
+  return text + " at " + sim::mode_text(opened.line.mode().baud, opened.line.mode().format) + "\n";
+}
+
+}  // namespace
+
+bool show(Environment& environment, const sim::Words& args, const Options& options) {
+  Opened opened(environment, args[0], args[1], options);
+  environment.output << head(opened) << "settings\n";
+  sim::Words warnings;
+  std::map<std::string_view, std::string> values;
+  for (const Property& property : properties) {
+    const std::string value = value_of(property, opened);
+    if (!value.empty()) {
+      environment.output << row(property.key, value);
+      values[property.key] = value;
+    }
+  }
+  if (values["watchdog"] == "on" && values.count("safe-value") != 0 &&
+      std::stoul(values["safe-value"], nullptr, 16) == 0) {
+    warnings.emplace_back(
+        "the host watchdog is on, and the safe value is 0: a timeout switches all outputs off");
+  }
+  const hal::SerialMode mode = opened.line.mode();
+  if (opened.line.has_modes() && (values["baud"] != std::to_string(mode.baud) ||
+                                  values["format"] != sim::line_format_text(mode.format))) {
+    warnings.push_back("from the next reset on, it speaks at " + values["baud"] + " baud " +
+                       values["format"]);
+  }
+  environment.output << "state\n";
+  for (const Fact& fact : facts) {
+    const std::string value = value_of(fact, opened);
+    if (value.empty()) {
+      continue;
+    }
+    environment.output << row(fact.name, value);
+    if (const std::string warning = fact.warning == nullptr ? "" : fact.warning(value); !warning.empty()) {
+      warnings.push_back(warning);
+    }
+  }
+  for (const std::string& warning : warnings) {
+    environment.output << "warning: " << warning << "\n";
+  }
+  environment.output << std::flush;
+  return true;
+}
+
+bool poll(Environment& environment, const sim::Words& args, const Options& options) {
+  Opened opened(environment, args[0], args[1], options);
+  for (std::uint32_t round = 0; options.rounds == 0 || round < options.rounds; ++round) {
+    std::string text;
+    for (const Fact& fact : facts) {
+      const std::string value = fact.changes ? value_of(fact, opened) : "";
+      text += value.empty() ? "" : (text.empty() ? "" : "  ") + std::string(fact.name) + " " + value;
+    }
+    if (environment.output_is_terminal) {
+      environment.output << "\r\033[K" << text << std::flush;
+    } else {
+      environment.output << text << std::endl;
+    }
+    opened.line.connection().pause(options.every);
+  }
+  return true;
+}
+
+}  // namespace ex9000::utility

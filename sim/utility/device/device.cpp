@@ -1,0 +1,104 @@
+#include "sim/utility/device/device.hpp"
+
+#include <algorithm>
+
+#include "sim/text/values.hpp"
+
+namespace ex9000::utility {
+
+namespace {
+
+constexpr std::uint8_t kIllegalFunction = 1;
+constexpr std::uint8_t kIllegalAddress = 2;
+constexpr int kHex = 16;
+
+std::string with_address(std::string text, std::uint8_t address) {
+  const std::size_t at = text.find("AA");
+  return at == std::string::npos ? text : text.replace(at, 2, sim::hex_byte_text(address));
+}
+
+std::string hex_digits(const std::string& text) {
+  if (text.empty() || text.find_first_not_of("0123456789ABCDEF") != std::string::npos) {
+    throw Failed("replies '" + text + "' where hex digits are expected");
+  }
+  return text;
+}
+
+}  // namespace
+
+Device Device::in_modbus(MasterLine& line, const Addressee& to) {
+  Device device(line);
+  device.name_ = to.name;
+  device.module_.emplace(line.modbus(), to);
+  return device;
+}
+
+Device Device::in_ascii(MasterLine& line, std::uint8_t address) {
+  Device device(line);
+  device.moves_to(address);
+  return device;
+}
+
+void Device::moves_to(std::uint8_t address) {
+  address_ = address;
+  name_ = std::to_string(address);
+}
+
+Answer Device::read(const Request& request) {
+  const Answer answer = module_->ask(request);
+  if (answer.exception == kIllegalFunction || answer.exception == kIllegalAddress) {
+    throw Absent("does not have this: " + exception_text(answer.exception));
+  }
+  if (answer.refused()) {
+    throw Failed("refuses the request: " + exception_text(answer.exception));
+  }
+  return answer;
+}
+
+void Device::write(const Request& request) { read(request); }
+
+std::string Device::ask(const std::string& command, const std::string& reply) {
+  constexpr unsigned kTries = 4;
+  const std::string request = with_address(command, address_);
+  const std::string expected = with_address(reply, address_);
+  for (unsigned i = 0; i < kTries; ++i) {
+    const std::optional<std::string> text = line_->dcon().ask(request);
+    if (text && (*text)[0] == '?') {
+      throw Absent("refuses " + request);
+    }
+    if (text && *text == "!" && reply != "!") {
+      throw Failed("ignores " + request + ", because its host watchdog has timed out; clear it first");
+    }
+    if (text && text->compare(0, expected.size(), expected) == 0) {
+      return text->substr(expected.size());
+    }
+  }
+  throw Failed("gives no reply to " + request + "; check address, rate, format, checksum and wires");
+}
+
+unsigned Device::extension(unsigned address) {
+  if (speaks_modbus()) {
+    return read(read_words(address, 1)).word(0);
+  }
+  return static_cast<unsigned>(
+      std::stoul(hex_digits(ask("~AAX" + sim::hex_word_text(address))), nullptr, kHex));
+}
+
+std::uint32_t Device::long_extension(unsigned address) {
+  if (speaks_modbus()) {
+    const Answer answer = read(read_words(address, 2));
+    return Bytes{answer.data.data(), answer.data.size()}.double_word(0);
+  }
+  return static_cast<std::uint32_t>(
+      std::stoul(hex_digits(ask("~AAX" + sim::hex_word_text(address))), nullptr, kHex));
+}
+
+void Device::write_extension(unsigned address, unsigned value) {
+  if (speaks_modbus()) {
+    write(write_word(address, static_cast<std::uint16_t>(value)));
+  } else {
+    ask("~AAX" + sim::hex_word_text(address) + sim::hex_word_text(value));
+  }
+}
+
+}  // namespace ex9000::utility

@@ -1,0 +1,110 @@
+#include "sim/utility/device/find.hpp"
+
+#include "firmware/model/baud.hpp"
+#include "sim/text/fail.hpp"
+#include "sim/text/values.hpp"
+
+namespace ex9000::utility {
+
+namespace {
+
+constexpr std::chrono::milliseconds kPatience{200};
+constexpr std::size_t kSerialNumberDigits = 8;
+
+bool replies_in_modbus(MasterLine& line, const Addressee& to) {
+  constexpr unsigned kTries = 2;
+  for (unsigned i = 0; i < kTries; ++i) {
+    if (!line.modbus().exchange(to, harmless_request(), kPatience).empty()) {
+      return true;
+    }
+  }
+  return false;
+}
+
+bool replies_in_ascii(MasterLine& line, std::uint8_t address) {
+  line.connection().send({'\r'});  // ends what the bytes of a Modbus request may have begun
+  const bool first = line.dcon().checksum();
+  for (const bool checksum : {first, !first, first}) {
+    line.dcon().set_checksum(checksum);
+    if (line.dcon().ask("$" + sim::hex_byte_text(address) + "M", kPatience)) {
+      return true;
+    }
+  }
+  return false;
+}
+
+/// What else may be: the evidence is a reply in another mode.
+std::string other_mode(MasterLine& line, const Addressee& to, std::uint8_t address, Speaks speaks) {
+  if (!line.has_modes()) {
+    return "";
+  }
+  const hal::SerialMode given = line.mode();
+  std::string found;
+  for (const LineFormat format : {LineFormat::k8N1, LineFormat::k8E1, LineFormat::k8O1}) {
+    for (auto rate = kBaudRates.rbegin(); rate != kBaudRates.rend() && found.empty(); ++rate) {
+      line.set_mode({*rate, format});
+      if ((speaks != Speaks::Ascii && to.request[0] != 0 && replies_in_modbus(line, to)) ||
+          (speaks != Speaks::Modbus && to.by_address() && replies_in_ascii(line, address))) {
+        found = sim::mode_text(*rate, format);
+      }
+    }
+  }
+  line.set_mode(given);
+  return found;
+}
+
+}  // namespace
+
+const Request& harmless_request() {
+  static const Request kRequest{{0x46, 0x00}, {0x46, 0x00}, 6};
+  return kRequest;
+}
+
+std::uint8_t parse_address(const std::string& text) {
+  constexpr unsigned kMost = 255;
+  if (text.size() > 2 && text[0] == '0' && (text[1] == 'x' || text[1] == 'X')) {
+    return sim::parse_hex_byte(text.substr(2));
+  }
+  const auto address = sim::whole_number(text, kMost);
+  if (!address) {
+    sim::fail("'" + text +
+              "': expected an address, 0 to 255 or 0x00 to 0xFF, or a serial number of 8 hex digits");
+  }
+  return static_cast<std::uint8_t>(*address);
+}
+
+Device find_device(Environment& environment, MasterLine& line, const std::string& text, Speaks speaks) {
+  const bool by_number = text.size() == kSerialNumberDigits && text.compare(0, 2, "0x") != 0;
+  const std::uint8_t address = by_number ? 0 : parse_address(text);
+  const Addressee to = by_number ? parse_addressee(text) : at_address(address);
+  if (by_number && !line.carries_all()) {
+    sim::fail(text + ": Modbus TCP carries no request by serial number; name an address, or another port");
+  }
+  if (by_number && speaks == Speaks::Ascii) {
+    sim::fail(text + ": a request by serial number is one of Modbus; name an address, or leave out --ascii");
+  }
+  if (!line.carries_all() && speaks == Speaks::Ascii) {
+    sim::fail("--ascii: Modbus TCP carries no DCON; name another port");
+  }
+  const bool may_be_modbus = speaks != Speaks::Ascii && (by_number || address != 0);
+  if (may_be_modbus && replies_in_modbus(line, to)) {
+    return Device::in_modbus(line, to);
+  }
+  const bool may_be_ascii = speaks != Speaks::Modbus && !by_number && line.carries_all();
+  if (may_be_ascii && replies_in_ascii(line, address)) {
+    return Device::in_ascii(line, address);
+  }
+  const std::string mode = sim::mode_text(line.mode().baud, line.mode().format);
+  if (line.has_modes()) {
+    environment.error << text << ": no reply at " << mode << "; trying all other modes, for half a minute"
+                      << std::endl;
+  }
+  const std::string other = other_mode(line, to, address, speaks);
+  if (!other.empty()) {
+    throw Failed(text + ": no reply at " + mode + ", but one at " + other + "; set --baud and --format");
+  }
+  throw Failed(text + ": no reply at " + mode + (line.has_modes() ? ", nor in any other mode" : "") +
+               "; check the supply, the wires A and B, and the address, or look for it with 'ex9000 scan'");
+}
+
+}  // namespace ex9000::utility

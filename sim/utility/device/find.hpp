@@ -1,0 +1,23 @@
+// Finds the module that a command line names.
+#pragma once
+
+#include <string>
+
+#include "sim/utility/device/device.hpp"
+
+namespace ex9000::utility {
+
+enum class Speaks : std::uint8_t { Unknown, Ascii, Modbus };
+
+/// `text`: an address, as 10 or 0x0A, or a serial number with 8 hex digits. Unknown: asks in Modbus, then in
+/// ASCII, with and without a checksum. Throws std::invalid_argument if it is neither; Failed if there is no
+/// reply, with what the line shows instead: it tries all other modes, and says so; what Connection throws.
+Device find_device(Environment& environment, MasterLine& line, const std::string& text, Speaks speaks);
+
+/// Any module replies to it: function 46, sub-function 00 (manuals), reads the code; other devices refuse it.
+const Request& harmless_request();
+
+/// Throws std::invalid_argument: 0 to 255.
+std::uint8_t parse_address(const std::string& text);
+
+}  // namespace ex9000::utility
