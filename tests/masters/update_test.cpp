@@ -46,14 +46,14 @@ TEST_F(Update, TheUtilityUpdatesSeveralModulesAndWaitsUntilTheyAreConfirmed) {
   SimulatorProcess simulator({"EX9042D-M@01,baud=115200", "EX9042D-M@02,baud=115200,serial=1F3A",
                               "EX9052D-M@03,baud=115200", "--speed=10", "--log"});
   const Finished sent =
-      send(simulator, {"--baud", "115200", "--wait", simulator.tty(), "1", "0D001F3A", "FILE"});
+      send(simulator, {"--baud", "115200", "--wait", simulator.tty(), "1,0D001F3A", "FILE"});
   EXPECT_EQ(sent.status, 0) << sent.output << sent.error;
   EXPECT_TRUE(simulator.wait_for("version 0107", 2));
 }
 
 TEST_F(Update, TheUtilityRefusesModulesThatTheFileIsNotFor) {
   SimulatorProcess simulator({"EX9042D-M@01", "EX9052D-M@03"});
-  const Finished sent = send(simulator, {simulator.tty(), "1", "3", "FILE"});
+  const Finished sent = send(simulator, {simulator.tty(), "1,3", "FILE"});
   EXPECT_EQ(sent.status, 1);
   EXPECT_NE((sent.output + sent.error).find("9052DM.pico"), std::string::npos) << sent.output << sent.error;
   EXPECT_EQ(simulator.output().find("version 0107"), std::string::npos);

@@ -14,7 +14,7 @@ constexpr std::size_t kColumn = 30;
 constexpr const char* kWords = R"(
 PORT is a serial port, for example /dev/ttyUSB0, or a pseudo-terminal; tcp:HOST:PORT for the bytes of a
 line over TCP; or modbus-tcp:HOST[:PORT] for a gateway.
-MODULE is an address, 1 to 247, or a serial number with 8 hex digits.
+MODULE is an address, as 10 or 0x0A, or a serial number with 8 hex digits; MODULES are several, as 1-4,9.
 )";
 
 std::string keys() {

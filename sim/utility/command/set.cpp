@@ -58,8 +58,9 @@ Values formed(const Values& values, const Model& model) {
   return result;
 }
 
-/// In the order of the table. Says what changes; reads back.
-void apply(Environment& environment, Opened& opened, const Values& given, bool dry_run) {
+/// In the order of the table. Says what changes, after `lead`; reads back.
+void apply(Environment& environment, Opened& opened, const Values& given, bool dry_run,
+           const std::string& lead = "") {
   const Values wanted = formed(given, *opened.model);
   bool reset_needed = false;
   bool changed = false;
@@ -73,8 +74,8 @@ void apply(Environment& environment, Opened& opened, const Values& given, bool d
       if (before == value->second) {
         return;
       }
-      const bool at_reset = needs_reset(property, opened.device.speaks_modbus());
-      environment.output << value->first << ": " << before << " -> " << value->second
+      const bool at_reset = needs_reset(property, opened.device);
+      environment.output << lead << value->first << ": " << before << " -> " << value->second
                          << (at_reset ? ", in force from the next reset on" : "")
                          << (property.beware.empty() ? "" : "; " + std::string(property.beware)) << std::endl;
       changed = true;
@@ -88,7 +89,8 @@ void apply(Environment& environment, Opened& opened, const Values& given, bool d
       }
     });
   }
-  environment.output << (!changed       ? "nothing to change\n"
+  environment.output << (changed && !dry_run && !reset_needed ? "" : lead)
+                     << (!changed       ? "nothing to change\n"
                          : dry_run      ? "nothing has been changed (--dry-run)\n"
                          : reset_needed ? "switch the module off and on\n"
                                         : "")
@@ -141,8 +143,11 @@ Values entry_for(const std::string& path, const std::string& module, const Model
 
 bool set(Environment& environment, const sim::Words& args, const Options& options) {
   const Values wanted = values_of({args.begin() + 2, args.end()});
-  Opened opened(environment, args[0], args[1], options);
-  apply(environment, opened, wanted, options.dry_run);
+  const sim::Words modules = expand_modules({args[1]});
+  for (const std::string& module : modules) {
+    Opened opened(environment, args[0], module, options);
+    apply(environment, opened, wanted, options.dry_run, modules.size() == 1 ? "" : module + ": ");
+  }
   return true;
 }
 
@@ -173,8 +178,8 @@ bool set_address_by_number(Environment& environment, const sim::Words& args, con
 bool save(Environment& environment, const sim::Words& args, const Options& options) {
   YAML::Emitter out;
   out << YAML::BeginSeq;
-  for (auto module = args.begin() + 1; module != args.end() - 1; ++module) {
-    Opened opened(environment, args[0], *module, options);
+  for (const std::string& module : expand_modules({args[1]})) {
+    Opened opened(environment, args[0], module, options);
     out << YAML::BeginMap << YAML::Key << "model" << YAML::Value << std::string(opened.model->designation);
     if (opened.identity.serial_number) {
       out << YAML::Key << "serial-number" << YAML::Value

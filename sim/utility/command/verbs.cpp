@@ -16,15 +16,10 @@ namespace {
 bool update(Environment& environment, const sim::Words& args, const Options& options) {
   const Port port = parse_port(args.front());
   std::vector<Addressee> modules;
-  for (auto word = args.begin() + 1; word != args.end() - 1; ++word) {
-    modules.push_back(parse_addressee(*word));
-    if (std::count_if(args.begin() + 1, args.end() - 1, [&](const auto& each) {
-          return parse_addressee(each).name == modules.back().name;
-        }) > 1) {
-      sim::fail("'" + *word + "' is there twice; name each module once");
-    }
+  for (const std::string& module : expand_modules({args[1]})) {
+    modules.push_back(parse_addressee(module));
   }
-  const UpdateFile file = read_update_file(args.back());
+  const UpdateFile file = read_update_file(args[2]);
   MasterLine line(environment, port, options.line);
   return update_modules(environment, line.modbus(), modules, file, options.wait);
 }
@@ -92,8 +87,8 @@ Reads only what has no side effect.
      "",
      {"baud", "format", "ascii", "modbus", "model", "every", "count"},
      poll},
-    {"set PORT MODULE KEY=VALUE...",
-     "change settings of a module",
+    {"set PORT MODULES KEY=VALUE...",
+     "change settings of modules",
      "",
      {"baud", "format", "ascii", "modbus", "model", "dry-run"},
      set},
@@ -104,7 +99,7 @@ For modules with the same address. They must speak Modbus.
 )",
      {"baud", "format"},
      set_address_by_number},
-    {"save PORT MODULE... FILE",
+    {"save PORT MODULES FILE",
      "save the settings of modules in a YAML file",
      "",
      {"baud", "format", "ascii", "modbus", "model"},
@@ -126,12 +121,12 @@ Examples: ex9000 send /dev/ttyUSB0 '$01M'
 )",
      {"baud", "format", "checksum"},
      send},
-    {"update PORT MODULE... FILE",
+    {"update PORT MODULES FILE",
      "send an update file to modules",
      R"(
 They keep working while they receive it, and start the new image together, when all have it. What a module
 has received stays: after an interruption, the same command continues.
-Example: ex9000 update /dev/ttyUSB0 5 6 0D001F3A EX9042D-M.ex9fw --baud 115200 --wait
+Example: ex9000 update /dev/ttyUSB0 5-7,0D001F3A EX9042D-M.ex9fw --baud 115200 --wait
 )",
      {"baud", "format", "wait"},
      update},

@@ -42,6 +42,9 @@ class Device {
   /// `command`: with `AA` for the address, for example `$AA2`. Returns what follows `!AA`, or `!` or `>` if
   /// `reply` is that.
   std::string ask(const std::string& command, const std::string& reply = "!AA");
+  /// Of one that speaks ASCII: INIT* was tied to GND at the reset, so it answers at 00 until the next one.
+  [[nodiscard]] bool in_init() const { return in_init_; }
+  void set_in_init(bool in_init) { in_init_ = in_init; }
   /// The module has taken another address.
   void moves_to(std::uint8_t address);
 
@@ -58,6 +61,7 @@ class Device {
   std::string name_;
   std::optional<Module> module_;
   std::uint8_t address_ = 0;
+  bool in_init_ = false;
 };
 
 /// What a module is.

@@ -1,5 +1,7 @@
 #include "sim/utility/device/find.hpp"
 
+#include <algorithm>
+
 #include "firmware/model/baud.hpp"
 #include "sim/text/fail.hpp"
 #include "sim/text/values.hpp"
@@ -54,6 +56,27 @@ std::string other_mode(MasterLine& line, const Addressee& to, std::uint8_t addre
 }
 
 }  // namespace
+
+sim::Words expand_modules(const sim::Words& texts) {
+  sim::Words modules;
+  for (const std::string& text : sim::parts_of(sim::joined(texts, ","), ',')) {
+    const std::size_t dash = text.find('-');
+    if (dash == std::string::npos) {
+      modules.push_back(text);
+      continue;
+    }
+    const unsigned last = parse_address(text.substr(dash + 1));
+    for (unsigned address = parse_address(text.substr(0, dash)); address <= last; ++address) {
+      modules.push_back(std::to_string(address));
+    }
+  }
+  for (const std::string& module : modules) {
+    if (std::count(modules.begin(), modules.end(), module) > 1) {
+      sim::fail("'" + module + "' is there twice; name each module once");
+    }
+  }
+  return modules;
+}
 
 const Request& harmless_request() {
   static const Request kRequest{{0x46, 0x00}, {0x46, 0x00}, 6};

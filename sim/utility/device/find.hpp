@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "sim/text/words.hpp"
 #include "sim/utility/device/device.hpp"
 
 namespace ex9000::utility {
@@ -13,6 +14,10 @@ enum class Speaks : std::uint8_t { Unknown, Ascii, Modbus };
 /// ASCII, with and without a checksum. Throws std::invalid_argument if it is neither; Failed if there is no
 /// reply, with what the line shows instead: it tries all other modes, and says so; what Connection throws.
 Device find_device(Environment& environment, MasterLine& line, const std::string& text, Speaks speaks);
+
+/// `texts`: modules as above, several separated by commas, or ranges of addresses as 5-9. Throws
+/// std::invalid_argument if one is there twice.
+sim::Words expand_modules(const sim::Words& texts);
 
 /// Any module replies to it: function 46, sub-function 00 (manuals), reads the code; other devices refuse it.
 const Request& harmless_request();

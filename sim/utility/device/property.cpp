@@ -34,26 +34,28 @@ unsigned number(const std::string& digits) { return static_cast<unsigned>(std::s
 // --- `%AANNTTCCFF` and `$AA2` (manuals 2.1, 2.5) ---
 
 struct Configuration {
+  std::uint8_t address;  ///< stored; not the one in force in INIT mode
   std::uint8_t baud_code;
   std::uint8_t format;
 };
 
 Configuration configuration_of(Device& device) {
-  const std::string text = device.ask("$AA2");  // TTCCFF
-  constexpr std::size_t kSize = 6;
+  const std::string text = device.ask("$AA2", "!");  // AATTCCFF
+  constexpr std::size_t kSize = 8;
   if (text.size() != kSize || text.find_first_not_of("0123456789ABCDEF") != std::string::npos) {
-    throw Failed("replies '" + text + "' to $AA2, not TTCCFF");
+    throw Failed("replies '!" + text + "' to $AA2, not !AATTCCFF");
   }
-  const Configuration configuration{static_cast<std::uint8_t>(number(text.substr(2, 2))),
-                                    static_cast<std::uint8_t>(number(text.substr(4, 2)))};
+  const auto byte = [&](std::size_t at) { return static_cast<std::uint8_t>(number(text.substr(at, 2))); };
+  const Configuration configuration{byte(0), byte(4), byte(6)};
   if (!is_baud_code(configuration.baud_code)) {
-    throw Failed("has the unknown baud code " + text.substr(2, 2));
+    throw Failed("has the unknown baud code " + text.substr(4, 2));
   }
+  device.set_in_init(configuration.address != device.address());
   return configuration;
 }
 
-void configure(Device& device, std::uint8_t address, Configuration configuration) {
-  const std::string digits = sim::hex_byte_text(address);
+void configure(Device& device, Configuration configuration) {
+  const std::string digits = sim::hex_byte_text(configuration.address);
   try {
     device.ask("%AA" + digits + "40" + sim::hex_byte_text(configuration.baud_code) +
                    sim::hex_byte_text(configuration.format),
@@ -61,7 +63,9 @@ void configure(Device& device, std::uint8_t address, Configuration configuration
   } catch (const Absent&) {
     throw Failed("refuses to change rate, format or checksum; tie INIT* to GND and repeat the command");
   }
-  device.moves_to(address);
+  if (!device.in_init()) {
+    device.moves_to(configuration.address);
+  }
 }
 
 std::uint8_t baud_code_of(Device& device) {
@@ -82,7 +86,7 @@ void set_baud_code(Device& device, std::uint8_t code) {
   }
   Configuration configuration = configuration_of(device);
   configuration.baud_code = code;
-  configure(device, device.address(), configuration);
+  configure(device, configuration);
 }
 
 bool format_bit(Device& device, std::uint8_t bit) { return (configuration_of(device).format & bit) != 0; }
@@ -91,7 +95,7 @@ void set_format_bit(Device& device, std::uint8_t bit, bool on) {
   Configuration configuration = configuration_of(device);
   configuration.format =
       static_cast<std::uint8_t>(on ? configuration.format | bit : configuration.format & ~bit);
-  configure(device, device.address(), configuration);
+  configure(device, configuration);
 }
 
 // --- coils ---
@@ -225,7 +229,9 @@ std::string address_form(const Model& /*model*/, const std::string& value) {
 void set_address(Device& device, const Model& /*model*/, const std::string& value) {
   const std::uint8_t address = parse_address(value);
   if (!device.speaks_modbus()) {
-    configure(device, address, configuration_of(device));
+    Configuration configuration = configuration_of(device);
+    configuration.address = address;
+    configure(device, configuration);
   } else if (is_modbus_address(address)) {
     device.write(write_word(kAddressRegister, address));
   } else {
@@ -412,14 +418,15 @@ const std::vector<Property> properties{
     {"address", "N", "the address", Needs::Nothing, address_form,
      [](Device& device, const Model& /*model*/) {
        return device.speaks_modbus() ? std::to_string(device.read(read_words(kAddressRegister, 1)).word(0))
-                                     : std::to_string(device.address());
+                                     : std::to_string(configuration_of(device).address);
      },
      set_address, InForce::AtResetModbus},
 };
 
-bool needs_reset(const Property& property, bool modbus) {
+bool needs_reset(const Property& property, const Device& device) {
   return property.in_force == InForce::AtReset ||
-         property.in_force == (modbus ? InForce::AtResetModbus : InForce::AtResetAscii);
+         property.in_force == (device.speaks_modbus() ? InForce::AtResetModbus : InForce::AtResetAscii) ||
+         (property.in_force != InForce::Now && device.in_init());
 }
 
 const Property& property_called(const std::string& key) {

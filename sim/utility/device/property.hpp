@@ -32,7 +32,7 @@ struct Property {
   std::string_view beware = {};  ///< what a change does besides; empty: nothing
 };
 
-[[nodiscard]] bool needs_reset(const Property& property, bool modbus);
+[[nodiscard]] bool needs_reset(const Property& property, const Device& device);
 
 /// In the order in which they are set: first what a module refuses without INIT*, last the address.
 extern const std::vector<Property> properties;

@@ -25,6 +25,8 @@ class Plant {
 
   /// An action of the control socket, for example `1 power off`.
   void act(const std::string& action) { target_.act(sim::words_of(action)); }
+  /// Until a module that has been started or reset is ready.
+  void wait() { target_.listen(std::chrono::milliseconds(200)); }
   [[nodiscard]] sim::VirtualTime now() { return target_.now(); }
   /// Gets each frame before it is sent; false: it is lost.
   std::function<bool(const Data& frame)> sends = [](const Data& /*frame*/) { return true; };

@@ -249,14 +249,14 @@ TEST_F(Saved, AReplacedModuleGetsTheSettingsOfTheOldOne) {
   EXPECT_EQ(fresh.run({"restore", "port", "5", file_}), 0);
   EXPECT_EQ(fresh.output(), "nothing to change\n");
 
-  EXPECT_EQ(old.run({"save", "port", "7", "0D001F3A", file_, "--model", "EX9043D"}), 2);
+  EXPECT_EQ(old.run({"save", "port", "7,0D001F3A", file_, "--model", "EX9043D"}), 2);
   EXPECT_NE(old.error().find("--model: 0D001F3A is an EX9052D-M; leave out the option"), std::string::npos);
 }
 
 TEST_F(Saved, AFileMayHaveSeveralModules) {
   Plant plant({"EX9052D-M@05,serial=1F3A", "EX9052D-M@06"});
   EXPECT_EQ(plant.run({"set", "port", "6", "response-delay=6"}), 0);
-  EXPECT_EQ(plant.run({"save", "port", "5", "6", file_}), 0);
+  EXPECT_EQ(plant.run({"save", "port", "5,6", file_}), 0);
   Plant fresh({"EX9052D-M@01"});
   EXPECT_EQ(fresh.run({"restore", "port", "1", file_}), 2);
   EXPECT_NE(fresh.error().find(

@@ -45,12 +45,10 @@ class Update : public testing::Test {
     return path;
   }
   /// Of the module at address 5, unless there are `more` words.
-  int update(Plant& plant, std::vector<std::string> modules = {"5"},
-             const std::vector<std::string>& more = {}) {
-    modules.insert(modules.begin(), {"update", "port"});
-    modules.push_back(write(file()));
-    modules.insert(modules.end(), more.begin(), more.end());
-    return plant.run(modules);
+  int update(Plant& plant, const std::string& modules = "5", const std::vector<std::string>& more = {}) {
+    std::vector<std::string> words{"update", "port", modules, write(file())};
+    words.insert(words.end(), more.begin(), more.end());
+    return plant.run(words);
   }
   void succeeds(Plant& plant) {
     EXPECT_EQ(update(plant), 0) << plant.error();
@@ -90,7 +88,7 @@ TEST_F(Update, AModuleGetsTheBlocksOfTheFileAndStartsTheImage) {
 
 TEST_F(Update, WaitsUntilTheModuleHasConfirmedTheImage) {
   Plant plant({"EX9042D-M@05"});
-  EXPECT_EQ(update(plant, {"5"}, {"--wait"}), 0);
+  EXPECT_EQ(update(plant, "5", {"--wait"}), 0);
   EXPECT_EQ(plant.output(), "5: runs D01.23, confirmed\n");
   plant.act("1 reset");
   succeeds(plant);
@@ -99,7 +97,7 @@ TEST_F(Update, WaitsUntilTheModuleHasConfirmedTheImage) {
 
 TEST_F(Update, AModuleIsReachedByItsSerialNumber) {
   Plant plant({"EX9042D-M@05,serial=1F3A", "EX9042D-M@05,serial=0001"});
-  EXPECT_EQ(update(plant, {"0D001F3A"}), 0);
+  EXPECT_EQ(update(plant, "0D001F3A"), 0);
   EXPECT_EQ(plant.output(), "0D001F3A: " + kRuns);
   for (const Data& frame : plant.sent) {
     EXPECT_EQ(Data(frame.begin(), frame.begin() + 7), (Data{0xFD, 0x46, 0x08, 0x0D, 0x00, 0x1F, 0x3A}));
@@ -272,7 +270,7 @@ TEST_F(Update, AnImageThatIsTakenBackWhileItIsOnTrialIsReported) {
     }
     return true;
   };
-  EXPECT_EQ(update(plant, {"5"}, {"--wait"}), 1);
+  EXPECT_EQ(update(plant, "5", {"--wait"}), 1);
   EXPECT_EQ(plant.output(), "5: FAILED: has taken the image back and runs D01.00: it did not prove itself\n");
 }
 
@@ -291,14 +289,14 @@ TEST_F(Update, AModuleThatDoesNotComeBackIsReported) {
 
 TEST_F(Update, SeveralModulesActivateTogetherWhenAllHaveTheImage) {
   Plant plant({"EX9042D-M@05", "EX9042D-M@06", "EX9042D-M@07,serial=1F3A"});
-  EXPECT_EQ(update(plant, {"5", "6", "0D001F3A"}, {"--wait"}), 0) << plant.error();
+  EXPECT_EQ(update(plant, "5-6,0D001F3A", {"--wait"}), 0) << plant.error();
   EXPECT_EQ(plant.output(),
             "5: runs D01.23, confirmed\n6: runs D01.23, confirmed\n0D001F3A: runs D01.23, confirmed\n");
 }
 
 TEST_F(Update, NothingIsSentIfOneModuleCannotGetTheImage) {
   Plant plant({"EX9042D-M@05", "EX9043D-M@06"});
-  EXPECT_EQ(update(plant, {"5", "6"}), 1);
+  EXPECT_EQ(update(plant, "5,6"), 1);
   EXPECT_EQ(plant.output().find("5: not updated, because another module has failed: nothing has been sent\n"
                                 "6: FAILED: has the signature"),
             0U)
@@ -309,29 +307,30 @@ TEST_F(Update, NothingIsSentIfOneModuleCannotGetTheImage) {
 TEST_F(Update, NoModuleActivatesIfOneHasNotReceivedAll) {
   Plant plant({"EX9042D-M@05", "EX9042D-M@06"});
   plant.sends = [&](const Data& frame) { return frame[0] != 6 || !is_block(frame, 1280); };
-  EXPECT_EQ(update(plant, {"5", "6"}), 1);
+  EXPECT_EQ(update(plant, "5,6"), 1);
   EXPECT_EQ(plant.output().find("5: not updated, because another module has failed: the modules keep"), 0U)
       << plant.output();
   EXPECT_EQ(count(plant, 0x06, 0x1013), 0);
   plant.sends = [](const Data& /*frame*/) { return true; };
-  EXPECT_EQ(update(plant, {"5", "6"}), 0);
+  EXPECT_EQ(update(plant, "5,6"), 0);
   EXPECT_EQ(plant.output(), "5: " + kRuns + "6: " + kRuns);
 }
 
 TEST_F(Update, TheResultOfEachModuleIsReported) {
   Plant plant({"EX9042D-M@05,fault=bad-image", "EX9042D-M@06"});
-  EXPECT_EQ(update(plant, {"5", "6"}), 1);
+  EXPECT_EQ(update(plant, "5,6"), 1);
   EXPECT_EQ(plant.output().find("5: FAILED: has taken"), 0U) << plant.output();
   EXPECT_NE(plant.output().find("\n6: " + kRuns), std::string::npos) << plant.output();
 }
 
 TEST_F(Update, WrongArgumentsAreRefused) {
   const std::pair<std::vector<std::string>, const char*> kRows[] = {
-      {{"5"}, "expected ex9000 update PORT MODULE... FILE"},
+      {{"5"}, "expected ex9000 update PORT MODULES FILE"},
       {{"port", "0", "FILE"}, "'0': expected an address from 1 to 247, or a serial number of 8 hex digits"},
       {{"port", "248", "FILE"}, "'248': expected an address"},
       {{"port", "0D00", "FILE"}, "'0D00': expected an address"},
-      {{"port", "5", "05", "FILE"}, "'5' is there twice; name each module once"},
+      {{"port", "5,5", "FILE"}, "'5' is there twice; name each module once"},
+      {{"port", "4-6,5", "FILE"}, "'5' is there twice; name each module once"},
       {{"tcp:host", "5", "FILE"}, "'tcp:host': expected tcp:HOST:PORT or modbus-tcp:HOST[:PORT]"},
       {{"modbus-tcp:host:x", "5", "FILE"}, "'modbus-tcp:host:x': expected tcp:HOST:PORT or"},
       {{"port", "5", "FILE", "--baud", "300"}, "--baud: '300': expected"},
