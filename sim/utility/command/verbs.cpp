@@ -71,7 +71,9 @@ const std::vector<Verb> verbs{
      R"(
 Looks for those that answer by serial number first, then asks each address. In all 24 modes this takes half an
 hour, so narrow it, or begin with --fast. Changes nothing, and clears nothing.
-Example: ex9000 scan /dev/ttyUSB0 --baud 9600 --addresses 1-32
+
+Examples:
+  ex9000 scan /dev/ttyUSB0 --baud 9600 --addresses 1-32
 )",
      {"baud", "format", "ascii", "modbus", "addresses", "fast", "timeout", "json"},
      scan_line},
@@ -115,9 +117,9 @@ address or the serial number MODULE are taken, or those of --entry.
     {"send PORT REQUEST...",
      "send one request, and print it and its reply in words",
      R"(
-REQUEST is a DCON command without CR, in quotes, or the bytes of a Modbus request in hex, without the CRC.
-Examples: ex9000 send /dev/ttyUSB0 '$01M'
-          ex9000 send modbus-tcp:10.0.0.7 01 03 0000 0008
+Examples:
+  ex9000 send /dev/ttyUSB0 '$01M'
+  ex9000 send modbus-tcp:10.0.0.7 01 03 0000 0008
 )",
      {"baud", "format", "checksum"},
      send},
@@ -126,7 +128,9 @@ Examples: ex9000 send /dev/ttyUSB0 '$01M'
      R"(
 They keep working while they receive it, and start the new image together, when all have it. What a module
 has received stays: after an interruption, the same command continues.
-Example: ex9000 update /dev/ttyUSB0 5-7,0D001F3A EX9042D-M.ex9fw --baud 115200 --wait
+
+Examples:
+  ex9000 update /dev/ttyUSB0 5-7,0D001F3A EX9042D-M.ex9fw --baud 115200 --wait
 )",
      {"baud", "format", "wait"},
      update},

@@ -18,6 +18,17 @@ struct Interrupted : std::runtime_error {
   Interrupted() : std::runtime_error("stopped") {}
 };
 
+/// What a master has heard in place of a reply.
+enum class Heard : std::uint8_t {
+  Nothing,
+  Echo,   ///< of its own request: the adapter receives what it sends
+  Noise,  ///< other bytes: damage, another mode, or several modules at once
+};
+
+inline Heard heard_of(const Data& received, const Data& request) {
+  return received.empty() ? Heard::Nothing : received == request ? Heard::Echo : Heard::Noise;
+}
+
 /// The functions throw std::runtime_error if the line is gone; `receive` also throws Interrupted.
 class Connection {
  public:

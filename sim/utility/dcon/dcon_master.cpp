@@ -49,7 +49,7 @@ std::optional<std::string> DconMaster::ask(const std::string& command, Time pati
   connection_.send(frame);
   const Time end = connection_.now() + patience + character_ * (frame.size() + kLongestReply);
   Data received;
-  garbled_ = false;
+  heard_ = Heard::Nothing;
   for (Data more; !(more = connection_.receive(end - connection_.now())).empty();) {
     received.insert(received.end(), more.begin(), more.end());
     std::optional<std::string> reply = reply_in(received);
@@ -59,14 +59,14 @@ std::optional<std::string> DconMaster::ask(const std::string& command, Time pati
     if (checksum_) {
       const std::size_t size = reply->size() - std::min(reply->size(), kChecksumDigits);
       if (size == 0 || checksum_of(reply->substr(0, size)) != reply->substr(size)) {
-        garbled_ = true;
+        heard_ = Heard::Noise;
         return std::nullopt;
       }
       reply->resize(size);
     }
     return reply;
   }
-  garbled_ = !received.empty() && received != frame;
+  heard_ = heard_of(received, frame);
   return std::nullopt;
 }
 

@@ -27,8 +27,8 @@ class DconMaster {
   /// The reply without checksum and CR, from its lead `!`, `>` or `?` on; bytes before it, as those of an
   /// echo, are skipped. nullopt: none, or one with a wrong checksum. Throws what Connection throws.
   std::optional<std::string> ask(const std::string& command, Time patience = kPatience);
-  /// Of the last command: bytes have arrived that are no reply and no echo.
-  [[nodiscard]] bool garbled() const { return garbled_; }
+  /// After the last command, if it had no reply.
+  [[nodiscard]] Heard heard() const { return heard_; }
 
  private:
   static constexpr int kBitsOfACharacter = 11;
@@ -36,7 +36,7 @@ class DconMaster {
   Connection& connection_;
   Time character_;
   bool checksum_ = false;
-  bool garbled_ = false;
+  Heard heard_ = Heard::Nothing;
 };
 
 }  // namespace ex9000::utility

@@ -35,6 +35,22 @@ bool replies_in_ascii(MasterLine& line, std::uint8_t address) {
   return false;
 }
 
+/// What the line has shown, and what to look at.
+std::string advice(Heard heard) {
+  switch (heard) {
+    case Heard::Noise:
+      return ", but bytes that are none: several modules with this address, noise, or A and B swapped; try "
+             "'ex9000 scan'";
+    case Heard::Echo:
+      return ", only the echo of the request: the adapter works; check the supply, the wires behind it, and "
+             "the address";
+    case Heard::Nothing:
+      break;
+  }
+  return ", nor anything else; check the supply, the wires A and B, and the address, or look for it with "
+         "'ex9000 scan'";
+}
+
 /// What else may be: the evidence is a reply in another mode.
 std::string other_mode(MasterLine& line, const Addressee& to, std::uint8_t address, Speaks speaks) {
   if (!line.has_modes()) {
@@ -113,21 +129,20 @@ Device find_device(Environment& environment, MasterLine& line, const std::string
   if (may_be_modbus && replies_in_modbus(line, to)) {
     return Device::in_modbus(line, to);
   }
+  const Heard asked_in_modbus = may_be_modbus ? line.modbus().heard() : Heard::Nothing;
   const bool may_be_ascii = speaks != Speaks::Modbus && !by_number && line.carries_all();
   if (may_be_ascii && replies_in_ascii(line, address)) {
     return Device::in_ascii(line, address);
   }
+  const Heard heard = may_be_ascii ? std::max(asked_in_modbus, line.dcon().heard()) : asked_in_modbus;
   const std::string mode = sim::mode_text(line.mode().baud, line.mode().format);
   if (line.has_modes()) {
     environment.error << text << ": no reply at " << mode << "; trying all other modes, for half a minute"
                       << std::endl;
   }
   const std::string other = other_mode(line, to, address, speaks);
-  if (!other.empty()) {
-    throw Failed(text + ": no reply at " + mode + ", but one at " + other + "; set --baud and --format");
-  }
-  throw Failed(text + ": no reply at " + mode + (line.has_modes() ? ", nor in any other mode" : "") +
-               "; check the supply, the wires A and B, and the address, or look for it with 'ex9000 scan'");
+  throw Failed(text + ": no reply at " + mode +
+               (!other.empty() ? ", but one at " + other + "; set --baud and --format" : advice(heard)));
 }
 
 }  // namespace ex9000::utility

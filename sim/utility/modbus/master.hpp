@@ -20,12 +20,11 @@ class Master {
   /// beginning of the reply. Throws what Connection throws.
   virtual Data exchange(const Addressee& to, const Request& request, Time patience) = 0;
   virtual Connection& connection() = 0;
-  /// Of the last exchange: bytes have arrived that are no reply and no echo: noise, damage, another mode, or
-  /// several modules at once.
-  [[nodiscard]] bool garbled() const { return garbled_; }
+  /// In the last exchange, if it had no reply.
+  [[nodiscard]] Heard heard() const { return heard_; }
 
  protected:
-  bool garbled_ = false;
+  Heard heard_ = Heard::Nothing;
 };
 
 /// Makes a request or a reply a frame.

@@ -49,7 +49,9 @@ Answer Module::ask(const Request& request, Time patience) {
       return *answer;
     }
   }
-  throw Failed("gives no reply; check address, rate, format, protocol (Modbus) and wires");
+  throw Failed(master_->heard() == Heard::Noise
+                   ? "gives no reply, but bytes that are none: several modules with this address, or noise"
+                   : "gives no reply; check address, rate, format, protocol (Modbus) and wires");
 }
 
 }  // namespace ex9000::utility

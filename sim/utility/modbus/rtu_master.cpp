@@ -48,7 +48,7 @@ class RtuMaster final : public Master {
     const Time end =
         connection_.now() + patience + character_ * (frame.size() + (size == 0 ? kLongestFrame : size));
     Data received;
-    garbled_ = false;
+    heard_ = Heard::Nothing;
     while (received.size() < kMostBytes) {
       const Data more = connection_.receive(end - connection_.now());
       if (more.empty()) {
@@ -62,7 +62,7 @@ class RtuMaster final : public Master {
         }
       }
     }
-    garbled_ = !received.empty() && received != frame;
+    heard_ = heard_of(received, frame);
     return {};
   }
 

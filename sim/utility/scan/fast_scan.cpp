@@ -12,7 +12,7 @@ namespace {
 
 enum class Round { Silent, Disturbed, Found, NobodyLeft };
 
-struct Heard {
+struct RoundResult {
   Round round = Round::Silent;
   Scanned module{};
 };
@@ -41,7 +41,7 @@ std::optional<Bytes> frame_in(const Data& heard, std::uint8_t subfunction, std::
   return Bytes{&*at, size};
 }
 
-Heard round(MasterLine& line, std::uint8_t subfunction, Time latency) {
+RoundResult round(MasterLine& line, std::uint8_t subfunction, Time latency) {
   constexpr std::size_t kFoundSize = 10;
   constexpr std::size_t kNobodySize = 5;
   constexpr std::size_t kNumberAt = 3;
@@ -61,8 +61,7 @@ Heard round(MasterLine& line, std::uint8_t subfunction, Time latency) {
       return {Round::NobodyLeft};
     }
   }
-  const bool only_echo = heard == request;
-  return {heard.empty() || only_echo ? Round::Silent : Round::Disturbed};
+  return {heard_of(heard, request) == Heard::Noise ? Round::Disturbed : Round::Silent};
 }
 
 }  // namespace
@@ -72,7 +71,7 @@ std::vector<Scanned> fast_scan(MasterLine& line, Time latency) {
   constexpr unsigned kMostRounds = 1000;
   std::vector<Scanned> found;
   for (unsigned i = 0; i < kScans; ++i) {
-    Heard heard = round(line, modbus::kFirstRound, latency);
+    RoundResult heard = round(line, modbus::kFirstRound, latency);
     for (unsigned rounds = 0; heard.round == Round::Found && rounds < kMostRounds; ++rounds) {
       const auto known = std::find_if(found.begin(), found.end(), [&](const Scanned& each) {
         return each.serial_number == heard.module.serial_number;

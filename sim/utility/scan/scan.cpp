@@ -90,7 +90,7 @@ class Scan {
   void modbus_at(std::uint8_t address) {
     const Addressee to = at_address(address);
     const bool replies = !line_.modbus().exchange(to, harmless_request(), search_.patience).empty();
-    if (!replies && !line_.modbus().garbled()) {
+    if (!replies && line_.modbus().heard() != Heard::Noise) {
       return;
     }
     FoundModule found = module(Speaks::Modbus, address);
@@ -116,7 +116,7 @@ class Scan {
   bool ascii_at(std::uint8_t address) {
     const std::string digits = sim::hex_byte_text(address);
     const auto reply = line_.dcon().ask("$" + digits + "2", search_.patience);
-    if (!reply && !line_.dcon().garbled()) {
+    if (!reply && line_.dcon().heard() != Heard::Noise) {
       return false;
     }
     FoundModule found = module(Speaks::Ascii, address);

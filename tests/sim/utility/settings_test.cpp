@@ -102,8 +102,22 @@ TEST(Show, SaysWhatAnswersInstead) {
       << plant.error();
   plant.act("1 power off");
   EXPECT_EQ(plant.run({"show", "port", "5"}), 1);
-  EXPECT_NE(plant.error().find(
-                "no reply at 9600 baud 8N1, nor in any other mode; check the supply, the wires A and B"),
+  EXPECT_NE(
+      plant.error().find("no reply at 9600 baud 8N1, nor anything else; check the supply, the wires A and B"),
+      std::string::npos)
+      << plant.error();
+  plant.echoes = true;
+  EXPECT_EQ(plant.run({"show", "port", "5"}), 1);
+  EXPECT_NE(
+      plant.error().find("no reply at 9600 baud 8N1, only the echo of the request: the adapter works; check"),
+      std::string::npos)
+      << plant.error();
+}
+
+TEST(Show, SaysThatBytesAreNoReply) {
+  Plant plant({"EX9052D-M@05", "EX9042D-M@05"});
+  EXPECT_EQ(plant.run({"show", "port", "5"}), 1);
+  EXPECT_NE(plant.error().find("no reply, but bytes that are none: several modules with this address"),
             std::string::npos)
       << plant.error();
 }
