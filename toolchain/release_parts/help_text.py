@@ -1,4 +1,4 @@
-"""Reads what `ex9000-sim --help` and `ex9000-sim SUBCOMMAND --help` print."""
+"""Reads what `PROGRAM --help` and `PROGRAM SUBCOMMAND --help` print."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class Option:
         """Returns the fixed words that the value can be, without placeholders such as N."""
         if "|" not in self.value:
             return []
-        return [word for word in self.value.strip("[]").split("|") if not word.isupper()]
+        return [word for word in self.value.strip("[]").split("|") if not (word.isalpha() and word.isupper())]
 
 
 @dataclass

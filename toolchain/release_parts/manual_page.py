@@ -1,9 +1,10 @@
-"""Writes the manual page of ex9000-sim, in the language mdoc, from its help texts."""
+"""Writes the manual page of a program, in the language mdoc, from its help texts."""
 
 from __future__ import annotations
 
 import datetime
 import re
+from dataclasses import dataclass
 
 from help_text import Help, Option
 
@@ -18,72 +19,105 @@ _ESCAPES = {"\\": "\\e", '"': "\\(dq", "-": "\\-", "'": "\\(aq", "`": "\\(ga"}
 
 
 def manual_page(
-    program: Help, subcommands: dict[str, Help], topics: dict[str, str], released: datetime.date
+    name: str, program: Help, subcommands: dict[str, Help], topics: dict[str, str], released: datetime.date
 ) -> str:
     """Returns the page. `topics` are the texts of `help`; `released` is the date that the page shows."""
+    page = _PAGES[name]
     lines = [
         f".Dd {released.strftime('%B')} {released.day}, {released.year}",
-        ".Dt EX9000-SIM 1",
+        f".Dt {name.upper()} 1",
         ".Os",
         ".Sh NAME",
-        ".Nm ex9000-sim",
-        ".Nd simulated EX9000 modules on RS-485 lines",
+        f".Nm {name}",
+        f".Nd {page.title}",
         ".Sh SYNOPSIS",
         *_synopsis(program),
     ]
-    for name, help_of in subcommands.items():
-        lines += [".Nm", f".Cm {name}", *_usage(help_of)]
+    for command, help_of in subcommands.items():
+        lines += [".Nm", f".Cm {command}", *_usage(help_of)]
     lines += [".Sh DESCRIPTION", *_prose(program.description)]
     lines += [".Sh OPTIONS", *_options(program)]
     _, examples = _without_examples(program.notes)
     lines += [".Sh COMMANDS"]
-    for name, help_of in subcommands.items():
+    for command, help_of in subcommands.items():
         its_notes, its_examples = _without_examples(help_of.notes)
         examples += its_examples
-        lines += [f".Ss {name}", *_prose(_sentence(help_of.description)), *_options(help_of), *_notes(its_notes)]
+        lines += [f".Ss {command}", *_prose(_sentence(help_of.description)), *_options(help_of), *_notes(its_notes)]
     for topic, text in topics.items():
         lines += [f".Sh {topic.upper()}", *_first(_notes(text.splitlines()))]
-    lines += [".Sh FILES", ".Bl -tag -width Ds", *_FILES, ".El"]
-    lines += [".Sh EXIT STATUS", *_EXIT_STATUS]
+    if page.files:
+        lines += [".Sh FILES", ".Bl -tag -width Ds", *page.files, ".El"]
+    lines += [".Sh EXIT STATUS", *page.exit_status]
     lines += [".Sh EXAMPLES", *_first(_notes(examples))]
     return "\n".join(lines) + "\n"
 
 
-_FILES = [
-    ".It Pa /etc/ex9000/NAME.yaml",
-    "the bus file of the service",
-    ".Ql ex9000-sim@NAME",
-    ".It Pa /var/lib/ex9000/NAME",
-    "the directory in which this service runs, with its links and EEPROM files",
-    ".It Pa /run/ex9000/NAME",
-    "a directory for the control socket of this service",
-]
-_EXIT_STATUS = [
-    ".Bl -tag -width Ds",
-    ".It 0",
-    "a user, a signal, the control command",
-    ".Ql quit",
-    "or the option",
-    ".Fl \\-for",
-    "has ended the program; the reader of the log has closed the pipe;",
-    ".Ql describe",
-    "or an option such as",
-    ".Fl \\-help",
-    "has printed its text; or all files of",
-    ".Ql play",
-    "have passed",
-    ".It 1",
-    "a file of",
-    ".Ql play",
-    "has failed, or something is wrong that may be right at the next start:",
-    "a port, a path or a file is in use, an address or a serial port is missing, or",
-    "a capture cannot be written",
-    ".It 2",
-    "an argument, a bus file or a file of",
-    ".Ql play",
-    "is wrong, a path cannot be written, or a file is not an EEPROM image",
-    ".El",
-]
+@dataclass(frozen=True)
+class Page:
+    """What the help texts of a program do not say."""
+
+    title: str
+    files: list[str]
+    exit_status: list[str]
+
+
+_PAGES = {
+    "ex9000-sim": Page(
+        "simulated EX9000 modules on RS-485 lines",
+        [
+            ".It Pa /etc/ex9000/NAME.yaml",
+            "the bus file of the service",
+            ".Ql ex9000-sim@NAME",
+            ".It Pa /var/lib/ex9000/NAME",
+            "the directory in which this service runs, with its links and EEPROM files",
+            ".It Pa /run/ex9000/NAME",
+            "a directory for the control socket of this service",
+        ],
+        [
+            ".Bl -tag -width Ds",
+            ".It 0",
+            "a user, a signal, the control command",
+            ".Ql quit",
+            "or the option",
+            ".Fl \\-for",
+            "has ended the program; the reader of the log has closed the pipe;",
+            ".Ql describe",
+            "or an option such as",
+            ".Fl \\-help",
+            "has printed its text; or all files of",
+            ".Ql play",
+            "have passed",
+            ".It 1",
+            "a file of",
+            ".Ql play",
+            "has failed, or something is wrong that may be right at the next start:",
+            "a port, a path or a file is in use, an address or a serial port is missing, or",
+            "a capture cannot be written",
+            ".It 2",
+            "an argument, a bus file or a file of",
+            ".Ql play",
+            "is wrong, a path cannot be written, or a file is not an EEPROM image",
+            ".El",
+        ],
+    ),
+    "ex9000": Page(
+        "works with EX9000 modules on an RS-485 line",
+        [],
+        [
+            ".Bl -tag -width Ds",
+            ".It 0",
+            "all is well",
+            ".It 1",
+            "a module does not reply, refuses something or has failed, or a port or a file is",
+            "not there",
+            ".It 2",
+            "an argument or a file is wrong",
+            ".It 130",
+            "the user has ended the program",
+            ".El",
+        ],
+    ),
+}
 
 
 def _synopsis(program: Help) -> list[str]:
@@ -138,7 +172,7 @@ def _notes(notes: list[str]) -> list[str]:
             kind = "list"
             tag, text = (entry[1], entry[2]) if entry else (note.strip(), "")
             lines += [f'.It Li "{_text(tag)}"', *_prose(text)]
-        elif note.startswith("  ex9000-sim "):
+        elif note.startswith("  ex9000"):
             lines += _end(kind)
             kind = "command"
             lines.append(f".Dl {_text(note.strip())}")

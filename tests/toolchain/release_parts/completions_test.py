@@ -7,7 +7,7 @@ import subprocess
 import tempfile
 import unittest
 
-from parts import PROGRAM, printed, written
+from parts import PROGRAM, UTILITY, printed, written
 
 _COMPLETE = """
 cd "$1"
@@ -15,7 +15,7 @@ source "$2"
 shift 2
 COMP_WORDS=("$@")
 COMP_CWORD=$(($# - 1))
-_ex9000_sim
+"_$(basename "$1" | tr - _)"
 printf '%s\\n' "${COMPREPLY[@]}"
 """
 
@@ -25,13 +25,13 @@ class Bash(unittest.TestCase):
     def setUpClass(cls) -> None:
         cls.script = written("bash-completion", str(PROGRAM))
 
-    def complete(self, *words: str) -> list[str]:
+    def complete(self, *words: str, name: str = "ex9000-sim", script_of: str = "") -> list[str]:
         """Returns the completions of the last of `words`. The current folder contains one file, bus.json."""
         with tempfile.TemporaryDirectory() as folder, tempfile.NamedTemporaryFile("w") as script:
             open(f"{folder}/bus.json", "w", encoding="utf-8").close()
-            script.write(self.script)
+            script.write(script_of or self.script)
             script.flush()
-            command = ["bash", "-c", _COMPLETE, "bash", folder, script.name, "ex9000-sim", *words]
+            command = ["bash", "-c", _COMPLETE, "bash", folder, script.name, name, *words]
             return subprocess.run(command, capture_output=True, text=True, check=True).stdout.split()
 
     def test_options_of_the_program_and_of_a_subcommand_are_completed(self) -> None:
@@ -44,6 +44,12 @@ class Bash(unittest.TestCase):
         self.assertEqual(self.complete("describe", "EX9042"), ["EX9042D", "EX9042D-M"])
         self.assertEqual(self.complete("bus"), ["bus.json"])
         self.assertEqual(self.complete("play", "b"), ["bus.json"])
+
+    def test_the_utility_has_its_own(self) -> None:
+        script = written("bash-completion", str(UTILITY))
+        self.assertEqual(self.complete("sa", name="ex9000", script_of=script), ["save"])
+        self.assertEqual(self.complete("update", "b", name="ex9000", script_of=script), ["bus.json"])
+        self.assertEqual(self.complete("set", "--format", "8E", name="ex9000", script_of=script), ["8E1"])
 
     def test_values_of_options_are_completed(self) -> None:
         self.assertEqual(self.complete("EX9042D", "--timing", ""), ["paced", "instant"])

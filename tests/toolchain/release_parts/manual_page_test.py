@@ -7,7 +7,7 @@ import shutil
 import subprocess
 import unittest
 
-from parts import PROGRAM, printed, written
+from parts import PROGRAM, UTILITY, printed, written
 from help_text import read
 
 
@@ -30,8 +30,14 @@ class ManualPage(unittest.TestCase):
 
     @unittest.skipUnless(shutil.which("mandoc"), "mandoc is not installed")
     def test_mandoc_reports_no_problem(self) -> None:
-        done = subprocess.run(["mandoc", "-Tlint"], input=self.page, capture_output=True, text=True, check=False)
-        self.assertEqual((done.stdout, done.stderr, done.returncode), ("", "", 0))
+        for page in (self.page, written("manual-page", str(UTILITY))):
+            done = subprocess.run(["mandoc", "-Tlint"], input=page, capture_output=True, text=True, check=False)
+            self.assertEqual((done.stdout, done.stderr, done.returncode), ("", "", 0))
+
+    def test_the_page_of_the_utility_has_its_settings(self) -> None:
+        page = written("manual-page", str(UTILITY))
+        self.assertIn(".Nm ex9000\n", page)
+        self.assertIn('.It Li "name=TEXT"', page)
 
     @unittest.skipUnless(shutil.which("mandoc"), "mandoc is not installed")
     def test_a_reader_sees_every_word_of_the_help_except_headings_and_notation(self) -> None:

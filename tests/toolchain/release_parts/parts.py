@@ -8,6 +8,7 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 PROGRAM = ROOT / "build/host-debug/sim/ex9000-sim"
+UTILITY = ROOT / "build/host-debug/sim/ex9000"
 WRITE = ROOT / "toolchain/release_parts/write"
 SECONDS = 1_790_000_000  # the date of the release for the tests: 2026-09-21 14:13:20 UTC
 
