@@ -99,23 +99,16 @@ void apply(Environment& environment, Opened& opened, const Values& given, bool d
 
 // --- files ---
 
-YAML::Node parse(const std::string& path) {
-  std::ifstream file(path);
-  if (!file) {
-    sim::unavailable(path + ": " + sim::reason() + "; name a file that you can read");
-  }
-  try {
-    return YAML::Load(file);
-  } catch (const YAML::Exception& error) {
-    sim::fail(path + ":" + std::to_string(error.mark.line + 1) + ": " + error.msg);
-  }
+[[noreturn]] void refuse_other_model(const std::string& saved, const Model& model) {
+  std::string text = "the settings are those of an " + saved + ", and the module is an ";
+  text += model.designation;
+  sim::fail(text + "; their channels and commands differ");
 }
 
-/// The settings in the file for the module: its only entry, or that with this serial number or address.
-Values entry_for(const std::string& path, const std::string& module, const Model& model) {
-  const YAML::Node file = parse(path);
+/// The settings for the module: the only entry, or that with this serial number or address.
+Values entry_in(const YAML::Node& file, const std::string& module, const Model& model) {
   if (!file.IsSequence() || file.size() == 0) {
-    sim::fail(path + ": expected a list of modules, as 'ex9000 save' writes it");
+    sim::fail("expected a list of modules, as 'ex9000 save' writes it");
   }
   for (const YAML::Node& entry : file) {
     const bool named = entry["serial-number"].as<std::string>("") == module ||
@@ -125,18 +118,30 @@ Values entry_for(const std::string& path, const std::string& module, const Model
     }
     const auto saved = entry["model"].as<std::string>("");
     if (saved != model.designation) {
-      sim::fail(path + ": the settings are those of an " + saved + ", and the module is an " +
-                std::string(model.designation) + "; their channels and commands differ");
+      refuse_other_model(saved, model);
     }
     Values values;
     for (const auto& setting : entry["settings"]) {
-      values[std::string(property_called(setting.first.as<std::string>()).key)] =
-          setting.second.as<std::string>();
+      values.emplace(property_called(setting.first.as<std::string>()).key, setting.second.as<std::string>());
     }
     return values;
   }
-  sim::fail(path + ": has " + std::to_string(file.size()) +
-            " modules, but none with the address or serial number " + module + "; name it with --entry");
+  sim::fail("has " + std::to_string(file.size()) + " modules, but none with the address or serial number " +
+            module + "; name it with --entry");
+}
+
+Values entry_for(const std::string& path, const std::string& module, const Model& model) {
+  return sim::with_place(path + ": ", [&] {
+    std::ifstream file(path);
+    if (!file) {
+      sim::unavailable(sim::reason() + "; name a file that you can read");
+    }
+    try {
+      return entry_in(YAML::Load(file), module, model);
+    } catch (const YAML::Exception& error) {
+      sim::fail("line " + std::to_string(error.mark.line + 1) + ": " + error.msg);
+    }
+  });
 }
 
 }  // namespace

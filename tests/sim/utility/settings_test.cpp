@@ -287,7 +287,8 @@ TEST_F(Saved, WrongFilesAreRefused) {
   const std::pair<std::string, std::string> kRows[] = {
       {"- model: EX9042D-M\n  settings: {address: 1}\n",
        ": the settings are those of an EX9042D-M, and the module is an EX9052D-M; their channels"},
-      {"- model: [", ":1: "},
+      {"- model: [", ": line 1: "},
+      {"- model: EX9052D-M\n  settings: {name: {}}\n", ": line 2: "},
       {"model: EX9052D-M\n", ": expected a list of modules, as 'ex9000 save' writes it"},
       {"- model: EX9052D-M\n  settings: {speed: 1}\n", ": 'speed': expected one of"},
       {"- model: EX9052D-M\n  settings: {baud: 300}\n", "baud: '300': expected"},
