@@ -33,8 +33,8 @@ struct Content {
     update::Info info = slot().info;
     const std::uint32_t crc = update::crc32({image.data(), image.size()});
     for (unsigned i = 0; i < 4; ++i) {
-      info.bytes[12 + i] = static_cast<std::uint8_t>(image.size() >> (24 - 8 * i));
-      info.bytes[20 + i] = static_cast<std::uint8_t>(crc >> (24 - 8 * i));
+      info.bytes[update::kLengthAt + i] = static_cast<std::uint8_t>(image.size() >> (24 - 8 * i));
+      info.bytes[update::kImageCheckAt + i] = static_cast<std::uint8_t>(crc >> (24 - 8 * i));
     }
     const update::Header sealed = update::header_of(info, sequence);
     std::copy(sealed.begin(), sealed.end(), head.begin());
