@@ -28,6 +28,15 @@ struct Content {
 
   [[nodiscard]] update::Slot slot() const { return update::Slot({head.data(), head.size()}); }
   std::uint8_t& mark(unsigned which) { return head[kMarksAt + which]; }
+  /// The address of the handler of an exception, which is odd.
+  [[nodiscard]] std::uint32_t handler(unsigned exception) const {
+    return ex9000::Bytes{image.data(), image.size()}.low_byte_first_32(4U * exception);
+  }
+  void replace_first_instruction(unsigned exception, std::uint16_t instruction) {
+    const std::size_t at = handler(exception) - 1U - board::kImageInRam;
+    image[at] = static_cast<std::uint8_t>(instruction);
+    image[at + 1] = static_cast<std::uint8_t>(instruction >> 8U);
+  }
   /// Makes the header right again.
   void seal(std::uint32_t sequence) {
     update::Info info = slot().info;
