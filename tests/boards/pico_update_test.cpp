@@ -85,7 +85,8 @@ class PicoUpdate : public PicoSlots {
     const Bytes reply = request({3, 0x10, 0x11, 0, 2});
     return reply.size() != 6 ? 0 : ex9000::Bytes{reply.data(), reply.size()}.double_word(2);
   }
-  Bytes act(unsigned action) { return request({6, 0x10, 0x13, 0, static_cast<std::uint8_t>(action)}); }
+  static Bytes action_pdu(unsigned action) { return {6, 0x10, 0x13, 0, static_cast<std::uint8_t>(action)}; }
+  Bytes act(unsigned action) { return request(action_pdu(action)); }
 
   Bytes begin_update(const Content& content) {
     Bytes pdu{0x10, 0x10, 0x00, 0, 16, 32};
@@ -172,40 +173,57 @@ TEST_F(PicoUpdate, UnderLoadNoEdgeIsLostAndNoReplyIsLate) {
   EXPECT_EQ(read(0x00FE), '3');
 }
 
-/// EX9000_CUTS: how often.
+/// EX9000_CUTS: how often. Each third cut leaves time for a whole update.
 TEST_F(PicoUpdate, ThePowerMayFailAtAnyTime) {
   const char* const wanted = std::getenv("EX9000_CUTS");
   const unsigned most = wanted == nullptr ? 8 : static_cast<unsigned>(std::strtoul(wanted, nullptr, 10));
   std::mt19937 random(1);
+  // The power fails while the module answers, or soon after.
+  const auto send_and_run = [&](const Bytes& pdu, unsigned most_microseconds) {
+    send(pdu);
+    bench_.run_for(std::chrono::microseconds(random() % most_microseconds));
+  };
   unsigned updates = 0;
   for (unsigned cuts = 0; cuts < most && !HasFailure(); ++cuts) {
-    const nanoseconds fails = bench_.now() + std::chrono::microseconds(random() % 1'500'000);
+    const milliseconds time = cuts % 3 == 1 ? milliseconds(20'000) : milliseconds(random() % 1500);
+    const nanoseconds fails = bench_.now() + time;
     const int version = read(0x00FE);
     const bool old = version == '1' || version == '0';
     ASSERT_TRUE(old || version == '3') << version;
     EXPECT_EQ(read(0x01E4), 5) << "the settings are lost";
     const Content& content = old ? new_ : old_;
-    if (read(kRegisterOfState) == static_cast<int>(State::Unconfirmed)) {
-      EXPECT_EQ(act(kConfirm).size(), 5U);
-      ++updates;
-    } else if (begin_update(content).size() == 5) {
-      for (std::uint32_t offset = next(); offset < content.image.size() && bench_.now() < fails;
-           offset += kBlockSize) {
-        EXPECT_EQ(block(content, offset).size(), 5U) << offset;
-      }
-      if (read(kRegisterOfState) == static_cast<int>(State::Complete)) {
-        EXPECT_EQ(act(kActivate).size(), 5U);
-        bench_.run_for(std::chrono::microseconds(random() % 80'000));
+    EXPECT_EQ(begin_update(content).size(), 5U);
+    for (std::uint32_t offset = next(); offset < content.image.size() && bench_.now() < fails;
+         offset += kBlockSize) {
+      EXPECT_EQ(block(content, offset).size(), 5U) << offset;
+    }
+    if (read(kRegisterOfState) != static_cast<int>(State::Complete)) {
+      send_and_run(block_pdu(content, next()), random() % 2 == 0 ? 60'000 : 1'000);
+    } else if (random() % 4 == 0) {
+      send_and_run(action_pdu(kActivate), 80'000);
+    } else {
+      EXPECT_EQ(act(kActivate).size(), 5U);
+      bench_.run_for(milliseconds(100));
+      restart();
+      EXPECT_EQ(read(kRegisterOfState), static_cast<int>(State::Unconfirmed));
+      if (random() % 4 == 0) {
+        send_and_run(action_pdu(kConfirm), 4'000);
       } else {
-        send(block_pdu(content, next()));
-        bench_.run_for(std::chrono::microseconds(random() % (random() % 2 == 0 ? 60'000 : 1'000)));
+        EXPECT_EQ(act(kConfirm).size(), 5U);
+        ++updates;
       }
     }
     bench_.power(false);
     bench_.power(true);
     restart();
+    if (read(kRegisterOfState) ==
+        static_cast<int>(State::Unconfirmed)) {  // the power has failed before its start
+      EXPECT_EQ(act(kConfirm).size(), 5U);
+      ++updates;
+    }
   }
   std::printf("%u cuts, %u updates\n", most, updates);
+  EXPECT_GE(updates, most / 8);
 }
 
 /// What is wrong with an image, and the state in which the module is at last, with the old image.
