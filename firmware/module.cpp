@@ -10,9 +10,6 @@ namespace {
 
 constexpr Duration kInitTimeout = milliseconds(50);  // wire.md D13
 constexpr std::uint8_t kInitModeAddress = 0x00;
-constexpr std::uint32_t kProof = 60;  // seconds until a new image that has replied is confirmed
-/// What a reply may take beyond its bytes, for gaps that late interrupts cause.
-constexpr Duration kReplyMargin = milliseconds(100);
 constexpr Duration kClockResolution(1);  // an event may be this much later than its recorded time
 
 }  // namespace

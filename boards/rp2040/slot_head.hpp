@@ -14,7 +14,7 @@ namespace ex9000::board {
 /// toolchain/seal-image adds length and CRC of the image, and the CRC of the header.
 constexpr update::SlotHead unsealed_slot_head() {
   constexpr std::size_t kSignature = update::kInfoAt;
-  constexpr std::size_t kVersion = update::kInfoAt + 16;
+  constexpr std::size_t kVersion = update::kInfoAt + update::kVersionAt;
   constexpr unsigned kBitsOfAByte = 8;
   constexpr auto kImageFor = update::signature_of(kOnlyModel, kBoardCode);
   update::SlotHead head{};  // all marks are set

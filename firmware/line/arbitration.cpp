@@ -10,8 +10,6 @@ namespace {
 constexpr std::uint32_t kUnscanned = 0x6;
 constexpr std::uint32_t kScanned = 0xF;
 constexpr unsigned kPriorityAt = 28;
-/// What a reply may take beyond its bytes, for gaps that late interrupts cause.
-constexpr Duration kMargin = milliseconds(100);
 
 }  // namespace
 
@@ -79,7 +77,7 @@ Bytes Arbitration::take_burst() {
 
 bool Arbitration::jams(Time now) const {
   const Duration longest(kLongestReply * timing_.character.microseconds());
-  return sending_.load() && Deadline(Time(sent_since_.load()) + (longest + kMargin)).reached(now);
+  return sending_.load() && Deadline(Time(sent_since_.load()) + (longest + kReplyMargin)).reached(now);
 }
 
 bool Arbitration::hears_byte() {

@@ -170,12 +170,11 @@ Verdict RtuAssembler::conclude(FrameQueue& queue, Time received) {
 
 /// `frame` of `size` bytes, at address FD, is a request by serial number, and the number is this module's.
 bool RtuAssembler::has_own_number(const std::uint8_t* frame, unsigned size) const {
-  constexpr unsigned kNumberAt = 3;
   const Bytes bytes{frame, size};
   const std::uint32_t number = serial_number_.load();
   return size >= modbus::kNumberPrefix + kShortestFrame && number != 0 && frame[1] == modbus::kScanFunction &&
          frame[2] == modbus::kRequestByNumber &&
-         (std::uint32_t{bytes.word(kNumberAt)} << 16U | bytes.word(kNumberAt + 2)) == number;
+         (std::uint32_t{bytes.word(modbus::kNumberAt)} << 16U | bytes.word(modbus::kNumberAt + 2)) == number;
 }
 
 Verdict RtuAssembler::loss_verdict() const {

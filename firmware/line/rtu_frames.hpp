@@ -31,8 +31,9 @@ enum Scan : std::uint8_t {
 /// modules merge. No frame of a module begins so.
 constexpr std::uint8_t kZeroInWindow = 0xFF;
 
-/// Before the request in a frame by serial number. The last byte of the number, which follows, is where the
-/// address would be.
+/// In a frame by serial number: before the number, and before the request. The last byte of the number is
+/// where the address of the request would be.
+constexpr unsigned kNumberAt = 3;
 constexpr unsigned kNumberPrefix = 6;
 
 /// Function 03 or 04, register 0x3038, quantity 0 or 1; `frame` without CRC. The interrupt that ends a frame

@@ -16,6 +16,9 @@ inline constexpr bool kStrictGaps = true;
 inline constexpr bool kStrictGaps = false;
 #endif
 
+/// What a reply may take beyond its bytes, for gaps that late interrupts cause.
+constexpr Duration kReplyMargin = milliseconds(100);
+
 struct LineTiming {
   /// Its duration, rounded up.
   Duration character;

@@ -67,7 +67,7 @@ void write_exception(std::uint8_t address, std::uint8_t function, Refusal refusa
 }
 
 /// Of a serial number, before the byte that stands for the address.
-constexpr std::size_t kNumberBytesBefore = 3;
+constexpr std::size_t kNumberBytesBefore = kNumberPrefix - kNumberAt;
 
 bool is_own_number(const Exchange& exchange) {
   constexpr unsigned kBitsOfAWord = 16;
@@ -125,7 +125,8 @@ void refuse(Exchange& exchange) {
   }
   const std::size_t address_at = exchange.by_serial_number ? kNumberPrefix : 0;
   const Bytes written = reply.bytes();
-  const std::array<std::uint8_t, kNumberBytesBefore> number{written[3], written[4], written[5]};
+  const std::array<std::uint8_t, kNumberBytesBefore> number{written[kNumberAt], written[kNumberAt + 1],
+                                                            written[kNumberAt + 2]};
   write_exception(written[address_at], written[address_at + 1], exchange.outcome.refusal, reply);
   if (exchange.by_serial_number) {
     put_prefix(number.data(), reply);

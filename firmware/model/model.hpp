@@ -1,6 +1,7 @@
 // The models, one table row each. To add one: .github/CONTRIBUTING.md. No protocol code uses a designation.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string_view>
 
@@ -46,6 +47,16 @@ struct Model {
   OutputKind output_kind;
   InitInput init_input = InitInput::Terminal;
 
+  /// A character of the designation without `EX` and `-`, e.g. of "9042DM"; 0 after its end.
+  [[nodiscard]] constexpr std::uint8_t short_designation(unsigned index) const {
+    constexpr std::size_t kFamily = 2;
+    for (const char character : designation.substr(kFamily)) {
+      if (character != '-' && index-- == 0) {
+        return static_cast<std::uint8_t>(character);
+      }
+    }
+    return 0;
+  }
   [[nodiscard]] constexpr bool speaks_modbus() const { return modbus_code != 0; }
   [[nodiscard]] constexpr bool has_inputs() const { return inputs != 0; }
   [[nodiscard]] constexpr bool has_outputs() const { return outputs != 0; }

@@ -146,16 +146,8 @@ inline std::uint16_t read_line(const Exchange& exchange, unsigned index) {
   return format == LineFormat::k8N2 ? 2 : 1;
 }
 
-/// One character in each register, without the `EX` and the `-` of the designation.
 inline std::uint16_t read_model(const Exchange& exchange, unsigned index) {
-  constexpr std::size_t kFamily = 2;
-  unsigned at = 0;
-  for (const char character : exchange.model().designation.substr(kFamily)) {
-    if (character != '-' && at++ == index) {
-      return static_cast<std::uint8_t>(character);
-    }
-  }
-  return 0;
+  return exchange.model().short_designation(index);
 }
 
 inline std::uint16_t read_version_text(const Exchange& exchange, unsigned index) {

@@ -13,16 +13,14 @@ namespace ex9000::update {
 
 using Signature = std::array<std::uint8_t, kSignatureSize>;
 
-/// The designation without `EX` and `-` as in register 0x00C8, a dot, and the code of the board, e.g.
-/// "9042DM.pico"; padded with 0. In a constant expression, a text that is too long is an error.
+/// The short designation, a dot, and the code of the board, e.g. "9042DM.pico"; padded with 0. In a constant
+/// expression, a text that is too long is an error.
 constexpr Signature signature_of(const Model& model, std::string_view board) {
-  constexpr std::size_t kFamily = 2;
   Signature signature{};
-  std::size_t at = 0;
-  for (const char character : model.designation.substr(kFamily)) {
-    if (character != '-') {
-      signature[at++] = static_cast<std::uint8_t>(character);
-    }
+  unsigned at = 0;
+  while (model.short_designation(at) != 0) {
+    signature[at] = model.short_designation(at);
+    ++at;
   }
   signature[at++] = '.';
   for (const char character : board) {

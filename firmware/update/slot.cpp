@@ -30,8 +30,10 @@ Slot::Slot(Bytes head)
       sequence(head.double_word(kSequenceAt)) {
   std::copy_n(head.begin() + kInfoAt, kInfoSize, info.bytes.begin());
   const Bytes marks = head.from(kMarksAt);
-  while (sectors < kImageSectors && marks[sectors] == kMarked) {
-    ++sectors;
+  for (std::uint32_t sector = 0; sector < kImageSectors; ++sector) {
+    if (marks[sector] == kMarked) {
+      sectors = sector + 1;  // one before it that is not set has decayed: they are set in order
+    }
   }
   activated = marks[kActivated] == kMarked;
   tried = marks[kTried] == kMarked;

@@ -5,7 +5,9 @@
 //     sectors 1 to 31    the image
 //
 // A mark is programmed after what it says has become true. If the power fails meanwhile, it may read as set
-// or not, and may change by itself, but what it says is true: it can be programmed again.
+// or not, and may change by itself, but what it says is true: it can be programmed again. One case remains: a
+// mark of a sector reads as not set, the sector is written again, the power fails once more, and the mark has
+// changed. Then the CRC of the image shows it at the end of the transfer, which begins anew.
 #pragma once
 
 #include <array>
@@ -102,7 +104,7 @@ struct Slot {
   bool valid = false;          ///< the header is right; else nothing in this slot counts
   std::uint32_t sequence = 0;  ///< higher: newer
   Info info;
-  std::uint32_t sectors = 0;  ///< that have been received without a gap
+  std::uint32_t sectors = 0;  ///< that have been received
   bool activated = false;
   bool tried = false;
   bool confirmed = false;

@@ -7,6 +7,10 @@
 
 namespace ex9000 {
 
+/// In seconds, without a reset: firmware that lives so long works. It is in no crash loop, and a new image
+/// that has replied is confirmed (extensions.md, firmware update).
+constexpr std::uint32_t kProof = 60;
+
 /// The board keeps `to_keep` through such resets (hal/kept_word.hpp). After a few, the module starts with the
 /// safe value, so that a crash loop does not click relays.
 class CrashCount {
@@ -24,8 +28,7 @@ class CrashCount {
   [[nodiscard]] std::uint32_t to_keep() const { return kMark + count_; }
   /// `seconds`: since the reset.
   void lived(std::uint32_t seconds) {
-    constexpr std::uint32_t kLongEnough = 60;
-    if (seconds >= kLongEnough) {
+    if (seconds >= kProof) {
       count_ = 0;
     }
   }

@@ -124,11 +124,7 @@ TEST_F(PicoBoot, AnImageWhoseStartCannotBeMarkedDoesNotStart) {
 }
 
 TEST_F(PicoBoot, AnImageThatHangsIsResetByTheWatchdogAndTheOldOneStarts) {
-  constexpr std::size_t kResetHandler = 4;
-  const std::uint16_t handler =
-      ex9000::Bytes{new_.image.data(), new_.image.size()}.low_byte_first_16(kResetHandler);
-  new_.image[handler - 1U] = 0xFE;  // a branch to itself
-  new_.image[handler] = 0xE7;       // the address of the handler is odd
+  new_.replace_first_instruction(kReset, kBranchToItself);
   new_.mark(update::kConfirmed) = 0xFF;
   new_.mark(update::kTried) = 0xFF;
   new_.seal(2);

@@ -19,6 +19,15 @@ using std::chrono::nanoseconds;
 /// The longest period of the module's watchdog: wire.md section 6.
 constexpr milliseconds kWatchdogPeriod{1600};
 
+// To spoil an image: numbers of exceptions, and instructions in place of the first one of a handler.
+constexpr unsigned kReset = 1;
+constexpr unsigned kSystemTick = 15;
+constexpr unsigned kFirstInterrupt = 16;
+constexpr unsigned kUart0 = kFirstInterrupt + 20;
+constexpr std::uint16_t kBranchToItself = 0xE7FE;
+constexpr std::uint16_t kUndefined = 0xDE00;
+constexpr std::uint16_t kReturn = 0x4770;  // BX LR
+
 inline play::Bytes text(const std::string& characters) { return {characters.begin(), characters.end()}; }
 
 /// Sends `request`, and returns the time from its end to the start bit of the reply. `bit` is the duration of

@@ -28,13 +28,22 @@ struct Content {
 
   [[nodiscard]] update::Slot slot() const { return update::Slot({head.data(), head.size()}); }
   std::uint8_t& mark(unsigned which) { return head[kMarksAt + which]; }
+  /// The address of the handler of an exception, which is odd.
+  [[nodiscard]] std::uint32_t handler(unsigned exception) const {
+    return ex9000::Bytes{image.data(), image.size()}.low_byte_first_32(4U * exception);
+  }
+  void replace_first_instruction(unsigned exception, std::uint16_t instruction) {
+    const std::size_t at = handler(exception) - 1U - board::kImageInRam;
+    image[at] = static_cast<std::uint8_t>(instruction);
+    image[at + 1] = static_cast<std::uint8_t>(instruction >> 8U);
+  }
   /// Makes the header right again.
   void seal(std::uint32_t sequence) {
     update::Info info = slot().info;
     const std::uint32_t crc = update::crc32({image.data(), image.size()});
     for (unsigned i = 0; i < 4; ++i) {
-      info.bytes[12 + i] = static_cast<std::uint8_t>(image.size() >> (24 - 8 * i));
-      info.bytes[20 + i] = static_cast<std::uint8_t>(crc >> (24 - 8 * i));
+      info.bytes[update::kLengthAt + i] = static_cast<std::uint8_t>(image.size() >> (24 - 8 * i));
+      info.bytes[update::kImageCheckAt + i] = static_cast<std::uint8_t>(crc >> (24 - 8 * i));
     }
     const update::Header sealed = update::header_of(info, sequence);
     std::copy(sealed.begin(), sealed.end(), head.begin());

@@ -36,6 +36,19 @@ TEST(Update, ContinuesAtTheBeginningOfTheSectorThatWasBeingWritten) {
   }
 }
 
+TEST(Update, AMarkOfASectorThatHasDecayedChangesNothingIfALaterOneIsSet) {
+  const Buffer image = image_of(3 * kSector);
+  Bench bench;
+  bench.begin(image);
+  bench.blocks(image, 2 * kSector);
+  bench.spare()[kMarksAt] = 0x55;
+  bench.reset();
+  EXPECT_EQ(bench.update().state(), State::Receiving);
+  EXPECT_EQ(bench.update().next(), 2 * kSector);
+  EXPECT_EQ(bench.blocks(image), Refusal::None);
+  EXPECT_EQ(bench.update().state(), State::Complete);
+}
+
 TEST(Update, ReceivesTheLongestImage) {
   const Buffer image = image_of(kLargestImage);
   Bench bench;
