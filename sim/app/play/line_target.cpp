@@ -173,13 +173,13 @@ void LineTarget::turn_to(std::size_t line, std::size_t module) {
   module_ = module;
 }
 
-void LineTarget::act(const sim::Words& words) {
+std::string LineTarget::act(const sim::Words& words) {
   sim::LinesInUse lines;
   for (std::size_t i = 0; i < lines_.size(); ++i) {
     lines.push_back({names_[i], *lines_[i]});
   }
   const bool of_a_module = words[0].find_first_not_of("0123456789") == std::string::npos;
-  sim::act(of_a_module ? lines : sim::LinesInUse{lines[line_]}, words);
+  return sim::act(of_a_module ? lines : sim::LinesInUse{lines[line_]}, words);
 }
 
 }  // namespace ex9000::play

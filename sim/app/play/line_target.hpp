@@ -43,7 +43,7 @@ class LineTarget : public Target {
   Led led(Led expected) override;
   void choose_module(std::size_t position) override;
   void choose_line(const std::string& name) override;
-  void act(const sim::Words& words) override;
+  std::string act(const sim::Words& words) override;
 
  protected:
   sim::Line& chosen() { return *lines_[line_]; }

@@ -1,6 +1,5 @@
 #include "sim/app/play/play.hpp"
 
-#include <filesystem>
 #include <vector>
 
 #include "sim/app/play/line_target.hpp"
@@ -16,24 +15,6 @@ namespace ex9000::play {
 namespace {
 
 using sim::fail;
-
-std::vector<Transcript> load_all(const std::string& path) {
-  std::vector<Transcript> all;
-  try {
-    const bool is_folder = std::filesystem::is_directory(path);
-    for (const std::string& file : is_folder ? transcript_files(path) : std::vector<std::string>{path}) {
-      for (Transcript& transcript : load(file)) {
-        all.push_back(std::move(transcript));
-      }
-    }
-  } catch (const std::filesystem::filesystem_error& error) {
-    fail(path + ": " + error.code().message() + "; name a folder that can be read");
-  }
-  if (all.empty()) {
-    fail(path + ": contains no .txt file; name a transcript, a scenario or a folder of such files");
-  }
-  return all;
-}
 
 void check(const Transcript& transcript, const std::optional<sim::Setup>& bus) {
   if (transcript.model == nullptr && !bus) {

@@ -64,8 +64,10 @@ class Target {
   virtual void choose_line(const std::string& /*name*/) {
     throw std::runtime_error("there is only one line");
   }
-  /// See sim/notation/actions.hpp: `N ACTION`, or `ACTION` of the chosen line.
-  virtual void act(const sim::Words& /*words*/) { throw std::runtime_error("this target has no actions"); }
+  /// As sim::act: `N ACTION`, or `ACTION` of the chosen line.
+  virtual std::string act(const sim::Words& /*words*/) {
+    throw std::runtime_error("this target has no actions");
+  }
 
   /// When all steps have passed. std::runtime_error: an error that no step has reported.
   virtual void end() {}

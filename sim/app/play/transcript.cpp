@@ -85,6 +85,7 @@ struct Source {
   ModelTable table;
   bool names_its_source = false;
   bool slow = false;
+  bool blank_memory = false;
   std::vector<ModelRun> models;
   std::size_t preset_ends = 0;  ///< the models before this index have a `preset:` line
   std::vector<Given> withs;
@@ -159,6 +160,15 @@ void add_with(const std::string& text, Source& source) {
   source.withs.push_back(given);
 }
 
+void add_tags(const std::string& text, Source& source) {
+  for (const std::string& tag : sim::words_of(text)) {
+    if (tag != "slow" && tag != "blank-memory") {
+      fail("'" + tag + "' is not a tag; expected slow or blank-memory");
+    }
+    (tag == "slow" ? source.slow : source.blank_memory) = true;
+  }
+}
+
 bool read_header(const std::string& text, unsigned number, Source& source) {
   if (const auto from = header_value(text, "source")) {
     source.names_its_source = !from->empty();
@@ -171,10 +181,7 @@ bool read_header(const std::string& text, unsigned number, Source& source) {
   } else if (const auto with = header_value(text, "with")) {
     add_with(*with, source);
   } else if (const auto tags = header_value(text, "tags")) {
-    if (*tags != "slow") {
-      fail("'" + *tags + "' is not a tag; expected slow");
-    }
-    source.slow = true;
+    add_tags(*tags, source);
   } else {
     return false;
   }
@@ -194,8 +201,9 @@ void read_line(const std::string& raw, unsigned number, Source& source) {
 }
 
 Transcript scenario(const std::string& path, const Source& source, unsigned& line) {
-  if (source.slow || !source.withs.empty()) {
-    fail(std::string(source.slow ? "'tags:'" : "'with:'") + " requires a 'model:' or 'models:' line");
+  const bool tagged = source.slow || source.blank_memory;
+  if (tagged || !source.withs.empty()) {
+    fail(std::string(tagged ? "'tags:'" : "'with:'") + " requires a 'model:' or 'models:' line");
   }
   Transcript transcript;
   transcript.file = path;
@@ -230,6 +238,7 @@ Transcript transcript_of(const std::string& path, const Source& source, const Mo
   }
   transcript.preset = preset_of(*run.model, preset);
   transcript.slow = source.slow;
+  transcript.blank_memory = source.blank_memory;
   for (const Line& raw : source.steps) {
     line = raw.number;
     transcript.steps.push_back(parse_step(raw.number, substitute(raw.text, variables), run.model));
@@ -288,6 +297,24 @@ std::vector<Transcript> load(const std::string& path) {
   } catch (const std::exception& error) {
     fail(path + ":" + std::to_string(line) + ": " + error.what());
   }
+}
+
+std::vector<Transcript> load_all(const std::string& path) {
+  std::vector<Transcript> all;
+  try {
+    const bool is_folder = std::filesystem::is_directory(path);
+    for (const std::string& file : is_folder ? transcript_files(path) : std::vector<std::string>{path}) {
+      for (Transcript& transcript : load(file)) {
+        all.push_back(std::move(transcript));
+      }
+    }
+  } catch (const std::filesystem::filesystem_error& error) {
+    fail(path + ": " + error.code().message() + "; name a folder that can be read");
+  }
+  if (all.empty()) {
+    fail(path + ": contains no .txt file; name a transcript, a scenario or a folder of such files");
+  }
+  return all;
 }
 
 }  // namespace ex9000::play

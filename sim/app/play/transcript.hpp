@@ -37,6 +37,7 @@ struct Transcript {
   Settings preset;  ///< of a transcript: factory settings with the changes from the header
   bool preset_given = false;
   bool slow = false;
+  bool blank_memory = false;  ///< requires a module that has never stored anything
   std::vector<Step> steps;
 };
 
@@ -48,5 +49,7 @@ std::vector<std::string> transcript_files(const std::string& directory);
 
 /// For each model and `with:` line of a transcript; one for a scenario. Errors name the file and the line.
 std::vector<Transcript> load(const std::string& path);
+/// Of a file, or of all files in a folder; at least one.
+std::vector<Transcript> load_all(const std::string& path);
 
 }  // namespace ex9000::play
