@@ -30,7 +30,8 @@ class AsioConnection : public Connection {
     io_.restart();
     while (received_.empty() && !error_ && !interrupted_ && io_.run_one_until(end) != 0) {
     }
-    if (interrupted_) {
+    if (std::exchange(interrupted_, false)) {
+      wait_for_signal();
       throw Interrupted();
     }
     if (received_.empty()) {
@@ -45,8 +46,7 @@ class AsioConnection : public Connection {
   /// `name`: for messages. The subclass opens the stream, then calls `read`.
   explicit AsioConnection(std::string name) : name_(std::move(name)) {
     sim::add_stop_signals(signals_);
-    signals_.async_wait(
-        [this](const boost::system::error_code& error, int /*signal*/) { interrupted_ = !error; });
+    wait_for_signal();
   }
 
   Stream& stream() { return stream_; }
@@ -78,6 +78,12 @@ class AsioConnection : public Connection {
   }
 
  private:
+  /// The next one interrupts what a command does to end well.
+  void wait_for_signal() {
+    signals_.async_wait(
+        [this](const boost::system::error_code& error, int /*signal*/) { interrupted_ = !error; });
+  }
+
   std::string name_;
   boost::asio::io_context io_;
   boost::asio::signal_set signals_{io_};
