@@ -1,5 +1,7 @@
 #include "tests/sim/utility/plant.hpp"
 
+#include <algorithm>
+#include <deque>
 #include <utility>
 
 #include "sim/notation/module_notation.hpp"
@@ -17,6 +19,7 @@ class Plant::Line final : public Connection {
   }
   void send(const Data& bytes) override {
     plant_.sent.push_back(bytes);
+    plant_.heard_ = 0;
     if (plant_.sends(bytes)) {
       plant_.target_.send(bytes);
     }
@@ -29,15 +32,37 @@ class Plant::Line final : public Connection {
       return std::exchange(echo_, {});
     }
     const Time end = now() + patience;
-    const auto whole = std::chrono::duration_cast<std::chrono::milliseconds>(patience);
-    const Data bytes = whole > Time(0) ? plant_.target_.receive(1, whole) : Data();
-    return !bytes.empty() || end <= now() ? bytes : plant_.target_.listen(end - now());
+    while ((arrived_.empty() || arrived_.front().first > now()) && now() < end) {
+      hear_until(arrived_.empty() ? end : std::min(end, arrived_.front().first));
+    }
+    Data bytes;
+    for (; !arrived_.empty() && arrived_.front().first <= now(); arrived_.pop_front()) {
+      bytes.push_back(arrived_.front().second);
+    }
+    return bytes;
   }
   Time now() override { return plant_.now(); }
 
  private:
+  /// Or until the next byte.
+  void hear_until(Time end) {
+    const auto whole = std::chrono::duration_cast<std::chrono::milliseconds>(end - now());
+    Data bytes = whole > Time(0) ? plant_.target_.receive(1, whole) : Data();
+    if (bytes.empty()) {
+      bytes = plant_.target_.listen(end - now());
+    }
+    for (const std::uint8_t byte : bytes) {
+      const auto changed = plant_.hears ? plant_.hears(plant_.heard_, byte) : std::optional(byte);
+      ++plant_.heard_;
+      if (changed) {
+        arrived_.emplace_back(now() + plant_.delay, *changed);
+      }
+    }
+  }
+
   Plant& plant_;
   Data echo_;
+  std::deque<std::pair<Time, std::uint8_t>> arrived_;  ///< and when the program gets it
 };
 
 sim::Setup Plant::setup_of(const std::vector<std::string>& modules) {
@@ -53,17 +78,24 @@ sim::Setup Plant::setup_of(const std::vector<std::string>& modules) {
 Plant::Plant(const std::vector<std::string>& modules)
     : target_(setup_of(modules), play::Memories(modules.size())) {}
 
+void Plant::clear() {
+  output_.str("");
+  error_.str("");
+  sent.clear();
+}
+
+Environment Plant::environment() {
+  return {[this](const Port& /*port*/, hal::SerialMode mode) { return std::make_unique<Line>(*this, mode); },
+          output_, error_};
+}
+
 int Plant::run(const std::vector<std::string>& words) {
   std::vector<const char*> argv{"ex9000"};
   for (const std::string& word : words) {
     argv.push_back(word.c_str());
   }
-  output_.str("");
-  error_.str("");
-  sent.clear();
-  Environment environment{
-      [this](const Port& /*port*/, hal::SerialMode mode) { return std::make_unique<Line>(*this, mode); },
-      output_, error_};
+  clear();
+  Environment environment = this->environment();
   return run_program(static_cast<int>(argv.size()), argv.data(), environment);
 }
 

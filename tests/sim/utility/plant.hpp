@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "sim/app/play/line_target.hpp"
-#include "sim/utility/connection/connection.hpp"
+#include "sim/utility/console/environment.hpp"
 
 namespace ex9000::utility {
 
@@ -23,23 +23,38 @@ class Plant {
   [[nodiscard]] std::string output() const { return output_.str(); }
   [[nodiscard]] std::string error() const { return error_.str(); }
 
+  /// For code below the program; writes to `output` and `error`.
+  Environment environment();
+  /// Forgets what a run has written and sent.
+  void clear();
+
   /// An action of the control socket, for example `1 power off`.
-  void act(const std::string& action) { target_.act(sim::words_of(action)); }
-  /// Until a module that has been started or reset is ready.
-  void wait() { target_.listen(std::chrono::milliseconds(200)); }
+  std::string act(const std::string& action) { return target_.act(sim::words_of(action)); }
+  /// In the default time, a module that has been started or reset gets ready.
+  void wait(Time time = std::chrono::milliseconds(200)) { target_.listen(time); }
+  /// The EEPROM of the first module.
+  std::vector<std::uint8_t>& memory() { return target_.module().memory().contents(); }
   [[nodiscard]] sim::VirtualTime now() { return target_.now(); }
   /// Gets each frame before it is sent; false: it is lost.
   std::function<bool(const Data& frame)> sends = [](const Data& /*frame*/) { return true; };
+  /// Of the reply to the last frame, gets each byte and its position, and changes it; nullopt: it is lost.
+  std::function<std::optional<std::uint8_t>(std::size_t at, std::uint8_t byte)> hears;
+  Time delay{0};        ///< of each byte from the line to the program
   bool echoes = false;  ///< the adapter receives what it sends
   /// Frames that a run has sent, also lost ones.
   std::vector<Data> sent;
 
  private:
   class Line;
+  struct Modules : play::LineTarget {
+    using play::LineTarget::LineTarget;
+    using play::LineTarget::module;
+  };
 
   static sim::Setup setup_of(const std::vector<std::string>& modules);
 
-  play::LineTarget target_;
+  Modules target_;
+  std::size_t heard_ = 0;  ///< bytes since the last frame
   std::ostringstream output_;
   std::ostringstream error_;
 };
