@@ -29,6 +29,7 @@ constexpr Word kWords[] = {
     {"REQUEST...",
      "a DCON command without CR, in quotes, or the bytes of a Modbus request in hex, without the CRC"},
     {"FILE", "the file"},
+    {"FILE...", "transcripts, or folders with transcripts"},
 };
 
 std::string row(const std::string& name, std::string_view does) { return sim::help_row(name, does, kColumn); }

@@ -2,9 +2,12 @@
 #pragma once
 
 #include <algorithm>
+#include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
+#include "firmware/model/model.hpp"
 #include "sim/notation/setting.hpp"
 #include "sim/text/words.hpp"
 #include "sim/utility/device/find.hpp"
@@ -25,6 +28,8 @@ struct Options {
   Time timeout = std::chrono::milliseconds(80);
   bool json = false;
   bool wait = false;
+  std::optional<std::string> rig;     ///< a command
+  std::optional<std::string> report;  ///< a path
   sim::Places places;
 
   [[nodiscard]] bool is_given(std::string_view option) const { return places.count(option) != 0; }

@@ -6,6 +6,7 @@
 #include "sim/utility/command/send.hpp"
 #include "sim/utility/command/set.hpp"
 #include "sim/utility/command/show.hpp"
+#include "sim/utility/command/verify_module.hpp"
 #include "sim/utility/master_line/master_line.hpp"
 #include "sim/utility/update/session.hpp"
 
@@ -63,6 +64,11 @@ const std::vector<sim::Setting<Options>> known_options{
     {"wait", sim::Form::Flag, "on|off",
      "wait until the modules have confirmed the image: 60 s after its start, if no reset has come in between",
      [](Options& taken, const std::string& value) { taken.wait = sim::parse_on_off(value); }},
+    {"rig", sim::Form::Text, "COMMAND",
+     "start this program, which switches the supply, INIT* and the inputs (default: ask at the terminal)",
+     [](Options& taken, const std::string& value) { taken.rig = value; }},
+    {"report", sim::Form::Text, "FILE", "write the report to this file (default: standard output)",
+     [](Options& taken, const std::string& value) { taken.report = value; }},
 };
 
 const std::vector<Verb> verbs{
@@ -134,6 +140,18 @@ Examples:
 )",
      {"baud", "format", "wait"},
      update},
+    {"verify PORT MODULE FILE...",
+     "play conformance transcripts against a module",
+     R"(
+The module must be alone on the line, and what its outputs switch, disconnected. All settings change, and
+are restored at the end, also after Ctrl-C. What the rig cannot do is listed as not verified;
+sim/docs/verify.md says what a rig must do.
+
+Examples:
+  ex9000 verify /dev/ttyUSB0 1 tests/conformance --rig ./rig --report report.txt
+)",
+     {"model", "rig", "report"},
+     verify_module},
 };
 
 }  // namespace ex9000::utility

@@ -1,0 +1,22 @@
+// A person at the terminal does what the program asks for.
+#pragma once
+
+#include <string>
+#include <utility>
+
+#include "sim/utility/console/environment.hpp"
+#include "sim/utility/verify/rig.hpp"
+
+namespace ex9000::utility {
+
+class PersonRig final : public Rig {
+ public:
+  explicit PersonRig(AskPerson ask_person) : ask_person_(std::move(ask_person)) {}
+
+  std::string ask(const std::string& request) override;
+
+ private:
+  AskPerson ask_person_;
+};
+
+}  // namespace ex9000::utility
