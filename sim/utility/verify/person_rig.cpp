@@ -13,7 +13,6 @@ constexpr const char* kDone = "; Enter: done, s: cannot be done ";
   throw NotVerified("nobody could do '" + request + "'");
 }
 
-/// Empty: a person cannot do it. A contact that a person closes bounces, which modules count.
 std::string question_of(const sim::Words& words) {
   const std::string& what = words[0];
   if (what == "power") {
@@ -28,10 +27,7 @@ std::string question_of(const sim::Words& words) {
   if (what == "outputs") {
     return "Which outputs are on? For example 0 3 12; Enter: none, s: not visible ";
   }
-  if (what == "led") {
-    return "Is the status LED on, off or flashing? s: not visible ";
-  }
-  return "";
+  return "Is the status LED on, off or flashing? s: not visible ";
 }
 
 std::string outputs_in(const std::string& answer) {
@@ -45,15 +41,21 @@ std::string outputs_in(const std::string& answer) {
 
 }  // namespace
 
+/// A contact that a person closes bounces, which modules count. Few modules have a terminal for a reset.
+bool PersonRig::never_does(const std::string& word) const { return word == "pulse" || word == "reset"; }
+
 std::string PersonRig::ask(const std::string& request) {
   const sim::Words words = sim::words_of(request);
-  const std::string question = question_of(words);
-  if (question.empty()) {
+  if (never_does(words[0])) {
     cannot(request);
   }
+  const std::string question = question_of(words);
   for (;;) {
     const std::optional<std::string> answer = ask_person_(question);
-    if (!answer || *answer == "s") {
+    if (!answer) {
+      throw Interrupted();
+    }
+    if (*answer == "s") {
       cannot(request);
     }
     if (words[0] == "led" && (*answer == "on" || *answer == "off" || *answer == "flashing")) {

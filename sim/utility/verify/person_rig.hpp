@@ -13,7 +13,9 @@ class PersonRig final : public Rig {
  public:
   explicit PersonRig(AskPerson ask_person) : ask_person_(std::move(ask_person)) {}
 
+  /// Also throws Interrupted if the person enters nothing more.
   std::string ask(const std::string& request) override;
+  [[nodiscard]] bool never_does(const std::string& word) const override;
 
  private:
   AskPerson ask_person_;

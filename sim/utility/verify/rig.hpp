@@ -22,6 +22,8 @@ class Rig {
   /// the value that it asks for, when all is done. Throws NotVerified if the rig cannot do it,
   /// std::runtime_error if the rig is broken.
   virtual std::string ask(const std::string& request) = 0;
+  /// Whether it can do no request that begins with this word, so that no run needs to begin in vain.
+  [[nodiscard]] virtual bool never_does(const std::string& /*word*/) const { return false; }
 };
 
 /// Can do nothing.

@@ -16,8 +16,8 @@ namespace ex9000::utility {
 
 namespace {
 
-/// Why nobody can play it on a real module; empty: it can be played.
-std::string beyond_a_line(const play::Transcript& transcript, Time latency) {
+/// Why it cannot be played on a real module; empty: perhaps it can.
+std::string why_not(const play::Transcript& transcript, const Rig& rig, Time latency) {
   if (transcript.blank_memory) {
     return "requires a module that has never stored anything";
   }
@@ -28,8 +28,10 @@ std::string beyond_a_line(const play::Transcript& transcript, Time latency) {
   }
   for (const play::Step& step : transcript.steps) {
     const sim::Words words = step.words();
-    if (words[0] == "wait" && sim::parse_time(words[1]) < 2 * latency) {
-      return "line " + std::to_string(step.line) + ": '" + step.text + "' is too short for the port";
+    const bool too_short = words[0] == "wait" && sim::parse_time(words[1]) < 2 * latency;
+    if (too_short || rig.never_does(words[0])) {
+      return "line " + std::to_string(step.line) + ": '" + step.text + "' is " +
+             (too_short ? "too short for the port" : "nothing that a person can do");
     }
   }
   return "";
@@ -142,9 +144,9 @@ class Verification {
   }
 
   void play(const play::Transcript& transcript, ModuleTarget& target) {
-    const std::string beyond = beyond_a_line(transcript, latency_);
-    if (!beyond.empty()) {
-      report_.not_verified(title_of(transcript) + ": " + beyond);
+    const std::string reason = why_not(transcript, rig_, latency_);
+    if (!reason.empty()) {
+      report_.not_verified(title_of(transcript) + ": " + reason);
       return;
     }
     play::Result result;

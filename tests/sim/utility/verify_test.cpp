@@ -224,6 +224,16 @@ TEST_F(VerifyInputs, AModuleWhoseInputsAreOnCannotStart) {
   has("not verified  tests/conformance/dcon/commands/version.txt (EX9060D-M): no relay for 'input 0 off'\n");
 }
 
+TEST_F(VerifyInputs, AModuleThatRefusesTheSettingsAtTheStartIsNotVerified) {
+  plant_.sends = [&](const Data& frame) {
+    plant_.act(begins(frame, "%0001400A") ? "1 fault exception 03 every reply" : "fault off all");
+    return true;
+  };
+  EXPECT_FALSE(verify({"dcon/extensions/line-format-stop-bits.txt"}));
+  has("in INIT mode, the module refuses '%0001400A00'\n");
+  EXPECT_EQ(lines(kFailed).size(), 0U);
+}
+
 TEST_F(VerifyInputs, ARunThatIsTooFastForThePortIsNotVerified) {
   plant_.delay = std::chrono::milliseconds(3);
   verify({"modbus/framing/second-frame-old-address.txt", "dcon/inputs/latches.txt"});
@@ -566,7 +576,8 @@ TEST(PersonRigs, AskForWhatToDo) {
       {"outputs", {"0 3 12"}, "1009"},
       {"outputs", {"16", "x", ""}, "0000"},
       {"led", {"yes", "flashing"}, "flashing"},
-      {"led", {}, "not verified: nobody could do 'led'"},
+      {"led", {"s"}, "not verified: nobody could do 'led'"},
+      {"led", {}, "stopped"},
       {"pulse 0 x1", {}, "not verified: nobody could do 'pulse 0 x1'"},
       {"reset", {}, "not verified: nobody could do 'reset'"},
   };
@@ -575,7 +586,42 @@ TEST(PersonRigs, AskForWhatToDo) {
     EXPECT_EQ(answer_of(rig, row.request), row.result) << row.request;
     EXPECT_TRUE(answers.empty());
   }
+  EXPECT_EQ(questions.size(), 12U);
   EXPECT_EQ(questions.front(), "Switch the supply off; Enter: done, s: cannot be done ");
+}
+
+/// The person can do all at once, but sees nothing.
+TEST_F(VerifyInputs, APersonIsNotAskedForARunInVain) {
+  std::size_t questions = 0;
+  PersonRig person([&](const std::string& question) -> std::optional<std::string> {
+    ++questions;
+    const sim::Words words = sim::words_of(question.substr(0, question.find(';')));
+    if (words[0] == "Switch") {
+      plant_.act("1 " + (words[1] == "the" ? "power " + words[3] : "input " + words[2] + " " + words[3]));
+    } else if (words[0] == "Connect" || words[0] == "Disconnect") {
+      plant_.act(words[0] == "Connect" ? "1 init on" : "1 init off");
+    } else {
+      return "s";
+    }
+    return "";
+  });
+  Environment environment = plant_.environment();
+  EXPECT_TRUE(utility::verify(environment,
+                              {{},
+                               at_address(5),
+                               load({"dcon/inputs/latches.txt", "dcon/inputs/levels-and-sample.txt",
+                                     "dcon/persistence/name.txt", "dcon/watchdog/expiry.txt"}),
+                               nullptr,
+                               {}},
+                              person));
+  EXPECT_EQ(
+      lines(kNotVerified),
+      (std::vector<std::string>{
+          kFolder + "dcon/inputs/latches.txt (EX9060D-M): line 33: 'pulse 0' is nothing that a person can do",
+          kFolder + "dcon/persistence/name.txt (EX9060D-M): line 8: 'reset' is nothing that a person can do",
+          kFolder + "dcon/watchdog/expiry.txt:16: outputs 0001: nobody could do 'outputs' (EX9060D-M)"}));
+  EXPECT_EQ(lines(kPassed).size(), 1U);
+  std::printf("%zu questions\n", questions);
 }
 
 // The command.
