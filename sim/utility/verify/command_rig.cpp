@@ -18,7 +18,8 @@ namespace ex9000::utility {
 
 namespace {
 
-constexpr int kEnds = 2'000;      // ms, after its input is closed
+constexpr int kEnds = 2'000;  // ms, after its input is closed
+constexpr int kMostReadings = 100;
 constexpr int kAnswers = 60'000;  // ms: a rig may wait until a capacitor is empty
 
 struct Pipe {
@@ -83,7 +84,10 @@ CommandRig::CommandRig(std::string command) : command_(std::move(command)) {
 CommandRig::~CommandRig() {
   requests_ = sim::FileDescriptor();
   std::array<char, 512> rest{};
-  while (readable(answers_.get(), kEnds) && ::read(answers_.get(), rest.data(), rest.size()) > 0) {
+  for (int i = 0; i < kMostReadings; ++i) {
+    if (!readable(answers_.get(), kEnds) || ::read(answers_.get(), rest.data(), rest.size()) <= 0) {
+      break;
+    }
   }
   kill(-process_, SIGKILL);
   waitpid(process_, nullptr, 0);
@@ -94,6 +98,9 @@ void CommandRig::broken(const std::string& what) const {
 }
 
 std::string CommandRig::answer_to(const std::string& request) {
+  if (!received_.empty()) {
+    broken("has answered more than it was asked; it must answer each request with a line");
+  }
   const std::string line = request + "\n";
   if (::write(requests_.get(), line.data(), line.size()) != static_cast<ssize_t>(line.size())) {
     broken("has ended; it must answer until its input ends");

@@ -546,6 +546,12 @@ TEST_F(CommandRigs, ThatAreBrokenAreReported) {
   }
 }
 
+TEST_F(CommandRigs, ThatAnswerTwiceAreReported) {
+  CommandRig rig(R"(while read -r line; do printf 'ok\nok\n'; done)");
+  EXPECT_EQ(answer_of(rig, "power on"), "");
+  EXPECT_NE(answer_of(rig, "outputs").find("has answered more than it was asked"), std::string::npos);
+}
+
 TEST_F(CommandRigs, EndWhenTheirInputEnds) {
   const system::Directory directory;
   { CommandRig rig("cat >" + (directory / "requests") + "; echo off >" + (directory / "end")); }
