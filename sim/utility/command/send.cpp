@@ -9,7 +9,7 @@ namespace ex9000::utility {
 
 namespace {
 
-constexpr std::size_t kCrcSize = 2;
+constexpr std::size_t kCrcBytes = 2;
 /// Before a frame: T3.5 at 1200 baud.
 constexpr std::chrono::milliseconds kSilence{33};
 
@@ -47,8 +47,8 @@ Data reply_on(Connection& connection, bool dcon) {
 
 /// As on a line, with a CRC.
 Data reply_of_gateway(Master& master, const Data& frame) {
-  const Data pdu = master.exchange(at_address(frame[0]),
-                                   any_reply({frame.begin() + 1, frame.end() - kCrcSize}), Module::kPatience);
+  const Data pdu = master.exchange(
+      at_address(frame[0]), any_reply({frame.begin() + 1, frame.end() - kCrcBytes}), Module::kPatience);
   Data reply;
   if (!pdu.empty()) {
     reply.push_back(frame[0]);

@@ -45,7 +45,7 @@ void Device::moves_to(std::uint8_t address) {
 }
 
 Answer Device::read(const Request& request) {
-  const Answer answer = module_->ask(request);
+  Answer answer = module_->ask(request);
   if (answer.exception == kIllegalFunction || answer.exception == kIllegalAddress) {
     throw Absent("does not have this: " + exception_text(answer.exception));
   }

@@ -95,8 +95,8 @@ sim::Words expand_modules(const sim::Words& texts) {
 }
 
 const Request& harmless_request() {
-  static const Request kRequest{{0x46, 0x00}, {0x46, 0x00}, 6};
-  return kRequest;
+  static const Request request{{0x46, 0x00}, {0x46, 0x00}, 6};
+  return request;
 }
 
 std::uint8_t parse_address(const std::string& text) {

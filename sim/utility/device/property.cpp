@@ -167,7 +167,7 @@ void set_preset(Device& device, const Model& model, char letter, const std::stri
 // --- host watchdog: `~AA2` reads EVV, `~AA3EVV` sets it (manuals 2.18, 2.19) ---
 
 std::string watchdog(Device& device) {
-  const std::string text = device.ask("~AA2");
+  std::string text = device.ask("~AA2");
   if (text.size() != 3) {
     throw Failed("replies '" + text + "' to ~AA2, not EVV");
   }

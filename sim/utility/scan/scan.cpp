@@ -55,7 +55,7 @@ class Scan {
  private:
   void step() { progress_(std::min(done_++, of_), of_); }
 
-  FoundModule module(Speaks speaks, std::uint8_t address) const {
+  [[nodiscard]] FoundModule module(Speaks speaks, std::uint8_t address) const {
     FoundModule module;
     module.mode = line_.mode();
     module.speaks = speaks;

@@ -74,6 +74,7 @@ class Session {
 bool update_modules(Environment& environment, Master& master, const std::vector<Addressee>& modules,
                     const UpdateFile& file, bool wait) {
   std::vector<Part> parts;
+  parts.reserve(modules.size());
   for (const Addressee& module : modules) {
     parts.push_back({ModuleUpdate({master, module}, file)});
   }

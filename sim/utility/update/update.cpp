@@ -1,5 +1,7 @@
 #include "sim/utility/update/update.hpp"
 
+#include <utility>
+
 #include "firmware/model/model.hpp"
 #include "firmware/update/request.hpp"
 #include "sim/text/fail.hpp"
@@ -48,8 +50,8 @@ std::string state_text(State state) {
 
 }  // namespace
 
-ModuleUpdate::ModuleUpdate(const Module& module, const UpdateFile& file)
-    : module_(module), file_(file), info_(file.info) {
+ModuleUpdate::ModuleUpdate(Module module, const UpdateFile& file)
+    : module_(std::move(module)), file_(file), info_(file.info) {
   // The module activates only on request, so that several modules can do so together.
   info_.bytes[update::kFlagsAt + 1] &= static_cast<std::uint8_t>(~update::kActivateWhenComplete);
 }
@@ -176,7 +178,7 @@ ModuleUpdate::Progress ModuleUpdate::progress() {
 }
 
 Answer ModuleUpdate::read(unsigned address, unsigned count) {
-  const Answer answer = module_.ask(read_words(address, count));
+  Answer answer = module_.ask(read_words(address, count));
   if (answer.refused()) {
     fail("refuses to read the registers of updates: " + exception_text(answer.exception) +
          "; its firmware or its board permits no update over the line");

@@ -18,7 +18,7 @@ class ModuleUpdate {
   using Show = std::function<void(std::uint32_t has, std::uint32_t length)>;
 
   /// `file` must live as long.
-  ModuleUpdate(const Module& module, const UpdateFile& file);
+  ModuleUpdate(Module module, const UpdateFile& file);
 
   [[nodiscard]] const std::string& name() const { return module_.name(); }
 
