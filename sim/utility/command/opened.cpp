@@ -19,6 +19,4 @@ Opened::Opened(Environment& environment, const std::string& port, const std::str
   }
 }
 
-std::string of(const Device& device, const Failed& error) { return device.name() + ": " + error.what(); }
-
 }  // namespace ex9000::utility

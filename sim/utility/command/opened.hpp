@@ -21,7 +21,4 @@ class Opened {
   const Model* model;
 };
 
-/// Leads an error of a module: its name.
-std::string of(const Device& device, const Failed& error);
-
 }  // namespace ex9000::utility

@@ -18,7 +18,7 @@ namespace {
 constexpr int kProblem = 1;
 constexpr int kInterrupted = 130;
 
-using Given = std::map<std::string_view, std::string>;
+using Given = std::map<std::string_view, std::vector<std::string>>;
 
 /// The words of one verb on the command line.
 struct Texts {
@@ -26,6 +26,11 @@ struct Texts {
   sim::Words args = {};
   Given given = {};
   std::map<std::string_view, bool> flags = {};
+
+  [[nodiscard]] bool flag(std::string_view name) const {
+    const auto found = flags.find(name);
+    return found != flags.end() && found->second;
+  }
 };
 
 void add(CLI::App& app, Texts& texts) {
@@ -37,7 +42,7 @@ void add(CLI::App& app, Texts& texts) {
     if (verb.takes(option.name) && option.form == sim::Form::Flag) {
       command->add_flag(name, texts.flags[option.name]);
     } else if (verb.takes(option.name)) {
-      command->add_option(name, texts.given[option.name]);
+      command->add_option(name, texts.given[option.name])->expected(1)->allow_extra_args(false);
     }
   }
 }
@@ -48,7 +53,7 @@ Options options_of(const Texts& texts) {
     const auto given = texts.given.find(option.name);
     const auto flag = texts.flags.find(option.name);
     if (given != texts.given.end() && !given->second.empty()) {
-      sim::take_setting(option, taken, "--" + std::string(option.name) + ": ", given->second);
+      sim::take_setting(option, taken, "--" + std::string(option.name) + ": ", given->second.back());
     }
     if (flag != texts.flags.end() && flag->second) {
       sim::take_setting(option, taken, "--" + std::string(option.name) + ": ", "on");
@@ -59,7 +64,12 @@ Options options_of(const Texts& texts) {
 
 int run(const Texts& texts, Environment& environment) {
   sim::check_shape(texts.verb->shape, texts.args, "expected ex9000 ");
-  return texts.verb->run(environment, texts.args, options_of(texts)) ? 0 : kProblem;
+  if (texts.flag("ascii") && texts.flag("modbus")) {
+    sim::fail("--ascii: excludes --modbus; leave out one of them");
+  }
+  const bool good = texts.verb->run(environment, texts.args, options_of(texts));
+  environment.check_output();
+  return good ? 0 : kProblem;
 }
 
 }  // namespace
@@ -86,8 +96,8 @@ int run_program(int argc, const char* const* argv, Environment& environment) {
     app.parse(argc, argv);
     return run(*chosen(), environment);
   } catch (const CLI::CallForHelp&) {
-    environment.output << (chosen() == nullptr ? program_help() : help_of(*chosen()->verb));
-    return 0;
+    environment.output << (chosen() == nullptr ? program_help() : help_of(*chosen()->verb)) << std::flush;
+    return environment.output ? 0 : kProblem;
   } catch (const CLI::CallForVersion& version) {
     environment.output << version.what() << std::endl;
     return 0;

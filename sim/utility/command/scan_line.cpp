@@ -78,10 +78,12 @@ void parse_addresses(const std::string& text, Search& search) {
 
 Search search_of(MasterLine& line, const Options& options) {
   Search search;
+  // A module in 8N2 understands 8N1.
+  const LineFormat wanted = options.line.format == LineFormat::k8N2 ? LineFormat::k8N1 : options.line.format;
   for (const hal::SerialMode mode : line.has_modes() ? all_modes() : std::vector{options.line}) {
     const bool rate_wanted = !options.is_given("baud") || mode.baud == options.line.baud;
     const bool format_wanted = options.is_given("format")
-                                   ? mode.format == options.line.format
+                                   ? mode.format == wanted
                                    : line.connection().has_formats() || mode.format == LineFormat::k8N1;
     if (rate_wanted && format_wanted) {
       search.modes.push_back(mode);
@@ -117,7 +119,14 @@ void report_duplicates(Environment& environment, const std::vector<FoundModule>&
 }  // namespace
 
 bool scan_line(Environment& environment, const sim::Words& args, const Options& options) {
-  MasterLine line(environment, parse_port(args[0]), options.line);
+  const Port port = parse_port(args[0]);
+  if (options.fast && options.speaks == Speaks::Ascii) {
+    sim::fail("--fast: modules in ASCII have no such scan; leave out one of --fast and --ascii");
+  }
+  if (port.kind == Port::Kind::ModbusTcp && (options.fast || options.speaks == Speaks::Ascii)) {
+    sim::fail("Modbus TCP carries neither DCON nor a scan by serial numbers; leave out --fast and --ascii");
+  }
+  MasterLine line(environment, port, options.line);
   const Search search = search_of(line, options);
   std::vector<FoundModule> modules;
   Progress progress(environment, "scan");
@@ -127,6 +136,7 @@ bool scan_line(Environment& environment, const sim::Words& args, const Options& 
         modules.push_back(module);
         progress.clear();
         environment.output << (options.json ? json_of(module) : line_of(module)) << std::endl;
+        environment.check_output();
       },
       [&](std::size_t done, std::size_t of) { progress.show(done, of); });
   report_duplicates(environment, modules);

@@ -1,5 +1,7 @@
 #include "sim/utility/command/send.hpp"
 
+#include <algorithm>
+
 #include "sim/line_monitor/frames/frame_meaning.hpp"
 #include "sim/text/values.hpp"
 #include "sim/utility/master_line/master_line.hpp"
@@ -30,19 +32,33 @@ Data frame_of(const std::string& text, bool checksum) {
 
 bool is_broadcast(const Data& frame) { return sim::looks_like_dcon(frame) ? frame[1] == '*' : frame[0] == 0; }
 
-/// A DCON reply ends with CR, any other one with a silence.
-Data reply_on(Connection& connection, bool dcon) {
+/// Functions whose reply equals the request.
+bool has_equal_reply(const Data& request) {
+  return request[1] == 0x05 || request[1] == 0x06 || request[1] == 0x08;
+}
+
+/// A DCON reply ends with CR, any other one with a silence. Without the echo of the request.
+Data reply_on(Connection& connection, const Data& request, bool dcon) {
   constexpr std::chrono::milliseconds kPatience{1000};
   constexpr std::chrono::milliseconds kEnd{50};  // an adapter may hold bytes back for 16 ms
-  Data reply = connection.receive(kPatience);
-  while (!reply.empty() && (!dcon || reply.back() != '\r')) {
-    const Data more = connection.receive(kEnd);
+  constexpr std::size_t kLongest = 300;
+  const Time end = connection.now() + kPatience;
+  Data reply;
+  while (reply.size() < kLongest && (!dcon || reply.empty() || reply.back() != '\r' || reply == request)) {
+    const Data more =
+        connection.receive(reply.empty() || reply == request ? end - connection.now() : Time(kEnd));
     if (more.empty()) {
       break;
     }
     reply.insert(reply.end(), more.begin(), more.end());
   }
-  return reply;
+  if (reply == request) {
+    return !dcon && has_equal_reply(request) ? reply : Data();
+  }
+  const bool begins_with_echo =
+      reply.size() > request.size() && std::equal(request.begin(), request.end(), reply.begin());
+  return begins_with_echo ? Data(reply.begin() + static_cast<std::ptrdiff_t>(request.size()), reply.end())
+                          : reply;
 }
 
 /// As on a line, with a CRC.
@@ -79,7 +95,7 @@ bool send(Environment& environment, const sim::Words& args, const Options& optio
   if (line.carries_all()) {
     line.connection().pause(kSilence);
     line.connection().send(frame);
-    reply = reply_on(line.connection(), is_dcon(text));
+    reply = reply_on(line.connection(), frame, is_dcon(text));
   } else {
     reply = reply_of_gateway(line.modbus(), frame);
   }

@@ -56,8 +56,9 @@ bool show(Environment& environment, const sim::Words& args, const Options& optio
         "the host watchdog is on, and the safe value is 0: a timeout switches all outputs off");
   }
   const hal::SerialMode mode = opened.line.mode();
-  if (opened.line.has_modes() && (values["baud"] != std::to_string(mode.baud) ||
-                                  values["format"] != sim::line_format_text(mode.format))) {
+  const bool other_format = opened.line.connection().has_formats() && values["format"] != "8N2" &&
+                            values["format"] != sim::line_format_text(mode.format);
+  if (opened.line.has_modes() && (values["baud"] != std::to_string(mode.baud) || other_format)) {
     warnings.push_back("from the next reset on, it speaks at " + values["baud"] + " baud " +
                        values["format"]);
   }
@@ -92,7 +93,13 @@ bool poll(Environment& environment, const sim::Words& args, const Options& optio
     } else {
       environment.output << text << std::endl;
     }
-    opened.line.connection().pause(options.every);
+    environment.check_output();
+    if (round + 1 != options.rounds) {
+      opened.line.connection().pause(options.every);
+    }
+  }
+  if (environment.output_is_terminal) {
+    environment.output << std::endl;
   }
   return true;
 }

@@ -52,7 +52,8 @@ const std::vector<sim::Setting<Options>> known_options{
        taken.rounds = static_cast<std::uint32_t>(
            sim::parse_whole_number(value, 1, std::numeric_limits<std::uint32_t>::max()));
      }},
-    {"fast", sim::Form::Flag, "on|off", "only by serial numbers: -M models of this firmware, within seconds",
+    {"fast", sim::Form::Flag, "on|off",
+     "only by serial numbers: -M models of this firmware, within seconds; finds all addresses",
      [](Options& taken, const std::string& value) { taken.fast = sim::parse_on_off(value); }},
     {"addresses", sim::Form::Text, "FIRST-LAST", "only these addresses (default: all)",
      [](Options& taken, const std::string& value) { taken.addresses = value; }},
@@ -76,7 +77,8 @@ const std::vector<Verb> verbs{
      "look for all modules, whatever their rate, format, protocol and address",
      R"(
 Looks for those that answer by serial number first, then asks each address. In all 24 modes this takes half an
-hour, so narrow it, or begin with --fast. Changes nothing, and clears nothing.
+hour, so narrow it, or begin with --fast. Changes nothing, and clears nothing; but a module with
+watchdog-feed=requests takes each request for a sign of life of its master.
 
 Examples:
   ex9000 scan /dev/ttyUSB0 --baud 9600 --addresses 1-32
@@ -86,7 +88,8 @@ Examples:
     {"show PORT MODULE",
      "print what a module is, its settings and its state, with warnings",
      R"(
-Reads only what has no side effect.
+Reads only what has no side effect, but a module with watchdog-feed=requests takes each request for a sign of
+life of its master.
 )",
      {"baud", "format", "ascii", "modbus", "model"},
      show},

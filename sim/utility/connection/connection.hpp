@@ -14,8 +14,8 @@ using Time = std::chrono::nanoseconds;
 using Data = std::vector<std::uint8_t>;
 
 /// The user wants the program to end.
-struct Interrupted : std::runtime_error {
-  Interrupted() : std::runtime_error("stopped") {}
+struct Interrupted : std::exception {
+  [[nodiscard]] const char* what() const noexcept override { return "stopped"; }
 };
 
 /// What a master has heard in place of a reply.

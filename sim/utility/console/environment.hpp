@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <ostream>
+#include <stdexcept>
 #include <string>
 
 #include "sim/utility/connection/port.hpp"
@@ -18,6 +19,13 @@ struct Environment {
   std::function<std::unique_ptr<Connection>(const Port& port, hal::SerialMode mode)> open;
   std::ostream& output;
   std::ostream& error;
+  /// Throws std::runtime_error if what has been written could not be: the disk is full, or a pipe is closed.
+  void check_output() const {
+    if (!output) {
+      throw std::runtime_error("standard output: cannot be written; name another file or pipe");
+    }
+  }
+
   bool output_is_terminal = false;
   bool error_is_terminal = false;
   AskPerson ask_person = nullptr;  ///< null: nobody is there

@@ -21,6 +21,9 @@ void Progress::clear() {
 
 void Progress::show(std::uint64_t done, std::uint64_t of) {
   constexpr std::size_t kWidth = 40;
+  if (of == 0) {
+    return;
+  }
   constexpr unsigned kPercent = 100;
   const std::string percent = std::to_string(kPercent * done / of) + " %";
   if (environment_.error_is_terminal) {

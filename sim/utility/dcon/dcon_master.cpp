@@ -12,6 +12,9 @@ namespace {
 constexpr std::size_t kChecksumDigits = 2;
 /// No reply of a module is longer.
 constexpr std::size_t kLongestReply = 40;
+// A line that is never silent must not keep `ask` for ever.
+constexpr std::size_t kMostBytes = 1000;
+constexpr unsigned kMostReadings = 100;
 
 std::string checksum_of(const std::string& text) {
   return sim::hex_byte_text(std::accumulate(
@@ -43,18 +46,22 @@ Data dcon_frame(const std::string& command, bool checksum) {
 }
 
 std::optional<std::string> DconMaster::ask(const std::string& command, Time patience) {
-  while (!connection_.receive(character_ * 2).empty()) {
+  for (unsigned i = 0; i < kMostReadings && !connection_.receive(character_ * 2).empty(); ++i) {
   }
   const Data frame = dcon_frame(command, checksum_);
   connection_.send(frame);
   const Time end = connection_.now() + patience + character_ * (frame.size() + kLongestReply);
   Data received;
   heard_ = Heard::Nothing;
-  for (Data more; !(more = connection_.receive(end - connection_.now())).empty();) {
+  for (Data more;
+       received.size() < kMostBytes && !(more = connection_.receive(end - connection_.now())).empty();) {
     received.insert(received.end(), more.begin(), more.end());
     std::optional<std::string> reply = reply_in(received);
     if (!reply) {
       continue;
+    }
+    if (!std::all_of(reply->begin(), reply->end(), [](char c) { return c >= ' ' && c <= '~'; })) {
+      break;
     }
     if (checksum_) {
       const std::size_t size = reply->size() - std::min(reply->size(), kChecksumDigits);

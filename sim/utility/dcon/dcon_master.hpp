@@ -25,7 +25,8 @@ class DconMaster {
   [[nodiscard]] bool checksum() const { return checksum_; }
 
   /// The reply without checksum and CR, from its lead `!`, `>` or `?` on; bytes before it, as those of an
-  /// echo, are skipped. nullopt: none, or one with a wrong checksum. Throws what Connection throws.
+  /// echo, are skipped. nullopt: none, or one with a wrong checksum or characters that are not printable.
+  /// Throws what Connection throws.
   std::optional<std::string> ask(const std::string& command, Time patience = kPatience);
   /// After the last command, if it had no reply.
   [[nodiscard]] Heard heard() const { return heard_; }

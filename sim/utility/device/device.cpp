@@ -63,11 +63,11 @@ std::string Device::ask(const std::string& command, const std::string& reply) {
   const std::string expected = with_address(reply, address_);
   for (unsigned i = 0; i < kTries; ++i) {
     const std::optional<std::string> text = line_->dcon().ask(request);
-    if (text && (*text)[0] == '?') {
+    if (text && (*text == "?" || text->compare(0, 3, "?" + sim::hex_byte_text(address_)) == 0)) {
       throw Absent("refuses " + request);
     }
     if (text && *text == "!" && reply != "!") {
-      throw Failed("ignores " + request + ", because its host watchdog has timed out; clear it first");
+      throw Failed("ignores " + request + ", because its host watchdog has timed out; send ~AA1 first");
     }
     if (text && text->compare(0, expected.size(), expected) == 0) {
       return text->substr(expected.size());

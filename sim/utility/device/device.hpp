@@ -73,6 +73,9 @@ struct Identity {
   std::optional<std::uint32_t> serial_number;
 };
 
+/// Throws Absent if the module does not tell it.
+std::string name_in_modbus(Device& device);
+
 /// Reads no more than it must, and nothing with a side effect.
 Identity identify(Device& device);
 

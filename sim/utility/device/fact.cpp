@@ -1,6 +1,7 @@
 #include "sim/utility/device/fact.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "firmware/update/update.hpp"
 #include "sim/text/values.hpp"
@@ -78,7 +79,12 @@ std::string counters(Device& device, const Model& model) {
     }
   } else {
     for (unsigned channel = 0; channel < model.inputs; ++channel) {
-      texts.push_back(std::to_string(std::stoul(device.ask(std::string("#AA") + kDigits[channel]))));
+      const std::string digits = device.ask(std::string("#AA") + kDigits[channel]);
+      const auto count = sim::whole_number(digits, std::numeric_limits<std::uint32_t>::max());
+      if (!count) {
+        throw Failed("replies '" + digits + "' where a counter is expected");
+      }
+      texts.push_back(std::to_string(*count));
     }
   }
   return sim::joined(texts);

@@ -13,6 +13,11 @@ namespace {
 constexpr std::chrono::milliseconds kPatience{200};
 constexpr std::size_t kSerialNumberDigits = 8;
 
+bool is_serial_number(const std::string& text) {
+  return text.size() == kSerialNumberDigits &&
+         text.find_first_not_of("0123456789ABCDEFabcdef") == std::string::npos;
+}
+
 bool replies_in_modbus(MasterLine& line, const Addressee& to) {
   constexpr unsigned kTries = 2;
   for (unsigned i = 0; i < kTries; ++i) {
@@ -59,6 +64,9 @@ std::string other_mode(MasterLine& line, const Addressee& to, std::uint8_t addre
   const hal::SerialMode given = line.mode();
   std::string found;
   for (const LineFormat format : {LineFormat::k8N1, LineFormat::k8E1, LineFormat::k8O1}) {
+    if (format != LineFormat::k8N1 && !line.connection().has_formats()) {
+      break;
+    }
     for (auto rate = kBaudRates.rbegin(); rate != kBaudRates.rend() && found.empty(); ++rate) {
       line.set_mode({*rate, format});
       if ((speaks != Speaks::Ascii && to.request[0] != 0 && replies_in_modbus(line, to)) ||
@@ -77,12 +85,16 @@ sim::Words expand_modules(const sim::Words& texts) {
   sim::Words modules;
   for (const std::string& text : sim::parts_of(sim::joined(texts, ","), ',')) {
     const std::size_t dash = text.find('-');
-    if (dash == std::string::npos) {
-      modules.push_back(text);
+    if (is_serial_number(text)) {
+      modules.push_back(parse_addressee(text).name);
       continue;
     }
-    const unsigned last = parse_address(text.substr(dash + 1));
-    for (unsigned address = parse_address(text.substr(0, dash)); address <= last; ++address) {
+    const unsigned first = parse_address(text.substr(0, dash));
+    const unsigned last = dash == std::string::npos ? first : parse_address(text.substr(dash + 1));
+    if (first > last) {
+      sim::fail("'" + text + "': expected FIRST-LAST, as 1-32");
+    }
+    for (unsigned address = first; address <= last; ++address) {
       modules.push_back(std::to_string(address));
     }
   }
@@ -92,6 +104,26 @@ sim::Words expand_modules(const sim::Words& texts) {
     }
   }
   return modules;
+}
+
+bool is_free(MasterLine& line, std::uint8_t address) {
+  constexpr unsigned kTries = 3;
+  const bool checksum = line.dcon().checksum();
+  bool free = true;
+  for (unsigned i = 0; i < kTries && free; ++i) {
+    if (is_modbus_address(address)) {
+      free = line.modbus().exchange(at_address(address), harmless_request(), kPatience).empty() &&
+             line.modbus().heard() != Heard::Noise;
+    }
+    if (free && line.carries_all()) {
+      line.connection().send({'\r'});
+      line.dcon().set_checksum(i % 2 != 0);
+      free = !line.dcon().ask("$" + sim::hex_byte_text(address) + "M", kPatience) &&
+             line.dcon().heard() != Heard::Noise;
+    }
+  }
+  line.dcon().set_checksum(checksum);
+  return free;
 }
 
 const Request& harmless_request() {
@@ -113,7 +145,7 @@ std::uint8_t parse_address(const std::string& text) {
 }
 
 Device find_device(Environment& environment, MasterLine& line, const std::string& text, Speaks speaks) {
-  const bool by_number = text.size() == kSerialNumberDigits && text.compare(0, 2, "0x") != 0;
+  const bool by_number = is_serial_number(text);
   const std::uint8_t address = by_number ? 0 : parse_address(text);
   const Addressee to = by_number ? parse_addressee(text) : at_address(address);
   if (by_number && !line.carries_all()) {

@@ -15,12 +15,16 @@ enum class Speaks : std::uint8_t { Unknown, Ascii, Modbus };
 /// reply, with what the line shows instead: it tries all other modes, and says so; what Connection throws.
 Device find_device(Environment& environment, MasterLine& line, const std::string& text, Speaks speaks);
 
-/// `texts`: modules as above, several separated by commas, or ranges of addresses as 5-9. Throws
-/// std::invalid_argument if one is there twice.
+/// `texts`: modules as above, several separated by commas, or ranges of addresses as 5-9. Returns each in one
+/// form: a decimal address, or a serial number in capitals. Throws std::invalid_argument if one is there
+/// twice.
 sim::Words expand_modules(const sim::Words& texts);
 
 /// Any module replies to it: function 46, sub-function 00 (manuals), reads the code; other devices refuse it.
 const Request& harmless_request();
+
+/// Nobody replies at this address, in either protocol, and nothing else is heard. In the mode of the line.
+bool is_free(MasterLine& line, std::uint8_t address);
 
 /// Throws std::invalid_argument: 0 to 255.
 std::uint8_t parse_address(const std::string& text);

@@ -33,7 +33,7 @@ const Model* model_with_short_text(const std::string& text) {
   return found == std::end(kModels) ? nullptr : found;
 }
 
-/// The only one with this code, else null: the models of a code differ in what no master can see.
+/// The first one with this code: others differ in what no master can see.
 const Model* model_with_code(unsigned code) {
   const auto has_code = [code](const Model& model) { return model.modbus_code == code; };
   const auto* const found = std::find_if(std::begin(kModels), std::end(kModels), has_code);
@@ -68,12 +68,7 @@ Identity identify_in_modbus(Device& device) {
           if_there([&] { return device.read(read_words(kVersionText, kVersionTextSize)).text(); })) {
     identity.version = *text;
   }
-  // Function 11: two bytes of the code, FF, then the name.
-  constexpr std::size_t kNameAt = 3;
-  if (const auto answer = if_there([&] { return device.read(report_server_id()); });
-      answer && answer->data.size() > 1 + kNameAt) {
-    identity.name.assign(answer->data.begin() + 1 + kNameAt, answer->data.end());
-  }
+  identity.name = if_there([&] { return name_in_modbus(device); }).value_or("");
   identity.serial_number = serial_number_of(device);
   return identity;
 }
@@ -88,6 +83,20 @@ Identity identify_in_ascii(Device& device) {
 }
 
 }  // namespace
+
+/// Function 11: two bytes of the code, FF, then the name.
+std::string name_in_modbus(Device& device) {
+  constexpr std::size_t kNameAt = 4;  // after the count
+  const Data data = device.read(report_server_id()).data;
+  if (data.size() <= kNameAt) {
+    throw Absent("tells no name");
+  }
+  std::string name(data.begin() + kNameAt, data.end());
+  if (!Name(std::string_view(name)).is_possible(kMaxNameLength)) {
+    throw Absent("tells a name that is not printable");
+  }
+  return name;
+}
 
 Identity identify(Device& device) {
   Identity identity = device.speaks_modbus() ? identify_in_modbus(device) : identify_in_ascii(device);

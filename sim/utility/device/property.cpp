@@ -19,6 +19,7 @@ constexpr unsigned kSafeCoils = 0x0080;
 constexpr unsigned kPowerOnCoils = 0x00A0;
 constexpr unsigned kProtocolCoil = 0x0100;
 constexpr unsigned kWatchdogCoil = 0x0104;
+constexpr unsigned kTimeoutStatusCoil = 0x010D;
 constexpr unsigned kEdgeCoil = 0x08CA;
 constexpr unsigned kAddressRegister = 0x01E4;
 constexpr unsigned kBaudCodeRegister = 0x01E5;
@@ -29,7 +30,12 @@ constexpr unsigned kFeedRegister = 0x0251;
 constexpr unsigned kDelayRegister = 0x0252;
 constexpr unsigned kUpdatesRegister = 0x0254;
 
-unsigned number(const std::string& digits) { return static_cast<unsigned>(std::stoul(digits, nullptr, 16)); }
+unsigned number(const std::string& digits) {
+  if (digits.empty() || digits.find_first_not_of("0123456789ABCDEF") != std::string::npos) {
+    throw Failed("replies '" + digits + "' where hex digits are expected");
+  }
+  return static_cast<unsigned>(std::stoul(digits, nullptr, 16));
+}
 
 // --- `%AANNTTCCFF` and `$AA2` (manuals 2.1, 2.5) ---
 
@@ -54,7 +60,21 @@ Configuration configuration_of(Device& device) {
   return configuration;
 }
 
+/// Whether the module answers at an address now.
+bool answers_at(Device& device, std::uint8_t address) {
+  constexpr unsigned kTries = 2;
+  device.moves_to(address);
+  for (unsigned i = 0; i < kTries; ++i) {
+    if (device.line().dcon().ask("$" + sim::hex_byte_text(address) + "2")) {
+      return true;
+    }
+  }
+  return false;
+}
+
+/// A new address is in force at once, but not in INIT mode. If the reply is lost, who answers tells.
 void configure(Device& device, Configuration configuration) {
+  const std::uint8_t before = device.address();
   const std::string digits = sim::hex_byte_text(configuration.address);
   try {
     device.ask("%AA" + digits + "40" + sim::hex_byte_text(configuration.baud_code) +
@@ -62,9 +82,13 @@ void configure(Device& device, Configuration configuration) {
                "!" + digits);
   } catch (const Absent&) {
     throw Failed("refuses to change rate, format or checksum; tie INIT* to GND and repeat the command");
+  } catch (const Failed&) {
+    if (configuration.address == before) {
+      throw;
+    }
   }
-  if (!device.in_init()) {
-    device.moves_to(configuration.address);
+  if (configuration.address != before && !answers_at(device, configuration.address)) {
+    device.moves_to(before);
   }
 }
 
@@ -161,7 +185,14 @@ void set_preset(Device& device, const Model& model, char letter, const std::stri
   if (two_bytes) {
     pdu.push_back(static_cast<std::uint8_t>(bits >> 8U));
   }
-  device.write({pdu, reply, reply.size()});
+  try {
+    device.write({pdu, reply, reply.size()});
+  } catch (const Failed&) {
+    if (coil(device, kTimeoutStatusCoil)) {
+      throw Failed("is refused, because the host watchdog has timed out; write 1 to coil 0x010D first");
+    }
+    throw;
+  }
 }
 
 // --- host watchdog: `~AA2` reads EVV, `~AA3EVV` sets it (manuals 2.18, 2.19) ---
@@ -180,8 +211,8 @@ unsigned parse_timeout(const std::string& value) {
   constexpr std::chrono::milliseconds kUnit{100};
   constexpr unsigned kMost = 255;
   const auto time = sim::parse_time(value);
-  if (time % kUnit != Time(0) || time < kUnit || time > kMost * kUnit) {
-    sim::fail("'" + value + "': expected 0.1s to 25.5s, in steps of 0.1s");
+  if (time % kUnit != Time(0) || time > kMost * kUnit) {
+    sim::fail("'" + value + "': expected up to 25.5s, in steps of 0.1s");
   }
   return static_cast<unsigned>(time / kUnit);
 }
@@ -216,9 +247,16 @@ std::string filters(Device& device, const Model& model) {
 
 void set_filters(Device& device, const Model& model, const std::string& value) {
   const sim::Words times = sim::parts_of(value, ',');
+  Data words;
   for (unsigned channel = 0; channel < model.inputs; ++channel) {
-    const std::string& time = times.size() == 1 ? times[0] : times[channel];
-    device.write_extension(kFilterRegisters + channel, static_cast<unsigned>(std::stoul(time)));
+    const auto time = static_cast<unsigned>(std::stoul(times.size() == 1 ? times[0] : times[channel]));
+    append_word(words, time);
+    if (!device.speaks_modbus()) {
+      device.write_extension(kFilterRegisters + channel, time);
+    }
+  }
+  if (device.speaks_modbus()) {
+    device.write(write_words(kFilterRegisters, {words.data(), words.size()}));
   }
 }
 
@@ -228,15 +266,13 @@ std::string address_form(const Model& /*model*/, const std::string& value) {
 
 void set_address(Device& device, const Model& /*model*/, const std::string& value) {
   const std::uint8_t address = parse_address(value);
-  if (!device.speaks_modbus()) {
-    Configuration configuration = configuration_of(device);
-    configuration.address = address;
-    configure(device, configuration);
-  } else if (is_modbus_address(address)) {
+  if (device.speaks_modbus()) {
     device.write(write_word(kAddressRegister, address));
-  } else {
-    sim::fail("'" + value + "': expected 1 to 247, because the module speaks Modbus");
+    return;
   }
+  Configuration configuration = configuration_of(device);
+  configuration.address = address;
+  configure(device, configuration);
 }
 
 std::string name_form(const Model& model, const std::string& value) {
@@ -249,11 +285,6 @@ std::string name_form(const Model& model, const std::string& value) {
 
 std::string on_off_form(const Model& /*model*/, const std::string& value) {
   return sim::on_off_text(sim::parse_on_off(value));
-}
-
-[[noreturn]] void only_in_ascii(const char* what) {
-  throw Absent(std::string("speaks Modbus, where no request ") + what +
-               "; tie INIT* to GND, reset it, and use --ascii with the address 0 at 9600 baud");
 }
 
 }  // namespace
@@ -305,32 +336,32 @@ const std::vector<Property> properties{
     {"checksum", "on|off", "the checksum of ASCII frames", Needs::Nothing, on_off_form,
      [](Device& device, const Model& /*model*/) {
        if (device.speaks_modbus()) {
-         only_in_ascii("reads or sets the checksum");
+         throw Absent("tells this only in ASCII");
        }
        return sim::on_off_text(format_bit(device, kFormatChecksum));
      },
      [](Device& device, const Model& /*model*/, const std::string& value) {
        set_format_bit(device, kFormatChecksum, value == "on");
      },
-     InForce::AtReset},
+     InForce::AtReset, "", true},
     {"updates-allowed", "on|off", "whether the firmware can be updated over the line", Needs::Modbus,
      on_off_form,
      [](Device& device, const Model& /*model*/) {
        return sim::on_off_text(device.extension(kUpdatesRegister) != 0);
      },
      [](Device& device, const Model& /*model*/, const std::string& value) {
-       device.write_extension(kUpdatesRegister, value == "on" ? 1 : 0);
+       try {
+         device.write_extension(kUpdatesRegister, value == "on" ? 1 : 0);
+       } catch (const Failed&) {
+         throw Failed("refuses to change this; tie INIT* to GND and repeat the command");
+       }
      }},
     {"name", "TEXT", "the name that $AAM reads", Needs::Nothing, name_form,
      [](Device& device, const Model& /*model*/) {
-       return device.speaks_modbus() ? identify(device).name : device.ask("$AAM");
+       return device.speaks_modbus() ? name_in_modbus(device) : device.ask("$AAM");
      },
-     [](Device& device, const Model& /*model*/, const std::string& value) {
-       if (device.speaks_modbus()) {
-         only_in_ascii("sets the name");
-       }
-       device.ask("~AAO" + value);
-     }},
+     [](Device& device, const Model& /*model*/, const std::string& value) { device.ask("~AAO" + value); },
+     InForce::Now, "", true},
     {"edge", "falling|rising", "the edge that the counters count", Needs::Inputs,
      [](const Model& /*model*/, const std::string& value) -> std::string {
        return sim::parse_choice(value, "rising", "falling") ? "rising" : "falling";
@@ -363,7 +394,7 @@ const std::vector<Property> properties{
      [](Device& device, const Model& model, const std::string& value) {
        set_preset(device, model, 'P', value);
      },
-     InForce::AtReset, "also switches the outputs to this value now"},
+     InForce::Now, "also switches the outputs to this value now"},
     {"safe-value", "HHHH", "the outputs after a timeout of the host watchdog; bit n is output n",
      Needs::Outputs, outputs_form,
      [](Device& device, const Model& model) { return sim::hex_word_text(preset(device, model, 'S')); },
@@ -371,7 +402,7 @@ const std::vector<Property> properties{
        set_preset(device, model, 'S', value);
      },
      InForce::Now, "also switches the outputs to this value now"},
-    {"watchdog-timeout", "TIME", "the time of the host watchdog, 0.1s to 25.5s", Needs::Nothing,
+    {"watchdog-timeout", "TIME", "the time of the host watchdog, up to 25.5s", Needs::Nothing,
      [](const Model& /*model*/, const std::string& value) { return timeout_text(parse_timeout(value)); },
      [](Device& device, const Model& /*model*/) {
        return timeout_text(device.speaks_modbus() ? device.read(read_words(kTimeoutRegister, 1)).word(0)
@@ -395,18 +426,6 @@ const std::vector<Property> properties{
      [](Device& device, const Model& /*model*/, const std::string& value) {
        device.write_extension(kFeedRegister, value == "requests" ? 1 : 0);
      }},
-    {"watchdog", "on|off", "the host watchdog", Needs::Nothing, on_off_form,
-     [](Device& device, const Model& /*model*/) {
-       return sim::on_off_text(device.speaks_modbus() ? coil(device, kWatchdogCoil)
-                                                      : watchdog(device)[0] == '1');
-     },
-     [](Device& device, const Model& /*model*/, const std::string& value) {
-       if (device.speaks_modbus()) {
-         device.write(write_bit(kWatchdogCoil, value == "on"));
-       } else {
-         device.ask(std::string("~AA3") + (value == "on" ? "1" : "0") + watchdog(device).substr(1));
-       }
-     }},
     {"response-delay", "MS", "response delay in ms, 0 to 30", Needs::Nothing,
      [](const Model& /*model*/, const std::string& value) {
        return std::to_string(sim::parse_whole_number(value, 0, kLongestResponseDelay));
@@ -421,6 +440,18 @@ const std::vector<Property> properties{
                                      : std::to_string(configuration_of(device).address);
      },
      set_address, InForce::AtResetModbus},
+    {"watchdog", "on|off", "the host watchdog", Needs::Nothing, on_off_form,
+     [](Device& device, const Model& /*model*/) {
+       return sim::on_off_text(device.speaks_modbus() ? coil(device, kWatchdogCoil)
+                                                      : watchdog(device)[0] == '1');
+     },
+     [](Device& device, const Model& /*model*/, const std::string& value) {
+       if (device.speaks_modbus()) {
+         device.write(write_bit(kWatchdogCoil, value == "on"));
+       } else {
+         device.ask(std::string("~AA3") + (value == "on" ? "1" : "0") + watchdog(device).substr(1));
+       }
+     }},
 };
 
 bool needs_reset(const Property& property, const Device& device) {

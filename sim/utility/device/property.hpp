@@ -30,11 +30,13 @@ struct Property {
   void (*write)(Device& device, const Model& model, const std::string& value);
   InForce in_force = InForce::Now;
   std::string_view beware = {};  ///< what a change does besides; empty: nothing
+  bool only_in_ascii = false;    ///< a module that speaks Modbus does not take it
 };
 
 [[nodiscard]] bool needs_reset(const Property& property, const Device& device);
 
-/// In the order in which they are set: first what a module refuses without INIT*, last the address.
+/// In the order in which they are set: first what a module refuses without INIT*, then the
+/// address, last the host watchdog, which could expire meanwhile.
 extern const std::vector<Property> properties;
 
 /// Throws std::invalid_argument.

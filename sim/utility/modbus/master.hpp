@@ -16,8 +16,8 @@ class Master {
   Master& operator=(const Master&) = delete;
   virtual ~Master() = default;
 
-  /// The PDU of the reply or of the exception; empty: none. `patience`: from the end of the request to the
-  /// beginning of the reply. Throws what Connection throws.
+  /// The PDU of the reply or of the exception; empty: none, also if a gateway says so. `patience`: from the
+  /// end of the request to the beginning of the reply. Throws what Connection throws.
   virtual Data exchange(const Addressee& to, const Request& request, Time patience) = 0;
   virtual Connection& connection() = 0;
   /// In the last exchange, if it had no reply.

@@ -31,9 +31,8 @@ std::string exception_text(std::uint8_t exception) {
 }
 
 std::optional<Answer> Module::try_once(const Request& request, Time patience) {
-  constexpr std::uint8_t kNoReplyToGateway = 0x0B;
   const Data pdu = master_->exchange(to_, request, patience);
-  if (pdu.empty() || ((pdu[0] & kExceptionBit) != 0 && pdu[1] == kNoReplyToGateway)) {
+  if (pdu.empty()) {
     return std::nullopt;
   }
   if ((pdu[0] & kExceptionBit) != 0) {

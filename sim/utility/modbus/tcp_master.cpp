@@ -24,7 +24,7 @@ class TcpMaster final : public Master {
       reader_.add({more.data(), more.size()});
       while (const auto frame = reader_.next()) {
         if (frame->transaction == transaction_ && answers(frame->pdu, request)) {
-          return frame->pdu;
+          return is_no_reply(frame->pdu) ? Data() : frame->pdu;
         }
       }
       if (reader_.broken()) {
@@ -40,6 +40,11 @@ class TcpMaster final : public Master {
   /// For the frames on the line behind the gateway, at any rate.
   static constexpr std::chrono::seconds kOnTheLine{2};
 
+  /// What a gateway says if the module gives no reply.
+  static bool is_no_reply(const Data& pdu) {
+    constexpr std::uint8_t kTargetFailedToRespond = 0x0B;
+    return pdu.size() == 2 && (pdu[0] & kExceptionBit) != 0 && pdu[1] == kTargetFailedToRespond;
+  }
   static bool answers(const Data& pdu, const Request& request) {
     if (pdu[0] == (request.pdu[0] | kExceptionBit)) {
       return pdu.size() == 2;

@@ -12,7 +12,8 @@ namespace ex9000::utility {
 
 namespace {
 
-/// What cannot be read stays unknown.
+/// What cannot be read stays unknown. The first reply may be one of several modules, and the next ones are
+/// not.
 void read_identity(FoundModule& found, Device device) {
   try {
     found.identity = identify(device);
@@ -20,8 +21,20 @@ void read_identity(FoundModule& found, Device device) {
         std::find_if(facts.begin(), facts.end(), [](const Fact& fact) { return fact.name == "last reset"; });
     found.last_reset = last_reset->read(device, *kModels);
   } catch (const Failed&) {
-    found.garbled = found.identity.model_text.empty() && found.identity.name.empty();
+    const Heard heard =
+        device.speaks_modbus() ? device.line().modbus().heard() : device.line().dcon().heard();
+    found.garbled = heard == Heard::Noise;
   }
+}
+
+/// In the reply to `$002`: not the address of the request, if the module is in INIT mode.
+std::optional<std::uint8_t> stored_address_in(const std::string& reply, std::uint8_t address) {
+  constexpr std::size_t kSize = 9;  // !AATTCCFF
+  if (address != 0 || reply.size() != kSize || reply[0] != '!' ||
+      reply.find_first_not_of("0123456789ABCDEF", 1) != std::string::npos || reply.compare(1, 2, "00") == 0) {
+    return std::nullopt;
+  }
+  return sim::parse_hex_byte(reply.substr(1, 2));
 }
 
 class Scan {
@@ -114,8 +127,7 @@ class Scan {
   }
 
   bool ascii_at(std::uint8_t address) {
-    const std::string digits = sim::hex_byte_text(address);
-    const auto reply = line_.dcon().ask("$" + digits + "2", search_.patience);
+    const auto reply = line_.dcon().ask("$" + sim::hex_byte_text(address) + "2", search_.patience);
     if (!reply && line_.dcon().heard() != Heard::Noise) {
       return false;
     }
@@ -123,10 +135,7 @@ class Scan {
     found.checksum = line_.dcon().checksum();
     found.garbled = !reply;
     if (reply) {
-      if (const std::string stored = reply->substr(std::min<std::size_t>(1, reply->size()), 2);
-          (*reply)[0] == '!' && stored != digits && stored.size() == 2) {
-        found.stored_address = sim::parse_hex_byte(stored);
-      }
+      found.stored_address = stored_address_in(*reply, address);
       read_identity(found, Device::in_ascii(line_, address));
     }
     found_(found);

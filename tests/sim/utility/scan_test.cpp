@@ -138,6 +138,33 @@ TEST(Scan, IsNotDeceivedByNoise) {
   }
 }
 
+TEST(Scan, RefusesWhatExcludesEachOther) {
+  Plant plant({"EX9052D-M@01"});
+  for (const std::vector<std::string>& words : {std::vector<std::string>{"scan", "port", "--fast", "--ascii"},
+                                                {"scan", "modbus-tcp:host", "--fast"},
+                                                {"scan", "modbus-tcp:host", "--ascii"},
+                                                {"show", "port", "1", "--ascii", "--modbus"},
+                                                {"scan", "port", "--baud", ""}}) {
+    EXPECT_EQ(plant.run(words), 2) << words.back();
+  }
+}
+
+/// Modules in ASCII with one address: their bytes merge into any text.
+TEST(Scan, SurvivesWhatCollisionsLookLike) {
+  Plant plant({"EX9042D@02", "EX9055D@02", "EX9052D-M@05", "EX9042D-M@06", "EX9043D@02"});
+  plant.act("fault echo 5ms");
+  EXPECT_EQ(plant.run({"scan", "port", "--baud", "9600", "--format", "8N1", "--addresses", "0-7"}), 0)
+      << plant.error();
+  EXPECT_EQ(plant.output().find_first_of(std::string("\0\1\2\3\4", 5)), std::string::npos);
+}
+
+/// The replies to the first probes of the new address are lost.
+TEST(Scan, AddressFindsAModuleWhoseReplyIsLost) {
+  Plant plant({"EX9052D-M@01", "EX9042D-M@02"});
+  plant.act("2 fault lost-reply for 900ms");
+  EXPECT_EQ(plant.run({"address", "port", "0D000001", "2"}), 2) << plant.output();
+}
+
 TEST(Scan, SaysThatNobodyReplies) {
   Plant plant({"EX9052D-M@01"});
   plant.act("1 power off");

@@ -157,7 +157,7 @@ TEST(Set, ChangesEachSetting) {
       {"EX9052D-M@05", "response-delay=30", "response-delay: 0 -> 30\n"},
       {"EX9052D-M@05", "address=0x20", "address: 5 -> 32, in force from the next reset on\n"},
       {"EX9043D-M@05", "power-on-value=A5",
-       "power-on-value: 0000 -> 00A5, in force from the next reset on; also switches the outputs to this "
+       "power-on-value: 0000 -> 00A5; also switches the outputs to this "
        "value now\n"},
       {"EX9068D-M@05", "safe-value=81",
        "safe-value: 0000 -> 0081; also switches the outputs to this value now\n"},
@@ -168,7 +168,7 @@ TEST(Set, ChangesEachSetting) {
       {"EX9052D@05", "watchdog-timeout=300ms", "watchdog-timeout: 25.5s -> 300ms\n"},
       {"EX9052D@05", "watchdog=on", "watchdog: off -> on\n"},
       {"EX9043D@05", "power-on-value=A5A5",
-       "power-on-value: 0000 -> A5A5, in force from the next reset on; also switches the outputs to this "
+       "power-on-value: 0000 -> A5A5; also switches the outputs to this "
        "value now\n"},
       {"EX9068D@05", "safe-value=81",
        "safe-value: 0000 -> 0081; also switches the outputs to this value now\n"},
@@ -214,8 +214,8 @@ TEST(Set, RefusesWhatTheModuleCannotHaveAndChangesNothing) {
       {"inverted-inputs=100", "inverted-inputs: '100': expected bits of the channels, at most 00FF"},
       {"input-filters=1,2", "input-filters: '1,2': expected one time for all inputs, or 8 times"},
       {"input-filters=2001", "input-filters: '2001': expected"},
-      {"watchdog-timeout=26s", "watchdog-timeout: '26s': expected 0.1s to 25.5s, in steps of 0.1s"},
-      {"watchdog-timeout=150ms", "watchdog-timeout: '150ms': expected 0.1s to 25.5s"},
+      {"watchdog-timeout=26s", "watchdog-timeout: '26s': expected up to 25.5s, in steps of 0.1s"},
+      {"watchdog-timeout=150ms", "watchdog-timeout: '150ms': expected up to 25.5s"},
       {"response-delay=31", "response-delay: '31': expected"},
       {"name=TOOLONG", "name: 'TOOLONG': expected 1 to 6 printable ASCII characters"},
       {"address=0", "address: '0': expected 1 to 247, because the module speaks Modbus"},
@@ -228,18 +228,84 @@ TEST(Set, RefusesWhatTheModuleCannotHaveAndChangesNothing) {
     EXPECT_EQ(plant.run({"set", "port", "5", setting, "watchdog-feed=requests"}), 2);
     EXPECT_EQ(plant.error().find("ex9000: " + std::string(problem)), 0U) << plant.error();
     EXPECT_EQ(plant.run({"show", "port", "5"}), 0);
-    if (std::string(setting) != "address=0") {
-      EXPECT_EQ(shown(plant, "watchdog-feed"), "host-ok");
-    }
+    EXPECT_EQ(shown(plant, "watchdog-feed"), "host-ok");
   }
 }
 
 TEST(Set, SaysThatANameNeedsAscii) {
   Plant plant({"EX9052D-M@05"});
   EXPECT_EQ(plant.run({"set", "port", "5", "name=TANK"}), 1);
-  EXPECT_NE(plant.error().find("name: speaks Modbus, where no request sets the name; tie INIT* to GND"),
+  EXPECT_NE(
+      plant.error().find(
+          "name: takes this only in ASCII; tie INIT* to GND, reset it, and use the address 0 at 9600 baud\n"),
+      std::string::npos)
+      << plant.error();
+}
+
+TEST(Set, SaysWhatIsChangedIfItEndsInBetween) {
+  Plant plant({"EX9052D@05"});
+  plant.sends = [&](const Data& frame) {
+    if (frame[0] == '~' && frame[3] == 'X' && frame.size() > 9) {
+      throw Interrupted();
+    }
+    return true;
+  };
+  EXPECT_EQ(plant.run({"set", "port", "5", "name=TANK", "response-delay=5", "input-filters=7", "--model",
+                       "EX9052D"}),
+            130);
+  EXPECT_EQ(plant.error(), "ex9000: stopped (changed: name; perhaps: input-filters; not: response-delay)\n");
+  plant.sends = [&](const Data& frame) {
+    if (frame[0] == '~' && frame[3] == 'X' && frame.size() > 9) {
+      plant.act("1 power off");
+    }
+    return true;
+  };
+  EXPECT_EQ(plant.run({"set", "port", "5", "edge=rising", "response-delay=5", "--model", "EX9052D"}), 1);
+  EXPECT_NE(plant.error().find(
+                "response-delay: gives no reply to ~05X02520005; check address, rate, format, checksum "
+                "and wires (changed: edge; perhaps: response-delay; not: nothing)\n"),
             std::string::npos)
       << plant.error();
+}
+
+/// The reply to the new address is lost, or the module is in INIT mode with the stored address 00.
+TEST(Set, FollowsTheModuleToItsNewAddress) {
+  Plant plant({"EX9052D@05"});
+  plant.sends = [&](const Data& frame) {
+    plant.act("fault off all");
+    if (frame[0] == '%') {
+      plant.act("1 fault lost-reply every reply");
+    }
+    return true;
+  };
+  EXPECT_EQ(plant.run({"set", "port", "5", "address=9"}), 0) << plant.error();
+  Plant init({"EX9052D@00,init=on"});
+  EXPECT_EQ(init.run({"set", "port", "0", "address=7"}), 0) << init.error();
+  init.act("1 init off");
+  init.act("1 reset");
+  EXPECT_EQ(init.run({"show", "port", "7"}), 0) << init.error();
+}
+
+TEST(Set, AnAddressInUseIsRefused) {
+  Plant plant({"EX9043D@07", "EX9052D@08", "EX9052D-M@09"});
+  for (const char* address : {"8", "9"}) {
+    EXPECT_EQ(plant.run({"set", "port", "7", std::string("address=") + address}), 2);
+    EXPECT_EQ(plant.error(), std::string("ex9000: address: another module has the address ") + address +
+                                 "; choose a free one\n");
+  }
+  EXPECT_EQ(plant.run({"set", "port", "7,8", "address=10"}), 2);
+  EXPECT_EQ(plant.error(), "ex9000: address: several modules cannot have the same; name one module\n");
+}
+
+/// It could expire while the rest is being set.
+TEST(Set, TheHostWatchdogComesLast) {
+  Plant plant({"EX9052D-M@05"});
+  EXPECT_EQ(plant.run({"set", "port", "5", "watchdog=on", "watchdog-timeout=200ms", "response-delay=5",
+                       "address=6"}),
+            0)
+      << plant.error();
+  EXPECT_EQ(plant.output().rfind("watchdog: off -> on\n"), plant.output().find("switch") - 20)
+      << plant.output();
 }
 
 class Saved : public testing::Test {
@@ -265,6 +331,38 @@ TEST_F(Saved, AReplacedModuleGetsTheSettingsOfTheOldOne) {
 
   EXPECT_EQ(old.run({"save", "port", "7,0D001F3A", file_, "--model", "EX9043D"}), 2);
   EXPECT_NE(old.error().find("--model: 0D001F3A is an EX9052D-M; leave out the option"), std::string::npos);
+}
+
+/// What a module takes only in ASCII waits until it speaks that.
+TEST_F(Saved, AModuleInAsciiIsRestoredInTwoSteps) {
+  Plant old({"EX9052D-M@05,protocol=ascii,checksum=on,name=TANK"});
+  EXPECT_EQ(old.run({"save", "port", "5", file_, "--model", "EX9052D-M"}), 0) << old.error();
+  Plant fresh({"EX9052D-M@01"});
+  EXPECT_EQ(fresh.run({"restore", "port", "1", file_}), 1);
+  EXPECT_EQ(fresh.output(),
+            "protocol: modbus -> ascii, in force from the next reset on\n"
+            "address: 1 -> 5, in force from the next reset on\nswitch the module off and on\n");
+  EXPECT_EQ(fresh.error(),
+            "left out, because the module takes it only in ASCII: checksum, name; reset it and repeat the "
+            "command\n");
+  fresh.act("1 init on");
+  fresh.act("1 reset");
+  fresh.wait();
+  EXPECT_EQ(fresh.run({"restore", "port", "0", file_}), 0) << fresh.error();
+  EXPECT_EQ(fresh.output(),
+            "checksum: off -> on, in force from the next reset on\nname: 9052M -> TANK\n"
+            "release INIT*, and switch the module off and on\n");
+}
+
+TEST_F(Saved, AModuleThatDoesNotReplyCostsOnlyItsOwnSettings) {
+  Plant plant({"EX9052D-M@05"});
+  EXPECT_EQ(plant.run({"save", "port", "5,6", file_}), 1);
+  EXPECT_NE(plant.error().find("6: not saved: 6: no reply at 9600 baud 8N1"), std::string::npos)
+      << plant.error();
+  EXPECT_EQ(plant.run({"restore", "port", "5", file_}), 0) << plant.error();
+  EXPECT_EQ(plant.run({"save", "port", "7", directory_ / "other"}), 1);
+  EXPECT_FALSE(std::filesystem::exists(directory_ / "other"));
+  EXPECT_EQ(plant.run({"save", "port", "6-5", file_}), 2);
 }
 
 TEST_F(Saved, AFileMayHaveSeveralModules) {

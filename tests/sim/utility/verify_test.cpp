@@ -496,7 +496,7 @@ std::string answer_of(Rig& rig, const std::string& request) {
     return rig.ask(request);
   } catch (const NotVerified& error) {
     return std::string("not verified: ") + error.what();
-  } catch (const std::runtime_error& error) {
+  } catch (const std::exception& error) {
     return error.what();
   }
 }
