@@ -93,7 +93,7 @@ void write_file(const std::string& path, const std::string& text) {
   file << text << "\n";
   if (!file.flush() || std::rename(fresh.c_str(), path.c_str()) != 0) {
     const std::string reason = sim::reason();
-    std::remove(fresh.c_str());
+    static_cast<void>(std::remove(fresh.c_str()));
     sim::unavailable(path + ": " + reason + "; name a file that you can write");
   }
 }

@@ -14,7 +14,7 @@ constexpr std::size_t kChecksumDigits = 2;
 constexpr std::size_t kLongestReply = 40;
 // A line that is never silent must not keep `ask` for ever.
 constexpr std::size_t kMostBytes = 1000;
-constexpr unsigned kMostReadings = 100;
+constexpr unsigned kMostDrains = 100;
 
 std::string checksum_of(const std::string& text) {
   return sim::hex_byte_text(std::accumulate(
@@ -46,7 +46,7 @@ Data dcon_frame(const std::string& command, bool checksum) {
 }
 
 std::optional<std::string> DconMaster::ask(const std::string& command, Time patience) {
-  for (unsigned i = 0; i < kMostReadings && !connection_.receive(character_ * 2).empty(); ++i) {
+  for (unsigned i = 0; i < kMostDrains && !connection_.receive(character_ * 2).empty(); ++i) {
   }
   const Data frame = dcon_frame(command, checksum_);
   connection_.send(frame);
