@@ -24,7 +24,7 @@ def bash_completion(name: str, program: Help, subcommands: dict[str, Help], mode
         "  case $word in",
         "    -*)",
         "      case $command in",
-        *(f"        {_pattern(command)}) _ex9000_sim_words {shlex.quote(_names(h))} ;;" for command, h in commands.items()),
+        *(f"        {_pattern(each)}) _ex9000_sim_words {shlex.quote(_names(h))} ;;" for each, h in commands.items()),
         "      esac",
         "      return ;;",
         "  esac",
