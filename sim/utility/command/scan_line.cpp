@@ -21,10 +21,14 @@ std::string serial_number_text(const FoundModule& module) {
   return module.identity.serial_number ? sim::hex_long_text(*module.identity.serial_number) : "";
 }
 
+/// After a blank; empty if it is not known.
+std::string mode_of(const FoundModule& module) {
+  return module.mode ? " " + sim::mode_text(module.mode->baud, module.mode->format) : "";
+}
+
 std::string line_of(const FoundModule& module) {
-  const std::string mode = sim::mode_text(module.mode.baud, module.mode.format);
   std::string text = std::to_string(module.address) + " (" + sim::hex_byte_text(module.address) + ")  " +
-                     protocol_text(module) + " " + mode + (module.checksum ? " checksum" : "");
+                     protocol_text(module) + mode_of(module) + (module.checksum ? " checksum" : "");
   if (module.garbled) {
     return text + "  bytes, but no reply: several modules with this address, or noise";
   }
@@ -41,10 +45,11 @@ std::string line_of(const FoundModule& module) {
 }
 
 std::string json_of(const FoundModule& module) {
-  nlohmann::ordered_json json{{"address", module.address},
-                              {"protocol", protocol_text(module)},
-                              {"baud", module.mode.baud},
-                              {"format", sim::line_format_text(module.mode.format)}};
+  nlohmann::ordered_json json{{"address", module.address}, {"protocol", protocol_text(module)}};
+  if (module.mode) {
+    json["baud"] = module.mode->baud;
+    json["format"] = sim::line_format_text(module.mode->format);
+  }
   if (module.speaks == Speaks::Ascii) {
     json["checksum"] = module.checksum;
   }
@@ -103,15 +108,16 @@ Search search_of(MasterLine& line, const Options& options) {
 
 /// Of the modules that have an address in common.
 void report_duplicates(Environment& environment, const std::vector<FoundModule>& modules) {
-  std::map<std::tuple<std::uint32_t, LineFormat, Speaks, unsigned>, unsigned> counts;
+  std::map<std::tuple<std::string, Speaks, unsigned>, unsigned> counts;
   for (const FoundModule& module : modules) {
-    ++counts[{module.mode.baud, module.mode.format, module.speaks, module.address}];
+    ++counts[{mode_of(module), module.speaks, module.address}];
   }
   for (const auto& [place, count] : counts) {
+    const auto& [mode, speaks, address] = place;
     if (count > 1) {
-      environment.error << count << " modules have the address " << std::get<3>(place) << " at "
-                        << sim::mode_text(std::get<0>(place), std::get<1>(place))
-                        << "; give each its own with 'ex9000 address PORT SERIAL ADDRESS'" << std::endl;
+      environment.error << count << " modules have the address " << address << (mode.empty() ? "" : " at")
+                        << mode << "; give each its own with 'ex9000 address PORT SERIAL ADDRESS'"
+                        << std::endl;
     }
   }
 }

@@ -33,7 +33,8 @@ std::string head(Opened& opened) {
   text += identity.version.empty() ? "" : ", firmware " + identity.version;
   text += identity.serial_number ? ", serial number " + sim::hex_long_text(*identity.serial_number) : "";
   text += opened.device.speaks_modbus() ? ", Modbus" : ", ASCII";
-  return text + " at " + sim::mode_text(opened.line.mode().baud, opened.line.mode().format) + "\n";
+  const hal::SerialMode mode = opened.line.mode();
+  return text + (opened.line.has_modes() ? " at " + sim::mode_text(mode.baud, mode.format) : "") + "\n";
 }
 
 }  // namespace

@@ -70,7 +70,9 @@ class Scan {
 
   [[nodiscard]] FoundModule module(Speaks speaks, std::uint8_t address) const {
     FoundModule module;
-    module.mode = line_.mode();
+    if (line_.has_modes()) {
+      module.mode = line_.mode();
+    }
     module.speaks = speaks;
     module.address = address;
     return module;

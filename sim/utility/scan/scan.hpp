@@ -20,7 +20,7 @@ struct Search {
 };
 
 struct FoundModule {
-  hal::SerialMode mode;
+  std::optional<hal::SerialMode> mode;  ///< nullopt: that of a gateway, which does not tell it
   Speaks speaks = Speaks::Unknown;
   std::uint8_t address = 0;
   bool checksum = false;

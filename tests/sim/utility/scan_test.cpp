@@ -138,6 +138,17 @@ TEST(Scan, IsNotDeceivedByNoise) {
   }
 }
 
+/// It has its own mode, whatever --baud says.
+TEST(Scan, NamesNoModeOfAGateway) {
+  Plant plant({"EX9052D-M@01"});
+  EXPECT_EQ(plant.run({"scan", "tcp:host:1", "--fast"}), 0);
+  EXPECT_EQ(plant.output(), "1 (01)  modbus  EX9052D-M '9052M'  D01.00  0D000001  last reset: power-on\n");
+  EXPECT_EQ(plant.run({"scan", "tcp:host:1", "--fast", "--json"}), 0);
+  EXPECT_EQ(plant.output().find("baud"), std::string::npos) << plant.output();
+  EXPECT_EQ(plant.run({"show", "tcp:host:1", "1"}), 0);
+  EXPECT_NE(plant.output().find(", Modbus\n"), std::string::npos) << plant.output();
+}
+
 TEST(Scan, RefusesWhatExcludesEachOther) {
   Plant plant({"EX9052D-M@01"});
   for (const std::vector<std::string>& words : {std::vector<std::string>{"scan", "port", "--fast", "--ascii"},
