@@ -2,6 +2,7 @@
 // shows what it prints.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <iostream>
 #include <memory>
 #include <regex>
@@ -9,7 +10,6 @@
 
 #include "sim/app/play/modbus_frame.hpp"
 #include "sim/utility/command/program.hpp"
-
 #include "tests/boards/pico_image.hpp"
 #include "tests/firmware/update/messages.hpp"
 #include "tests/support/directory.hpp"
@@ -132,7 +132,7 @@ class SharedLine final : public utility::Connection {
 
 class PicoUpdateStory : public PicoImage {
  protected:
-  PicoUpdateStory() : PicoImage() {
+  PicoUpdateStory() {
     const Model& model = *find_model("EX9052D-M");
     Settings settings = Settings::factory(model);
     settings.address = 5;

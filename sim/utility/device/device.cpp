@@ -10,21 +10,23 @@ namespace {
 
 constexpr std::uint8_t kIllegalFunction = 1;
 constexpr std::uint8_t kIllegalAddress = 2;
-constexpr int kHex = 16;
 
 std::string with_address(std::string text, std::uint8_t address) {
   const std::size_t at = text.find("AA");
   return at == std::string::npos ? text : text.replace(at, 2, sim::hex_byte_text(address));
 }
 
-std::string hex_digits(const std::string& text) {
-  if (text.empty() || text.find_first_not_of("0123456789ABCDEF") != std::string::npos) {
-    throw Failed("replies '" + text + "' where hex digits are expected");
-  }
-  return text;
-}
-
 }  // namespace
+
+std::uint32_t hex_number(const std::string& digits) {
+  constexpr std::size_t kMost = 8;
+  if (digits.empty() || digits.size() > kMost ||
+      digits.find_first_not_of("0123456789ABCDEF") != std::string::npos) {
+    throw Failed("replies '" + digits + "' where hex digits are expected");
+  }
+  constexpr int kHex = 16;
+  return static_cast<std::uint32_t>(std::stoul(digits, nullptr, kHex));
+}
 
 Device Device::in_modbus(MasterLine& line, const Addressee& to) {
   Device device(line);
@@ -80,8 +82,7 @@ unsigned Device::extension(unsigned address) {
   if (speaks_modbus()) {
     return read(read_words(address, 1)).word(0);
   }
-  return static_cast<unsigned>(
-      std::stoul(hex_digits(ask("~AAX" + sim::hex_word_text(address))), nullptr, kHex));
+  return hex_number(ask("~AAX" + sim::hex_word_text(address)));
 }
 
 std::uint32_t Device::long_extension(unsigned address) {
@@ -89,8 +90,7 @@ std::uint32_t Device::long_extension(unsigned address) {
     const Answer answer = read(read_words(address, 2));
     return Bytes{answer.data.data(), answer.data.size()}.double_word(0);
   }
-  return static_cast<std::uint32_t>(
-      std::stoul(hex_digits(ask("~AAX" + sim::hex_word_text(address))), nullptr, kHex));
+  return hex_number(ask("~AAX" + sim::hex_word_text(address)));
 }
 
 void Device::write_extension(unsigned address, unsigned value) {

@@ -17,6 +17,9 @@ struct Absent : Failed {
   using Failed::Failed;
 };
 
+/// The number in hex digits of a reply. Throws Failed if it has others.
+std::uint32_t hex_number(const std::string& digits);
+
 /// The functions throw Absent, Failed, or what Connection throws.
 class Device {
  public:

@@ -30,13 +30,6 @@ constexpr unsigned kFeedRegister = 0x0251;
 constexpr unsigned kDelayRegister = 0x0252;
 constexpr unsigned kUpdatesRegister = 0x0254;
 
-unsigned number(const std::string& digits) {
-  if (digits.empty() || digits.find_first_not_of("0123456789ABCDEF") != std::string::npos) {
-    throw Failed("replies '" + digits + "' where hex digits are expected");
-  }
-  return static_cast<unsigned>(std::stoul(digits, nullptr, 16));
-}
-
 // --- `%AANNTTCCFF` and `$AA2` (manuals 2.1, 2.5) ---
 
 struct Configuration {
@@ -51,7 +44,7 @@ Configuration configuration_of(Device& device) {
   if (text.size() != kSize || text.find_first_not_of("0123456789ABCDEF") != std::string::npos) {
     throw Failed("replies '!" + text + "' to $AA2, not !AATTCCFF");
   }
-  const auto byte = [&](std::size_t at) { return static_cast<std::uint8_t>(number(text.substr(at, 2))); };
+  const auto byte = [&](std::size_t at) { return static_cast<std::uint8_t>(hex_number(text.substr(at, 2))); };
   const Configuration configuration{byte(0), byte(4), byte(6)};
   if (!is_baud_code(configuration.baud_code)) {
     throw Failed("has the unknown baud code " + text.substr(4, 2));
@@ -140,7 +133,7 @@ std::uint16_t output_bits(const std::string& digits, const Model& model) {
   if (digits.size() != kSize) {
     throw Failed("replies '" + digits + "', not four hex digits");
   }
-  return static_cast<std::uint16_t>(model.outputs > kBits ? number(digits) : number(digits) >> kBits);
+  return static_cast<std::uint16_t>(model.outputs > kBits ? hex_number(digits) : hex_number(digits) >> kBits);
 }
 
 /// `letter`: P or S.
@@ -387,7 +380,7 @@ const std::vector<Property> properties{
        return sim::hex_word_text(device.extension(kInvertedRegister));
      },
      [](Device& device, const Model& /*model*/, const std::string& value) {
-       device.write_extension(kInvertedRegister, number(value));
+       device.write_extension(kInvertedRegister, hex_number(value));
      }},
     {"power-on-value", "HHHH", "the outputs from a reset on; bit n is output n", Needs::Outputs, outputs_form,
      [](Device& device, const Model& model) { return sim::hex_word_text(preset(device, model, 'P')); },
@@ -406,7 +399,7 @@ const std::vector<Property> properties{
      [](const Model& /*model*/, const std::string& value) { return timeout_text(parse_timeout(value)); },
      [](Device& device, const Model& /*model*/) {
        return timeout_text(device.speaks_modbus() ? device.read(read_words(kTimeoutRegister, 1)).word(0)
-                                                  : number(watchdog(device).substr(1)));
+                                                  : hex_number(watchdog(device).substr(1)));
      },
      [](Device& device, const Model& /*model*/, const std::string& value) {
        const unsigned tenths = parse_timeout(value);

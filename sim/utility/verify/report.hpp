@@ -17,7 +17,7 @@ class Report {
   /// Not about a run.
   void note(const std::string& text) { out_ << text << std::endl; }
   void played(const play::Transcript& transcript, const play::Result& result);
-  /// `where`: the file, and the line if some steps were played.
+  /// `why`: where, and the reason.
   void not_verified(const std::string& why);
   /// `runs`: to play; fewer were played if the program was stopped.
   void totals(std::size_t runs);
