@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "sim/app/setup/paths_in_use.hpp"
+#include "sim/front_ends/panel/face.hpp"
 #include "sim/text/fail.hpp"
 
 namespace ex9000::sim {
@@ -56,7 +57,8 @@ void RunningProgram::open_panel(const std::string& models) {
       setup_.speed.factor);
   for (std::size_t i = 0; i < lines_.size(); ++i) {
     RunningLine& running = *lines_[i];
-    panel_->add_line(running.summary(), running.line(), [&running] { return running.pacer().present(); });
+    panel_->add_line(
+        panel_line(running.summary(), running.line(), [&running] { return running.pacer().present(); }));
     running.record().tell(
         [this, i](const Frame& frame) { panel_->hear(i, frame); },
         [this, i](VirtualTime now, const std::string& text) { panel_->note(i, now, text); });

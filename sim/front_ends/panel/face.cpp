@@ -158,6 +158,21 @@ Message face_of(const SimulatedModule& module, VirtualTime now) {
           {"stored", stored_of(module)}};
 }
 
+PanelLine panel_line(const LineSummary& summary, const Line& line, std::function<VirtualTime()> present) {
+  PanelLine shown{summary, {}, std::move(present), {}, {}};
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    shown.models.push_back(&line.module(i).model());
+  }
+  shown.face = [&line](std::size_t module) {
+    return face_of(line.module(module), line.clock().virtual_now());
+  };
+  shown.faults = [&line] {
+    const Faults* const so_far = line.faults_so_far();
+    return so_far == nullptr ? std::vector<Faults::Info>() : so_far->list();
+  };
+  return shown;
+}
+
 Message plate_layout(const Model& model) {
   const bool relays = model.output_kind != OutputKind::OpenCollector;
   const auto output = [=](unsigned channel) {

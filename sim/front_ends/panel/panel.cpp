@@ -65,14 +65,11 @@ struct Panel::Tracked {  // NOLINT(bugprone-exception-escape): moving a value do
 };
 
 struct Panel::Module {
-  const SimulatedModule* module = nullptr;
-  std::map<std::string, Tracked> face;  ///< the parts of `face_of`
+  std::map<std::string, Tracked> face;  ///< the parts of PanelLine::face
 };
 
 struct Panel::Watched {
-  LineSummary summary;
-  const Line* line = nullptr;
-  std::function<VirtualTime()> present;
+  PanelLine line;
   VirtualTime now{0};            ///< the line's time at the last look
   std::size_t first_module = 0;  ///< position across all lines, from 0
   std::vector<Module> modules;
@@ -80,16 +77,14 @@ struct Panel::Watched {
   Tracked faults;
 
   void capture(std::uint64_t look) {
-    now = present();
-    for (Module& module : modules) {
-      const Message face = face_of(*module.module, line->clock().virtual_now());
+    now = line.present();
+    for (std::size_t i = 0; i < modules.size(); ++i) {
+      const Message face = line.face(i);
       for (const auto& [key, part] : face.items()) {
-        module.face[key].set(part, look);
+        modules[i].face[key].set(part, look);
       }
     }
-    const Faults* so_far = line->faults_so_far();
-    faults.set(message_of(so_far == nullptr ? std::vector<Faults::Info>() : so_far->list(), first_module),
-               look);
+    faults.set(message_of(line.faults(), first_module), look);
   }
 };
 
@@ -202,11 +197,16 @@ class Panel::Viewer final : public PanelViewer {
   }
 
   [[nodiscard]] std::string carry_out(const std::string& command) const {
+    if (!simulated()) {
+      return "error: the modules are real; send them requests";
+    }
     const Words words = words_of(command);
     return !words.empty() && words[0] == "quit"
                ? "error: a page cannot end the simulator; press Ctrl-C in the terminal of the simulator"
                : panel_.carry_out_(command).text;
   }
+
+  [[nodiscard]] bool simulated() const { return panel_.carry_out_ != nullptr; }
 
   [[nodiscard]] std::size_t most_frames() const {
     return std::max(kFewestFrames, kMostFrames / panel_.lines_.size());
@@ -216,18 +216,21 @@ class Panel::Viewer final : public PanelViewer {
     Message lines = Message::array();
     Message modules = Message::array();
     for (const Watched& watched : panel_.lines_) {
-      for (const Module& module : watched.modules) {
-        modules.push_back(plate_layout(module.module->model()));
+      for (const Model* const model : watched.line.models) {
+        modules.push_back(plate_layout(*model));
         modules.back()["line"] = lines.size();
+        modules.back()["simulated"] = simulated();
       }
       Message ports = Message::array();
-      for (const PortSummary& port : watched.summary.ports) {
+      for (const PortSummary& port : watched.line.summary.ports) {
         ports.push_back(port.address);
       }
-      lines.push_back({{"name", watched.summary.name}, {"ports", std::move(ports)}});
+      lines.push_back({{"name", watched.line.summary.name}, {"ports", std::move(ports)}});
     }
-    return {{"version", kFirmwareVersion},   {"run", panel_.run_},        {"speed", panel_.speed_},
-            {"usualFaults", usual_faults()}, {"lines", std::move(lines)}, {"modules", std::move(modules)}};
+    return {{"version", kFirmwareVersion},   {"run", panel_.run_},
+            {"simulated", simulated()},      {"speed", panel_.speed_},
+            {"usualFaults", usual_faults()}, {"lines", std::move(lines)},
+            {"modules", std::move(modules)}};
   }
 
   void add(Message& message, const std::string& key, const Tracked& part) const {
@@ -282,18 +285,13 @@ Panel::Panel(CarryOut carry_out, Ask ask, double speed, WallClock wall_clock)
 
 Panel::~Panel() = default;
 
-void Panel::add_line(const LineSummary& summary, const Line& line, std::function<VirtualTime()> present) {
+void Panel::add_line(PanelLine line) {
   Watched watched;
-  watched.summary = summary;
-  watched.line = &line;
-  watched.present = std::move(present);
   for (const Watched& before : lines_) {
     watched.first_module += before.modules.size();
   }
-  watched.modules.resize(line.size());
-  for (std::size_t i = 0; i < line.size(); ++i) {
-    watched.modules[i].module = &line.module(i);
-  }
+  watched.modules.resize(line.models.size());
+  watched.line = std::move(line);
   lines_.push_back(std::move(watched));
 }
 

@@ -10,9 +10,10 @@
 #include <vector>
 
 #include "sim/front_ends/control_socket/control.hpp"
+#include "sim/front_ends/panel/messages.hpp"
 #include "sim/line_monitor/frames/frame_watch.hpp"
 #include "sim/line_monitor/log/banner.hpp"
-#include "sim/virtual_line/line/line.hpp"
+#include "sim/virtual_line/line/request_queue.hpp"
 
 namespace ex9000::sim {
 
@@ -37,6 +38,16 @@ class PanelViewer {
   virtual void leave() = 0;
 };
 
+/// What the panel shows of a line.
+struct PanelLine {
+  LineSummary summary;
+  std::vector<const Model*> models;  ///< of its modules
+  std::function<VirtualTime()> present;
+  /// The state of the module at a position, from 0, as parts that change independently (page/plate.js).
+  std::function<Message(std::size_t module)> face;
+  std::function<std::vector<Faults::Info>()> faults;
+};
+
 /// Viewers affect the lines only by the commands and requests of their pages. Without viewers, the panel only
 /// stores the last frames and notes of each line.
 class Panel {
@@ -48,14 +59,15 @@ class Panel {
 
   using WallClock = std::function<std::chrono::steady_clock::time_point()>;
 
-  /// `speed`: of line time to the wall clock. `wall_clock`: for messages while nothing changes.
+  /// `carry_out`: null for real modules, to which only requests can be sent. `speed`: of line time to the
+  /// wall clock. `wall_clock`: for messages while nothing changes.
   Panel(CarryOut carry_out, Ask ask, double speed, WallClock wall_clock = std::chrono::steady_clock::now);
   ~Panel();
   Panel(const Panel&) = delete;
   Panel& operator=(const Panel&) = delete;
 
-  /// Before the first viewer. `line` must outlive this object; `present` returns its time.
-  void add_line(const LineSummary& summary, const Line& line, std::function<VirtualTime()> present);
+  /// Before the first viewer. The functions of `line` must work as long as this object lives.
+  void add_line(PanelLine line);
   /// `line`: the position, from 0.
   void hear(std::size_t line, const Frame& frame);
   void note(std::size_t line, VirtualTime now, const std::string& text);

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "sim/front_ends/control_socket/control.hpp"
+#include "sim/front_ends/panel/face.hpp"
 #include "sim/front_ends/panel/messages.hpp"
 #include "sim/front_ends/panel/panel.hpp"
 #include "tests/firmware/module_bench.hpp"
@@ -27,7 +28,7 @@ class PanelBench : public ModuleBench {
     LineSummary summary;
     summary.name = "hall";
     summary.ports.push_back({"tcp", "127.0.0.1:5020", ""});
-    panel_.add_line(summary, line(), [this] { return now(); });
+    panel_.add_line(panel_line(summary, line(), [this] { return now(); }));
     frames_.add_receiver([this](const Frame& frame) { panel_.hear(0, frame); });
     line().wires().observe(frames_);
     viewer_ = panel_.viewer();

@@ -92,7 +92,8 @@ class TwoLines {
       lines_[i]->come_up();
       LineSummary summary;
       summary.name = i == 0 ? "hall" : "yard";
-      panel_.add_line(summary, *lines_[i], [this, i] { return lines_[i]->clock().virtual_now(); });
+      panel_.add_line(
+          panel_line(summary, *lines_[i], [this, i] { return lines_[i]->clock().virtual_now(); }));
     }
     viewer_ = panel_.viewer();
     hello_ = look()["hello"];
