@@ -81,6 +81,24 @@ void parse_addresses(const std::string& text, Search& search) {
   }
 }
 
+/// Of the modules that have an address in common.
+void report_duplicates(Environment& environment, const std::vector<FoundModule>& modules) {
+  std::map<std::tuple<std::string, Speaks, unsigned>, unsigned> counts;
+  for (const FoundModule& module : modules) {
+    ++counts[{mode_of(module), module.speaks, module.address}];
+  }
+  for (const auto& [place, count] : counts) {
+    const auto& [mode, speaks, address] = place;
+    if (count > 1) {
+      environment.error << count << " modules have the address " << address << (mode.empty() ? "" : " at")
+                        << mode << "; give each its own with 'ex9000 address PORT SERIAL ADDRESS'"
+                        << std::endl;
+    }
+  }
+}
+
+}  // namespace
+
 Search search_of(MasterLine& line, const Options& options) {
   Search search;
   // A module in 8N2 understands 8N1.
@@ -106,23 +124,25 @@ Search search_of(MasterLine& line, const Options& options) {
   return search;
 }
 
-/// Of the modules that have an address in common.
-void report_duplicates(Environment& environment, const std::vector<FoundModule>& modules) {
-  std::map<std::tuple<std::string, Speaks, unsigned>, unsigned> counts;
-  for (const FoundModule& module : modules) {
-    ++counts[{mode_of(module), module.speaks, module.address}];
+std::vector<FoundModule> print_modules(Environment& environment, MasterLine& line, const Search& search,
+                                       bool json) {
+  std::vector<FoundModule> modules;
+  Progress progress(environment, "scan");
+  scan(
+      line, search,
+      [&](const FoundModule& module) {
+        modules.push_back(module);
+        progress.clear();
+        environment.output << (json ? json_of(module) : line_of(module)) << std::endl;
+        environment.check_output();
+      },
+      [&](std::size_t done, std::size_t of) { progress.show(done, of); });
+  report_duplicates(environment, modules);
+  if (modules.empty()) {
+    environment.error << "no module replies; check the supply and the wires A and B" << std::endl;
   }
-  for (const auto& [place, count] : counts) {
-    const auto& [mode, speaks, address] = place;
-    if (count > 1) {
-      environment.error << count << " modules have the address " << address << (mode.empty() ? "" : " at")
-                        << mode << "; give each its own with 'ex9000 address PORT SERIAL ADDRESS'"
-                        << std::endl;
-    }
-  }
+  return modules;
 }
-
-}  // namespace
 
 bool scan_line(Environment& environment, const sim::Words& args, const Options& options) {
   const Port port = parse_port(args[0]);
@@ -133,23 +153,7 @@ bool scan_line(Environment& environment, const sim::Words& args, const Options& 
     sim::fail("Modbus TCP carries neither DCON nor a scan by serial numbers; leave out --fast and --ascii");
   }
   MasterLine line(environment, port, options.line);
-  const Search search = search_of(line, options);
-  std::vector<FoundModule> modules;
-  Progress progress(environment, "scan");
-  scan(
-      line, search,
-      [&](const FoundModule& module) {
-        modules.push_back(module);
-        progress.clear();
-        environment.output << (options.json ? json_of(module) : line_of(module)) << std::endl;
-        environment.check_output();
-      },
-      [&](std::size_t done, std::size_t of) { progress.show(done, of); });
-  report_duplicates(environment, modules);
-  if (modules.empty()) {
-    environment.error << "no module replies; check the supply and the wires A and B" << std::endl;
-  }
-  return !modules.empty();
+  return !print_modules(environment, line, search_of(line, options), options.json).empty();
 }
 
 }  // namespace ex9000::utility

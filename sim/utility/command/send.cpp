@@ -5,6 +5,7 @@
 #include "sim/line_monitor/frames/frame_meaning.hpp"
 #include "sim/text/values.hpp"
 #include "sim/utility/master_line/master_line.hpp"
+#include "sim/utility/master_line/raw_exchange.hpp"
 #include "sim/utility/modbus/module.hpp"
 
 namespace ex9000::utility {
@@ -12,8 +13,7 @@ namespace ex9000::utility {
 namespace {
 
 constexpr std::size_t kCrcBytes = 2;
-/// Before a frame: T3.5 at 1200 baud.
-constexpr std::chrono::milliseconds kSilence{33};
+constexpr std::chrono::milliseconds kPatience{1000};
 
 bool is_dcon(const std::string& text) { return std::string("#$%@~").find(text[0]) != std::string::npos; }
 
@@ -32,45 +32,16 @@ Data frame_of(const std::string& text, bool checksum) {
 
 bool is_broadcast(const Data& frame) { return sim::looks_like_dcon(frame) ? frame[1] == '*' : frame[0] == 0; }
 
-/// Functions whose reply equals the request.
-bool has_equal_reply(const Data& request) {
-  return request[1] == 0x05 || request[1] == 0x06 || request[1] == 0x08;
-}
-
-/// A DCON reply ends with CR, any other one with a silence. Without the echo of the request.
-Data reply_on(Connection& connection, const Data& request, bool dcon) {
-  constexpr std::chrono::milliseconds kPatience{1000};
-  constexpr std::chrono::milliseconds kEnd{50};  // an adapter may hold bytes back for 16 ms
-  constexpr std::size_t kLongest = 300;
-  const Time end = connection.now() + kPatience;
-  Data reply;
-  while (reply.size() < kLongest && (!dcon || reply.empty() || reply.back() != '\r' || reply == request)) {
-    const Data more =
-        connection.receive(reply.empty() || reply == request ? end - connection.now() : Time(kEnd));
-    if (more.empty()) {
-      break;
-    }
-    reply.insert(reply.end(), more.begin(), more.end());
-  }
-  if (reply == request) {
-    return !dcon && has_equal_reply(request) ? reply : Data();
-  }
-  const bool begins_with_echo =
-      reply.size() > request.size() && std::equal(request.begin(), request.end(), reply.begin());
-  return begins_with_echo ? Data(reply.begin() + static_cast<std::ptrdiff_t>(request.size()), reply.end())
-                          : reply;
-}
-
 /// As on a line, with a CRC.
 Data reply_of_gateway(Master& master, const Data& frame) {
   const Data pdu = master.exchange(
       at_address(frame[0]), any_reply({frame.begin() + 1, frame.end() - kCrcBytes}), Module::kPatience);
-  Data reply;
-  if (!pdu.empty()) {
-    reply.push_back(frame[0]);
-    reply.insert(reply.end(), pdu.begin(), pdu.end());
-    append_crc(reply);
+  if (pdu.empty()) {
+    return {};
   }
+  Data reply(1 + pdu.size(), frame[0]);
+  std::copy(pdu.begin(), pdu.end(), reply.begin() + 1);
+  append_crc(reply);
   return reply;
 }
 
@@ -93,9 +64,7 @@ bool send(Environment& environment, const sim::Words& args, const Options& optio
   print(environment, ">", frame, sim::Speaker::Master);
   Data reply;
   if (line.carries_all()) {
-    line.connection().pause(kSilence);
-    line.connection().send(frame);
-    reply = reply_on(line.connection(), frame, is_dcon(text));
+    reply = raw_exchange(line.connection(), frame, kPatience).bytes;
   } else {
     reply = reply_of_gateway(line.modbus(), frame);
   }

@@ -2,6 +2,7 @@
 
 #include "sim/text/durations.hpp"
 #include "sim/text/values.hpp"
+#include "sim/utility/command/panel.hpp"
 #include "sim/utility/command/scan_line.hpp"
 #include "sim/utility/command/send.hpp"
 #include "sim/utility/command/set.hpp"
@@ -98,6 +99,18 @@ life of its master.
      "",
      {"baud", "format", "ascii", "modbus", "model", "every", "count"},
      poll},
+    {"panel PORT",
+     "show the modules in a browser: inputs, outputs, settings, frames, and a console",
+     R"(
+Looks for the modules first, as scan does, but only at one rate and format. Then prints the address of the
+page, and polls the modules until Ctrl-C; a module with watchdog-feed=requests takes each request for a sign
+of life of its master.
+
+Examples:
+  ex9000 panel /dev/ttyUSB0 --baud 19200 --addresses 1-12 --modbus
+)",
+     {"baud", "format", "ascii", "modbus", "addresses", "fast", "timeout"},
+     panel},
     {"set PORT MODULES KEY=VALUE...",
      "change settings of modules",
      "",

@@ -41,6 +41,7 @@ class AsioConnection : public Connection {
   }
 
   Time now() override { return std::chrono::steady_clock::now().time_since_epoch(); }
+  boost::asio::io_context* io() override { return &io_; }
 
  protected:
   /// `name`: for messages. The subclass opens the stream, then calls `read`.
@@ -50,7 +51,6 @@ class AsioConnection : public Connection {
   }
 
   Stream& stream() { return stream_; }
-  boost::asio::io_context& io() { return io_; }
 
   void read() {
     stream_.async_read_some(boost::asio::buffer(buffer_),

@@ -8,6 +8,10 @@
 
 #include "hal/serial_mode.hpp"
 
+namespace boost::asio {
+class io_context;
+}
+
 namespace ex9000::utility {
 
 using Time = std::chrono::nanoseconds;
@@ -47,6 +51,8 @@ class Connection {
   virtual Data receive(Time patience) = 0;
   /// Since any moment.
   virtual Time now() = 0;
+  /// What runs while `receive` waits; null: nothing.
+  virtual boost::asio::io_context* io() { return nullptr; }
 
   /// Drops what arrives meanwhile.
   void pause(Time time) {

@@ -69,7 +69,7 @@ class TcpConnection final : public AsioConnection<tcp::socket> {
  public:
   explicit TcpConnection(const Port& port) : AsioConnection(port.name) {
     boost::system::error_code error;
-    tcp::resolver resolver(io());
+    tcp::resolver resolver(*io());
     const auto places = resolver.resolve(port.host, port.number, error);
     if (!error) {
       boost::asio::connect(stream(), places, error);

@@ -1,11 +1,11 @@
 #include "sim/utility/device/fact.hpp"
 
 #include <algorithm>
-#include <limits>
 
 #include "firmware/update/update.hpp"
 #include "sim/text/values.hpp"
 #include "sim/text/words.hpp"
+#include "sim/utility/device/channels.hpp"
 
 namespace ex9000::utility {
 
@@ -13,13 +13,7 @@ namespace {
 
 constexpr unsigned kBitsOfAByte = 8;
 
-// Coils and registers: firmware/registers/.
-constexpr unsigned kOutputCoils = 0x0000;
-constexpr unsigned kInputCoils = 0x0020;
-constexpr unsigned kLatchHighCoils = 0x0040;
-constexpr unsigned kLatchLowCoils = 0x0060;
-constexpr unsigned kTimeoutCoil = 0x010D;
-constexpr unsigned kCounters = 0x0000;
+// Registers: firmware/registers/.
 constexpr unsigned kResetReason = 0x0301;
 constexpr unsigned kSecondsUp = 0x0302;
 constexpr unsigned kTimeouts = 0x0304;
@@ -34,58 +28,23 @@ std::string bits_text(unsigned bits, unsigned channels) {
   return channels > kBitsOfAByte ? text : text.substr(2);
 }
 
-/// `First` and `Second` (wire.md section 1): on a model with inputs and outputs these are outputs and inputs.
-/// Else the channels of the one kind: with more than 8, the high ones first.
-std::string channels_of(const std::string& digits, const Model& model, bool inputs) {
-  constexpr std::size_t kLeast = 4;
-  if (digits.size() < kLeast) {
-    throw Failed("replies '" + digits + "', not four hex digits");
-  }
-  const std::string first = digits.substr(0, 2);
-  const std::string second = digits.substr(2, 2);
-  if (model.has_inputs() && model.has_outputs()) {
-    return inputs ? second : first;
-  }
-  return std::max(model.inputs, model.outputs) > kBitsOfAByte ? first + second : first;
+std::string outputs_text(Device& device, const Model& model) {
+  return bits_text(outputs_of(device, model), model.outputs);
 }
 
-std::string bits(Device& device, unsigned address, unsigned count) {
-  const Data data = device.read(read_bits(address, count)).data;
-  return bits_text(data[0] | (data.size() > 1 ? unsigned{data[1]} << kBitsOfAByte : 0U), count);
+std::string inputs_text(Device& device, const Model& model) {
+  return bits_text(inputs_of(device, model), model.inputs);
 }
 
-std::string inputs(Device& device, const Model& model) {
-  return device.speaks_modbus() ? bits(device, kInputCoils, model.inputs)
-                                : channels_of(device.ask("@AA", ">"), model, true);
+template <bool kHigh>
+std::string latches_text(Device& device, const Model& model) {
+  return bits_text(latches_of(device, model, kHigh), model.inputs);
 }
 
-std::string outputs(Device& device, const Model& model) {
-  return device.speaks_modbus() ? bits(device, kOutputCoils, model.outputs)
-                                : channels_of(device.ask("@AA", ">"), model, false);
-}
-
-std::string latches(Device& device, const Model& model, bool high) {
-  return device.speaks_modbus() ? bits(device, high ? kLatchHighCoils : kLatchLowCoils, model.inputs)
-                                : channels_of(device.ask(high ? "$AAL1" : "$AAL0", "!"), model, true);
-}
-
-std::string counters(Device& device, const Model& model) {
-  constexpr std::string_view kDigits = "0123456789ABCDEF";
+std::string counters_text(Device& device, const Model& model) {
   sim::Words texts;
-  if (device.speaks_modbus()) {
-    const Answer answer = device.read(read_words(kCounters, model.inputs));
-    for (unsigned channel = 0; channel < model.inputs; ++channel) {
-      texts.push_back(std::to_string(answer.word(channel)));
-    }
-  } else {
-    for (unsigned channel = 0; channel < model.inputs; ++channel) {
-      const std::string digits = device.ask(std::string("#AA") + kDigits[channel]);
-      const auto count = sim::whole_number(digits, std::numeric_limits<std::uint32_t>::max());
-      if (!count) {
-        throw Failed("replies '" + digits + "' where a counter is expected");
-      }
-      texts.push_back(std::to_string(*count));
-    }
+  for (const std::uint32_t count : counters_of(device, model)) {
+    texts.push_back(std::to_string(count));
   }
   return sim::joined(texts);
 }
@@ -99,12 +58,7 @@ std::string near_their_end(const std::string& value) {
 }
 
 std::string timeout_status(Device& device, const Model& /*model*/) {
-  constexpr const char* kWithTimeout[] = {"04", "84"};
-  const std::string status = device.speaks_modbus() ? "" : device.ask("~AA0");
-  const bool set = device.speaks_modbus() ? (device.read(read_bits(kTimeoutCoil, 1)).data[0] & 1U) != 0
-                                          : std::find(std::begin(kWithTimeout), std::end(kWithTimeout),
-                                                      status) != std::end(kWithTimeout);
-  return set ? "set" : "clear";
+  return has_timed_out(device) ? "set" : "clear";
 }
 
 std::string plain(unsigned value) { return std::to_string(value); }
@@ -116,13 +70,11 @@ std::string one_of(unsigned value, const sim::Words& texts) {
 }  // namespace
 
 const std::vector<Fact> facts{
-    {"outputs", Needs::Outputs, true, outputs},
-    {"inputs", Needs::Inputs, true, inputs},
-    {"latch high", Needs::Inputs, true,
-     [](Device& device, const Model& model) { return latches(device, model, true); }},
-    {"latch low", Needs::Inputs, true,
-     [](Device& device, const Model& model) { return latches(device, model, false); }},
-    {"counters", Needs::Inputs, true, counters, near_their_end},
+    {"outputs", Needs::Outputs, true, outputs_text},
+    {"inputs", Needs::Inputs, true, inputs_text},
+    {"latch high", Needs::Inputs, true, latches_text<true>},
+    {"latch low", Needs::Inputs, true, latches_text<false>},
+    {"counters", Needs::Inputs, true, counters_text, near_their_end},
     {"timeout status", Needs::Nothing, true, timeout_status,
      [](const std::string& value) -> std::string {
        return value == "set"

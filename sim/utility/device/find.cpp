@@ -28,12 +28,14 @@ bool replies_in_modbus(MasterLine& line, const Addressee& to) {
   return false;
 }
 
+std::string harmless_command(std::uint8_t address) { return "$" + sim::hex_byte_text(address) + "M"; }
+
 bool replies_in_ascii(MasterLine& line, std::uint8_t address) {
   line.connection().send({'\r'});  // ends what the bytes of a Modbus request may have begun
   const bool first = line.dcon().checksum();
   for (const bool checksum : {first, !first, first}) {
     line.dcon().set_checksum(checksum);
-    if (line.dcon().ask("$" + sim::hex_byte_text(address) + "M", kPatience)) {
+    if (line.dcon().ask(harmless_command(address), kPatience)) {
       return true;
     }
   }
@@ -106,6 +108,15 @@ sim::Words expand_modules(const sim::Words& texts) {
   return modules;
 }
 
+bool replies(Device& device) {
+  MasterLine& line = device.line();
+  if (device.speaks_modbus()) {
+    return replies_in_modbus(line, device.module().addressee());
+  }
+  const std::string command = harmless_command(device.address());
+  return line.dcon().ask(command, kPatience) || line.dcon().ask(command, kPatience);
+}
+
 bool is_free(MasterLine& line, std::uint8_t address) {
   constexpr unsigned kTries = 3;
   const bool checksum = line.dcon().checksum();
@@ -118,8 +129,7 @@ bool is_free(MasterLine& line, std::uint8_t address) {
     if (free && line.carries_all()) {
       line.connection().send({'\r'});
       line.dcon().set_checksum(i % 2 != 0);
-      free = !line.dcon().ask("$" + sim::hex_byte_text(address) + "M", kPatience) &&
-             line.dcon().heard() != Heard::Noise;
+      free = !line.dcon().ask(harmless_command(address), kPatience) && line.dcon().heard() != Heard::Noise;
     }
   }
   line.dcon().set_checksum(checksum);

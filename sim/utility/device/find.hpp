@@ -23,6 +23,9 @@ sim::Words expand_modules(const sim::Words& texts);
 /// Any module replies to it: function 46, sub-function 00 (manuals), reads the code; other devices refuse it.
 const Request& harmless_request();
 
+/// Asked twice.
+bool replies(Device& device);
+
 /// Nobody replies at this address, in either protocol, and nothing else is heard. In the mode of the line.
 bool is_free(MasterLine& line, std::uint8_t address);
 

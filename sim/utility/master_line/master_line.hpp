@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 
 #include "sim/utility/console/environment.hpp"
 #include "sim/utility/dcon/dcon_master.hpp"
@@ -20,6 +21,9 @@ class MasterLine {
   [[nodiscard]] bool has_modes() const { return port_.kind == Port::Kind::Serial; }
   /// false: a gateway carries neither DCON nor requests by serial number.
   [[nodiscard]] bool carries_all() const { return port_.kind != Port::Kind::ModbusTcp; }
+
+  /// As the user has written it.
+  [[nodiscard]] const std::string& name() const { return port_.name; }
 
   Connection& connection() { return *connection_; }
   Master& modbus() { return *modbus_; }

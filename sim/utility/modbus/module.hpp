@@ -38,6 +38,7 @@ class Module {
   Module(Master& master, Addressee to) : master_(&master), to_(std::move(to)) {}
 
   [[nodiscard]] const std::string& name() const { return to_.name; }
+  [[nodiscard]] const Addressee& addressee() const { return to_; }
   /// Once. nullopt: no reply, also if a gateway reports this.
   std::optional<Answer> try_once(const Request& request, Time patience = kPatience);
   /// Repeated if there is no reply. Throws Failed if there is still none.

@@ -32,17 +32,20 @@ function settingRows(inputs) {
 }
 
 export class Drawer {
-  /// `state`: the parts of the module's state that have arrived.
+  /// `state`: the parts of the module's state that have arrived. The settings of a real module are texts, and its copies
+  /// are not known.
   constructor(layout, title, state) {
+    this.simulated = layout.simulated;
     this.state = state;
     this.values = layout.outputs.length ? this.valueTable(layout.outputs, title) : null;
     this.kept = make("h4", {});
-    this.copies = [1, 2].map(() => ({caption: make("h4", {}), bytes: make("code", {})}));
+    this.copies = (layout.simulated ? [1, 2] : []).map(() => ({caption: make("h4", {}), bytes: make("code", {})}));
     this.settings = settingRows(layout.inputs).map(([name, textOf]) => ({name, textOf, value: make("dd", {})}));
+    this.list = make("dl", {}, ...this.settings.flatMap(({name, value}) => [make("dt", {}, name), value]));
     this.element = make("details", {class: "drawer", ontoggle: () => this.draw()},
       make("summary", {}, "Settings and values", make("span", {class: "hidden"}, ` of ${title}`)),
       make("div", {class: "drawerbody"}, ...(this.values ? [this.values.element] : []), this.kept,
-        make("dl", {}, ...this.settings.flatMap(({name, value}) => [make("dt", {}, name), value])),
+        this.list,
         ...this.copies.map(({caption, bytes}) => make("div", {class: "copy"}, caption, bytes))));
   }
 
@@ -53,6 +56,10 @@ export class Drawer {
       return;
     }
     const {settings} = stored;
+    if (!this.simulated) {
+      this.drawTexts(plate.outputs ?? 0, settings);
+      return;
+    }
     this.values?.show(plate.outputs, settings.powerOn, settings.safe);
     setText(this.kept, originOfSettings(stored));
     for (const {textOf, value} of this.settings) {
@@ -63,6 +70,18 @@ export class Drawer {
       setText(caption, `Copy ${index + 1}: ${copyState(copy, index === stored.current)}`);
       setText(bytes, copy.bytes.match(/../g).join(" "));
     });
+  }
+
+  drawTexts(outputs, settings) {
+    const ofHex = (text) => parseInt(text ?? "0", 16);
+    this.values?.show(outputs, ofHex(settings["power-on-value"]), ofHex(settings["safe-value"]));
+    setText(this.kept, "Settings");
+    const shown = JSON.stringify(settings);
+    if (shown !== this.shown) {
+      this.shown = shown;
+      this.list.replaceChildren(...Object.entries(settings).flatMap(([name, text]) =>
+        [make("dt", {}, name), make("dd", {}, text)]));
+    }
   }
 
   valueTable(outputs, title) {

@@ -4,7 +4,7 @@ import {make, setAttribute, setText, terminal} from "/element.js";
 import {Switch} from "/switch.js";
 
 export class Input {
-  /// `tell` and `way`: see the constructor of Plate.
+  /// `tell` and `way`: see the constructor of Plate; without `tell`, the input only shows its state.
   constructor(title, label, channel, tell, way) {
     this.label = label;
     this.channel = channel;
@@ -20,8 +20,12 @@ export class Input {
     this.item = terminal(label, this.level.element,
       make("span", {class: "counter"}, make("span", {class: "hidden"}, `counter of ${label}: `), this.count),
       make("span", {class: "latches"}, this.high, this.low));
-    this.listenToPointer(this.level.element);
-    this.listenToKeys(this.level.element);
+    if (tell) {
+      this.listenToPointer(this.level.element);
+      this.listenToKeys(this.level.element);
+    } else {
+      this.level.element.disabled = true;
+    }
   }
 
   command(on) { return `input ${this.channel} ${on ? "on" : "off"}`; }

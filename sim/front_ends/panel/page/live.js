@@ -1,4 +1,4 @@
-// The WebSocket to the simulator. It reconnects automatically and reports lost connections.
+// The WebSocket to the program. It reconnects automatically and reports lost connections.
 
 const firstWait = 100;
 const longestWait = 1000;
@@ -35,7 +35,7 @@ export class Live {
     socket.onclose = (event) => this.gone(socket, event.code === tooMany ? "tooMany" : "gone");
   }
 
-  /// Restarts the timeout: the socket stays open if the simulator does not respond or the connection is broken.
+  /// Restarts the timeout: the socket stays open if the program does not respond or the connection is broken.
   listen(socket) {
     clearTimeout(this.silence);
     this.silence = setTimeout(() => {
@@ -56,7 +56,7 @@ export class Live {
     this.socket = null;
     clearTimeout(this.silence);
     for (const answer of this.waiting.values()) {
-      answer({ok: false, text: "error: the connection to the simulator is lost"});
+      answer({ok: false, text: "error: the connection to the program is lost"});
     }
     this.waiting.clear();
     this.lost(why);
@@ -72,7 +72,7 @@ export class Live {
   /// `delay` in us; the last two may be undefined.
   send(request) {
     if (this.socket?.readyState !== WebSocket.OPEN) {
-      return Promise.resolve({ok: false, text: "error: there is no connection to the simulator"});
+      return Promise.resolve({ok: false, text: "error: there is no connection to the program"});
     }
     const id = ++this.asked;
     return new Promise((resolve) => {

@@ -1,4 +1,4 @@
-// The page of the panel. It shows what the simulator's messages contain, and sends the user's commands and requests.
+// The page of the panel. It shows what the program's messages contain, and sends the user's commands and requests.
 
 import {Console} from "/console.js";
 import {setText} from "/element.js";
@@ -39,6 +39,9 @@ function begin(hello) {
     return;
   }
   run = hello.run;
+  document.body.dataset.simulated = hello.simulated;
+  document.title = hello.simulated ? "ex9000-sim" : "ex9000";
+  setText(at("program"), document.title);
   const several = hello.lines.length > 1;
   const [first] = hello.lines;
   setText(at("about"), [hello.version, hello.modules.length > 1 ? `${hello.modules.length} modules` : "",
@@ -136,7 +139,7 @@ function repaint(when) {
 
 /// Why the page is not connected.
 const reasons = {
-  gone: "Not connected to the simulator; trying again. The page shows the last known state.",
+  gone: "Not connected to the program; trying again. The page shows the last known state.",
   tooMany: "Too many pages are open. This page connects when another page is closed.",
 };
 

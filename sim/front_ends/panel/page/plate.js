@@ -17,7 +17,8 @@ export class Plate {
     this.tell = tell;
     this.title = `${position + 1} ${layout.model}`;
     this.outputs = layout.outputs.map((label) => this.makeOutput(label));
-    this.inputs = layout.inputs.map((label, channel) => new Input(this.title, label, channel, tell, way));
+    this.inputs = layout.inputs.map((label, channel) => new Input(this.title, label, channel,
+      layout.simulated ? tell : null, way));
     this.element = this.build();
     this.show(state);
   }
@@ -47,7 +48,7 @@ export class Plate {
       make("div", {class: "readouts"}, this.address.box, this.baud.box, this.protocol.box,
         this.hostWatchdog.box, this.serialNumber.box),
       this.strip("outputs", "Outputs", this.outputs), this.strip("inputs", "Inputs", this.inputs),
-      make("div", {class: "controls"},
+      make("div", {class: "controls simulated"},
         make("span", {class: "control"}, make("span", {"aria-hidden": "true"}, "Power"), this.power.element),
         make("span", {class: "control"}, make("span", {"aria-hidden": "true"}, "INIT*"), this.init.element),
         this.reset),
@@ -110,16 +111,16 @@ export class Plate {
     const supply = plate.switch && !plate.powered ? "no supply" : plate.led;
     setText(this.ledText, plate.initMode ? `${supply}, INIT mode` : supply);
     const on = plate.listening;
-    setText(this.address.value, on ? hexByte(plate.address) : "––");
-    setText(this.serialNumber.value, on ? plate.serialNumber : "––");
+    setText(this.address.value, plate.address === undefined ? "––" : hexByte(plate.address));
+    setText(this.serialNumber.value, plate.serialNumber ?? "––");
     setText(this.baud.value, on ? `${plate.baud} ${plate.format}` : "––");
     const ascii = plate.checksum ? "ASCII+Σ" : "ASCII";
     setText(this.protocol.value, !on ? "––" : plate.protocol === "modbus" ? "RTU" : ascii);
     this.outputs.forEach(({label, led, left}, channel) => {
       const lit = bit(plate.outputs, channel);
-      const tenths = plate.timers[channel];
+      const tenths = plate.timers?.[channel] ?? 0;
       setAttribute(led, "data-on", lit);
-      setAttribute(led, "aria-label", `${label} ${lit ? "on" : "off"}`);
+      setAttribute(led, "aria-label", `${label} ${plate.outputs === undefined ? "unknown" : lit ? "on" : "off"}`);
       left.hidden = tenths === 0;
       setText(left, `${(tenths / 10).toFixed(1)} s`);
     });
@@ -130,6 +131,12 @@ export class Plate {
   tick(now) {
     const {plate, hostWatchdog} = this.state;
     if (!hostWatchdog) {
+      return;
+    }
+    if (!this.layout.simulated) {
+      setText(this.hostWatchdog.value, hostWatchdog.timedOut ? "timed out"
+        : hostWatchdog.enabled ? hostWatchdog.timeout : "off");
+      setAttribute(this.hostWatchdog.box, "data-state", hostWatchdog.timedOut ? "expired" : "off");
       return;
     }
     const total = hostWatchdog.timeout * 1e5;

@@ -1,0 +1,64 @@
+// Real modules on a panel.
+#pragma once
+
+#include <deque>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "sim/front_ends/panel/panel.hpp"
+#include "sim/utility/real_line/watched_connection.hpp"
+#include "sim/utility/scan/scan.hpp"
+
+namespace ex9000::utility {
+
+/// Polls the modules of a line, and sends the requests of the panel's pages in between.
+class RealLine {
+ public:
+  /// Throws what MasterLine throws.
+  RealLine(const Environment& environment, const Port& port, hal::SerialMode mode);
+
+  MasterLine& line() { return line_; }
+  /// Once. Reads the settings of the modules. `found`: their models are known.
+  void show_on(sim::Panel& panel, const std::vector<FoundModule>& found);
+  /// For the panel.
+  void ask(sim::RequestQueue::Request request) { asked_.push_back(std::move(request)); }
+  /// Reads what may have changed in each module, and one of its settings. Throws what Connection throws.
+  void look();
+
+ private:
+  struct Module {
+    Device device;
+    const Model* model;
+    std::uint8_t address;
+    bool checksum;
+    std::optional<std::uint32_t> serial_number;
+    bool replies = true;
+    std::size_t next_setting = 0;  ///< position in `properties`
+    std::map<std::string, std::string> settings = {};
+    sim::Message face = {};
+  };
+
+  [[nodiscard]] static Environment watched(Environment environment, WatchedConnection::See see);
+  void see(const PortFrame& frame);
+  void answer_pages();
+  sim::RequestQueue::Reply answer_to(const sim::RequestQueue::Request& request);
+  [[nodiscard]] std::size_t station_asked_by(const Data& request) const;
+  void speak_to(std::size_t position);
+  void look_at(Module& module);
+  void read_setting(Module& module, std::size_t position);
+  void read_settings(Module& module);
+  static sim::Message silent_plate(const Module& module);
+  sim::Message plate_of(Module& module, bool timed_out);
+
+  sim::Panel* panel_ = nullptr;
+  Environment environment_;
+  MasterLine line_;
+  Time began_;
+  std::vector<Module> modules_;
+  std::size_t speaker_ = 0;  ///< who is being asked, from 1
+  std::size_t replies_ = 0;  ///< who has been asked by the last frame
+  std::deque<sim::RequestQueue::Request> asked_;
+};
+
+}  // namespace ex9000::utility

@@ -1,0 +1,76 @@
+// A connection that shows its frames.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <utility>
+
+#include "sim/utility/connection/connection.hpp"
+
+namespace ex9000::utility {
+
+/// What the port has taken or given at once, or until it was silent.
+struct PortFrame {
+  bool sent;
+  Data bytes;
+  Time began;
+  Time ended;
+  hal::SerialMode mode;
+};
+
+class WatchedConnection final : public Connection {
+ public:
+  using See = std::function<void(const PortFrame& frame)>;
+
+  WatchedConnection(std::unique_ptr<Connection> connection, hal::SerialMode mode, See see)
+      : connection_(std::move(connection)), mode_(mode), see_(std::move(see)) {}
+
+  void set_mode(hal::SerialMode mode) override {
+    connection_->set_mode(mode);
+    mode_ = mode;
+  }
+  [[nodiscard]] bool has_formats() const override { return connection_->has_formats(); }
+
+  void send(const Data& bytes) override {
+    end_frame();
+    const Time began = now();
+    connection_->send(bytes);
+    see_({true, bytes, began, began + time_of(bytes), mode_});
+  }
+
+  Data receive(Time patience) override {
+    Data bytes = connection_->receive(patience);
+    if (bytes.empty()) {
+      end_frame();
+    } else if (received_.empty()) {
+      began_ = now() - time_of(bytes);
+    }
+    ended_ = bytes.empty() ? ended_ : now();
+    received_.insert(received_.end(), bytes.begin(), bytes.end());
+    return bytes;
+  }
+
+  Time now() override { return connection_->now(); }
+  boost::asio::io_context* io() override { return connection_->io(); }
+
+ private:
+  [[nodiscard]] Time time_of(const Data& bytes) const {
+    constexpr int kBits = 10;
+    return Time(std::chrono::seconds(kBits)) * bytes.size() / mode_.baud;
+  }
+
+  void end_frame() {
+    if (!received_.empty()) {
+      see_({false, std::exchange(received_, {}), began_, ended_, mode_});
+    }
+  }
+
+  std::unique_ptr<Connection> connection_;
+  hal::SerialMode mode_;
+  See see_;
+  Data received_;
+  Time began_{0};
+  Time ended_{0};
+};
+
+}  // namespace ex9000::utility
