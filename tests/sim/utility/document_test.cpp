@@ -1,11 +1,13 @@
 // Plays firmware/set-up-a-line.md: its simulated modules, its commands, and what these print.
 //
 // A line `$ ex9000 ...` is a command; what it prints follows, on standard output and then on standard error,
-// without progress. A line `$ tell ...` is an action of the control socket.
+// without progress. A line `$ tell ...` is an action of the control socket. During `verify`, the other
+// modules are off, and the rig is one of this test.
 #include <gtest/gtest.h>
 
 #include <regex>
 
+#include "sim/utility/verify/verify.hpp"
 #include "tests/firmware/update/messages.hpp"
 #include "tests/sim/utility/plant.hpp"
 #include "tests/support/directory.hpp"
@@ -29,9 +31,19 @@ std::string update_for(const char* model) {
   return {file.begin(), file.end()};
 }
 
+class PlantRig final : public Rig {
+ public:
+  PlantRig(Plant& plant, std::string module) : plant_(plant), module_(std::move(module)) {}
+  std::string ask(const std::string& request) override { return plant_.act(module_ + " " + request); }
+
+ private:
+  Plant& plant_;
+  std::string module_;
+};
+
 class Document {
  public:
-  explicit Document(const sim::Words& modules) : plant_(modules) {
+  explicit Document(const sim::Words& modules) : plant_(modules), size_(modules.size()) {
     for (const char* model : {"EX9042D-M", "EX9052D-M"}) {
       system::write_file(directory_ / (std::string(model) + ".ex9fw"), update_for(model));
     }
@@ -54,12 +66,45 @@ class Document {
         word.insert(0, directory_.path() + "/");
       }
     }
-    EXPECT_EQ(plant_.run({words.begin() + 1, words.end()}), 0) << line << "\n" << plant_.error();
-    return plant_.output() + std::regex_replace(plant_.error(), std::regex("[^\n]*: [0-9]+ %\n"), "");
+    if (words[1] == "verify") {
+      EXPECT_TRUE(verify(words)) << plant_.output();
+    } else {
+      EXPECT_EQ(plant_.run({words.begin() + 1, words.end()}), 0) << line << "\n" << plant_.error();
+    }
+    return std::regex_replace(plant_.output() + plant_.error(),
+                              std::regex("[^\n]*: [0-9]+ %\n|" + directory_.path() + "/"), "");
   }
 
  private:
+  /// ex9000 verify PORT MODULE FILE --rig ./rig --report FILE
+  bool verify(const sim::Words& words) {
+    switch_others(words[3], "off");
+    plant_.clear();
+    Environment environment = plant_.environment();
+    PlantRig rig(plant_, words[3]);
+    const std::string address = words[3];
+    const bool good = utility::verify(environment,
+                                      {{},
+                                       parse_addressee(address),
+                                       play::load_all(in_repository(words[4])),
+                                       nullptr,
+                                       directory_ / words.back()},
+                                      rig);
+    switch_others(words[3], "on");
+    return good;
+  }
+
+  void switch_others(const std::string& module, const std::string& state) {
+    for (std::size_t number = 1; number <= size_; ++number) {
+      if (std::to_string(number) != module) {
+        plant_.act(std::to_string(number) + " power " + state);
+      }
+    }
+    plant_.wait();
+  }
+
   Plant plant_;
+  std::size_t size_;
   system::Directory directory_;
 };
 
