@@ -33,7 +33,7 @@ std::string harmless_command(std::uint8_t address) { return "$" + sim::hex_byte_
 bool replies_in_ascii(MasterLine& line, std::uint8_t address) {
   line.connection().send({'\r'});  // ends what the bytes of a Modbus request may have begun
   const bool first = line.dcon().checksum();
-  for (const bool checksum : {first, !first, first}) {
+  for (const bool checksum : {first, !first, first, !first}) {
     line.dcon().set_checksum(checksum);
     if (line.dcon().ask(harmless_command(address), kPatience)) {
       return true;
