@@ -9,9 +9,9 @@
 #include <sstream>
 
 #include "sim/app/play/modbus_frame.hpp"
-#include "sim/utility/command/program.hpp"
 #include "tests/boards/pico_image.hpp"
 #include "tests/firmware/update/messages.hpp"
+#include "tests/sim/utility/target_line.hpp"
 #include "tests/support/directory.hpp"
 #include "tests/support/in_repository.hpp"
 
@@ -160,18 +160,11 @@ class PicoUpdateStory : public PicoImage {
     }
     out_ << file << "\n";
     std::replace(words.begin(), words.end(), std::string(kFile), directory_ / kFile);
-    std::vector<const char*> argv{"ex9000"};
-    for (const std::string& word : words) {
-      argv.push_back(word.c_str());
-    }
     story_.blocks = 0;
     story_.may_reset = false;
-    std::ostringstream progress;
-    utility::Environment environment{[this](const utility::Port& /*port*/, hal::SerialMode /*mode*/) {
-                                       return std::make_unique<SharedLine>(story_);
-                                     },
-                                     out_, progress};
-    return utility::run_program(static_cast<int>(argv.size()), argv.data(), environment);
+    const int status = program_.run(words);
+    out_ << program_.output();
+    return status;
   }
   int update(const Data& file, const std::string& what) {
     system::write_file(directory_ / kFile, {file.begin(), file.end()});
@@ -179,6 +172,8 @@ class PicoUpdateStory : public PicoImage {
   }
 
   Story story_{bench_};
+  utility::Program program_{
+      [this](hal::SerialMode /*mode*/) { return std::make_unique<SharedLine>(story_); }};
   system::Directory directory_;
   std::ostringstream out_;
 };

@@ -5,23 +5,19 @@
 #include <utility>
 
 #include "sim/notation/module_notation.hpp"
-#include "sim/utility/command/program.hpp"
 
 namespace ex9000::utility {
 
-class Plant::Line final : public Connection {
+class Plant::Line final : public TargetLine {
  public:
-  Line(Plant& plant, hal::SerialMode mode) : plant_(plant) { set_mode(mode); }
+  Line(Plant& plant, hal::SerialMode mode)
+      : TargetLine(plant.target_, mode, [&plant] { return plant.now(); }), plant_(plant) {}
 
-  void set_mode(hal::SerialMode mode) override {
-    plant_.target_.set_baud(mode.baud);
-    plant_.target_.set_format(mode.format);
-  }
   void send(const Data& bytes) override {
     plant_.sent.push_back(bytes);
     plant_.heard_ = 0;
     if (plant_.sends(bytes)) {
-      plant_.target_.send(bytes);
+      TargetLine::send(bytes);
     }
     if (plant_.echoes) {
       echo_ = bytes;
@@ -41,17 +37,11 @@ class Plant::Line final : public Connection {
     }
     return bytes;
   }
-  Time now() override { return plant_.now(); }
 
  private:
   /// Or until the next byte.
   void hear_until(Time end) {
-    const auto whole = std::chrono::duration_cast<std::chrono::milliseconds>(end - now());
-    Data bytes = whole > Time(0) ? plant_.target_.receive(1, whole) : Data();
-    if (bytes.empty()) {
-      bytes = plant_.target_.listen(end - now());
-    }
-    for (const std::uint8_t byte : bytes) {
+    for (const std::uint8_t byte : TargetLine::receive(end - now())) {
       const auto changed = plant_.hears ? plant_.hears(plant_.heard_, byte) : std::optional(byte);
       ++plant_.heard_;
       if (changed) {
@@ -76,27 +66,17 @@ sim::Setup Plant::setup_of(const std::vector<std::string>& modules) {
 }
 
 Plant::Plant(const std::vector<std::string>& modules)
-    : target_(setup_of(modules), play::Memories(modules.size())) {}
+    : target_(setup_of(modules), play::Memories(modules.size())),
+      program_([this](hal::SerialMode mode) { return std::make_unique<Line>(*this, mode); }) {}
 
 void Plant::clear() {
-  output_.str("");
-  error_.str("");
+  program_.clear();
   sent.clear();
 }
 
-Environment Plant::environment() {
-  return {[this](const Port& /*port*/, hal::SerialMode mode) { return std::make_unique<Line>(*this, mode); },
-          output_, error_};
-}
-
 int Plant::run(const std::vector<std::string>& words) {
-  std::vector<const char*> argv{"ex9000"};
-  for (const std::string& word : words) {
-    argv.push_back(word.c_str());
-  }
-  clear();
-  Environment environment = this->environment();
-  return run_program(static_cast<int>(argv.size()), argv.data(), environment);
+  sent.clear();
+  return program_.run(words);
 }
 
 }  // namespace ex9000::utility

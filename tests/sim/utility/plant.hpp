@@ -3,12 +3,11 @@
 
 #include <functional>
 #include <optional>
-#include <sstream>
 #include <string>
 #include <vector>
 
 #include "sim/app/play/line_target.hpp"
-#include "sim/utility/console/environment.hpp"
+#include "tests/sim/utility/target_line.hpp"
 
 namespace ex9000::utility {
 
@@ -17,14 +16,11 @@ class Plant {
   /// `modules`: as on the command line of ex9000-sim.
   explicit Plant(const std::vector<std::string>& modules);
 
-  /// Runs `ex9000 WORDS` and returns the exit status. Any PORT is this line.
+  // See Program.
   int run(const std::vector<std::string>& words);
-  /// Of the last run.
-  [[nodiscard]] std::string output() const { return output_.str(); }
-  [[nodiscard]] std::string error() const { return error_.str(); }
-
-  /// For code below the program; writes to `output` and `error`.
-  Environment environment();
+  [[nodiscard]] std::string output() const { return program_.output(); }
+  [[nodiscard]] std::string error() const { return program_.error(); }
+  Environment environment() { return program_.environment(); }
   /// Forgets what a run has written and sent.
   void clear();
 
@@ -55,8 +51,7 @@ class Plant {
 
   Modules target_;
   std::size_t heard_ = 0;  ///< bytes since the last frame
-  std::ostringstream output_;
-  std::ostringstream error_;
+  Program program_;
 };
 
 }  // namespace ex9000::utility
