@@ -1,5 +1,6 @@
 #include "tests/qemu/image_target.hpp"
 
+#include <algorithm>
 #include <tuple>
 #include <utility>
 
@@ -47,7 +48,7 @@ Bytes ImageTarget::receive(std::size_t count, milliseconds patience) {
   nanoseconds gives_up = module_->now() + patience;
   while (heard_.size() < count && module_->now() < gives_up) {
     const std::size_t had = heard_.size();
-    module_->run_for(kSlice);
+    module_->run_for(std::min<nanoseconds>(kSlice, gives_up - module_->now()));
     hear();
     if (heard_.size() != had) {
       gives_up = module_->now() + patience;

@@ -28,6 +28,9 @@ class ImageTarget final : public play::Target {
   play::Led led(play::Led expected) override;
   void end() override { module_->verify_led(); }
 
+  /// Returns the emulated time since `start`.
+  [[nodiscard]] std::chrono::nanoseconds now() const { return module_->now(); }
+
  private:
   /// Runs the module until its image has had time to process the sent bytes. Returns the module.
   TimedModule& settled();

@@ -32,6 +32,8 @@ class PicoTarget final : public play::Target {
   /// has reset the chip. Ignores different levels on the pins of I2C.
   void end() override;
 
+  /// Returns the virtual time since `start`.
+  std::chrono::nanoseconds now() { return bench_.now(); }
   /// Returns the total virtual time of the transcripts for which `end` has been called.
   [[nodiscard]] std::chrono::nanoseconds played() const { return played_; }
 
