@@ -79,7 +79,7 @@ class Scan {
   }
 
   void modbus() {
-    std::set<std::uint8_t> known;
+    std::multiset<std::uint8_t> known;
     step();
     if (line_.carries_all()) {
       for (const Scanned& scanned : fast_scan(line_, search_.patience)) {
@@ -96,16 +96,18 @@ class Scan {
         break;
       }
       step();
-      if (is_modbus_address(address) && known.count(address) == 0) {
-        modbus_at(address);
+      if (is_modbus_address(address) && known.count(address) < 2) {
+        modbus_at(address, known.count(address) == 1);
       }
     }
   }
 
-  void modbus_at(std::uint8_t address) {
+  /// `known`: one module with this address has been found. Another one shows itself only by bytes that
+  /// collide.
+  void modbus_at(std::uint8_t address, bool known) {
     const Addressee to = at_address(address);
     const bool replies = !line_.modbus().exchange(to, harmless_request(), search_.patience).empty();
-    if (!replies && line_.modbus().heard() != Heard::Noise) {
+    if (replies ? known : line_.modbus().heard() != Heard::Noise) {
       return;
     }
     FoundModule found = module(Speaks::Modbus, address);

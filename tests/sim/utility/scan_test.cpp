@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <utility>
 
 #include "sim/text/values.hpp"
 #include "tests/sim/utility/plant.hpp"
@@ -67,6 +68,25 @@ TEST(Scan, ChangesAndClearsNothing) {
 }
 
 /// An original module does not know the scan by serial number; here one that a fault silences for it.
+/// The second one takes no part in the scan by serial numbers.
+TEST(Scan, ShowsAModuleBesideOneWithASerialNumber) {
+  Plant plant({"EX9042D-M@01", "EX9052D-M@01"});
+  plant.act("2 power off");
+  plant.sends = [&, by_address = false](const Data& frame) mutable {
+    if (frame[0] != 0xFD && !std::exchange(by_address, true)) {
+      plant.act("2 power on");
+      plant.wait();
+    }
+    return true;
+  };
+  EXPECT_EQ(plant.run({"scan", "port", "--baud", "9600", "--format", "8N1", "--modbus"}), 0);
+  EXPECT_EQ(
+      lines_of(plant.output()),
+      (Lines{
+          "1 (01)  modbus 9600 baud 8N1  EX9042D-M '9042M'  D01.00  0D000001  last reset: power-on",
+          "1 (01)  modbus 9600 baud 8N1  bytes, but no reply: several modules with this address, or noise"}));
+}
+
 TEST(Scan, AsksEachAddressInModbusToo) {
   Plant plant({"EX9042D-M@07"});
   plant.sends = [](const Data& frame) { return frame[0] != 0xFD; };
