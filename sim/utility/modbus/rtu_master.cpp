@@ -27,6 +27,10 @@ Data frame_in(const Data& received, const Data& begin, std::size_t size) {
   }
 }
 
+bool begins_with(const Data& bytes, const Data& beginning) {
+  return bytes.size() >= beginning.size() && std::equal(beginning.begin(), beginning.end(), bytes.begin());
+}
+
 class RtuMaster final : public Master {
  public:
   RtuMaster(Connection& connection, hal::SerialMode mode)
@@ -47,6 +51,7 @@ class RtuMaster final : public Master {
     exception.push_back(request.pdu[0] | kExceptionBit);
     const Time end =
         connection_.now() + patience + character_ * (frame.size() + (size == 0 ? kLongestFrame : size));
+    const bool echo_looks_like_reply = size == frame.size() && begins_with(frame, reply);
     Data received;
     heard_ = Heard::Nothing;
     while (received.size() < kMostBytes) {
@@ -55,8 +60,14 @@ class RtuMaster final : public Master {
         break;
       }
       received.insert(received.end(), more.begin(), more.end());
+      const bool echo = begins_with(received, frame);
+      if (!echo_looks_like_reply) {
+        echoes_ = echo;
+      }
+      const Data heard(received.begin() + (echo && echoes_ ? static_cast<std::ptrdiff_t>(frame.size()) : 0),
+                       received.end());
       for (const auto& [begin, length] : {std::pair{&reply, size}, std::pair{&exception, exception_size}}) {
-        const Data found = frame_in(received, *begin, length);
+        const Data found = frame_in(heard, *begin, length);
         if (!found.empty()) {
           return {found.begin() + static_cast<std::ptrdiff_t>(to.reply.size()), found.end()};
         }
@@ -84,6 +95,9 @@ class RtuMaster final : public Master {
 
   Connection& connection_;
   Time character_;
+  /// The adapter receives what it sends, as the last request has shown whose echo does not look like its
+  /// reply, which that of functions 05 and 06 does.
+  bool echoes_ = false;
 };
 
 }  // namespace
