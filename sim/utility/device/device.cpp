@@ -38,6 +38,7 @@ Device Device::in_modbus(MasterLine& line, const Addressee& to) {
 Device Device::in_ascii(MasterLine& line, std::uint8_t address) {
   Device device(line);
   device.moves_to(address);
+  device.checksum_ = line.dcon().checksum();
   return device;
 }
 
@@ -63,10 +64,15 @@ std::string Device::ask(const std::string& command, const std::string& reply) {
   constexpr unsigned kTries = 4;
   const std::string request = with_address(command, address_);
   const std::string expected = with_address(reply, address_);
+  line_->dcon().set_checksum(checksum_);
+  unsigned refusals = 0;
   for (unsigned i = 0; i < kTries; ++i) {
     const std::optional<std::string> text = line_->dcon().ask(request);
     if (text && (*text == "?" || text->compare(0, 3, "?" + sim::hex_byte_text(address_)) == 0)) {
-      throw Absent("refuses " + request);
+      if (++refusals == 2) {  // the first one may refuse what noise has made of the request
+        throw Absent("refuses " + request);
+      }
+      continue;
     }
     if (text && *text == "!" && reply != "!") {
       throw Failed("ignores " + request + ", because its host watchdog has timed out; send ~AA1 first");

@@ -25,6 +25,7 @@ class Device {
  public:
   /// The line must live as long.
   static Device in_modbus(MasterLine& line, const Addressee& to);
+  /// With or without a checksum, as the DCON master of the line at present.
   static Device in_ascii(MasterLine& line, std::uint8_t address);
 
   [[nodiscard]] bool speaks_modbus() const { return module_.has_value(); }
@@ -32,6 +33,7 @@ class Device {
   [[nodiscard]] const std::string& name() const { return name_; }
   /// Of one that speaks ASCII.
   [[nodiscard]] std::uint8_t address() const { return address_; }
+  [[nodiscard]] bool checksum() const { return checksum_; }
   MasterLine& line() { return *line_; }
 
   // --- Modbus ---
@@ -64,6 +66,7 @@ class Device {
   std::string name_;
   std::optional<Module> module_;
   std::uint8_t address_ = 0;
+  bool checksum_ = false;
   bool in_init_ = false;
 };
 

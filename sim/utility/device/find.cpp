@@ -114,6 +114,7 @@ bool replies(Device& device) {
     return replies_in_modbus(line, device.module().addressee());
   }
   const std::string command = harmless_command(device.address());
+  line.dcon().set_checksum(device.checksum());
   return line.dcon().ask(command, kPatience) || line.dcon().ask(command, kPatience);
 }
 

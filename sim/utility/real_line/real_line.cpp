@@ -34,21 +34,20 @@ void RealLine::show_on(sim::Panel& panel, const std::vector<FoundModule>& found)
   sim::PanelLine shown;
   shown.summary.ports.push_back({"serial", line_.name(), ""});
   for (const FoundModule& each : found) {
-    const bool by_number = each.identity.serial_number && line_.carries_all();
+    line_.dcon().set_checksum(each.checksum);
+    const auto number = each.identity.serial_number;
     Device device =
         each.speaks == Speaks::Ascii
             ? Device::in_ascii(line_, each.address)
-            : Device::in_modbus(line_, by_number ? with_serial_number(*each.identity.serial_number)
-                                                 : at_address(each.address));
+            : Device::in_modbus(line_, number ? with_serial_number(*number) : at_address(each.address));
     device.set_in_init(each.stored_address.has_value());
-    modules_.push_back(
-        {std::move(device), each.identity.model, each.address, each.checksum, each.identity.serial_number});
+    modules_.push_back({std::move(device), each.identity.model, each.address, number});
     shown.models.push_back(each.identity.model);
   }
   Progress progress(environment_, "settings");
   for (std::size_t i = 0; i < modules_.size(); ++i) {
     progress.show(i, modules_.size());
-    speak_to(i);
+    speaker_ = i + 1;
     read_settings(modules_[i]);
     look_at(modules_[i]);
   }
@@ -77,7 +76,7 @@ void RealLine::see(const PortFrame& seen) {
 void RealLine::look() {
   for (std::size_t i = 0; i < modules_.size(); ++i) {
     answer_pages();
-    speak_to(i);
+    speaker_ = i + 1;
     look_at(modules_[i]);
   }
 }
@@ -119,11 +118,6 @@ std::size_t RealLine::station_asked_by(const Data& request) const {
                : dcon && std::equal(address.begin(), address.end(), request.begin() + 1);
   });
   return static_cast<std::size_t>(asked - modules_.begin()) + 1;
-}
-
-void RealLine::speak_to(std::size_t position) {
-  speaker_ = position + 1;
-  line_.dcon().set_checksum(modules_[position].checksum);
 }
 
 void RealLine::look_at(Module& module) {
@@ -168,7 +162,7 @@ Message RealLine::plate_of(Module& module, bool timed_out) {
       {"baud", mode.baud},
       {"format", sim::line_format_text(mode.format)},
       {"protocol", module.device.speaks_modbus() ? "modbus" : "ascii"},
-      {"checksum", module.checksum},
+      {"checksum", module.device.checksum()},
       {"led", timed_out ? "flashing" : "on"},
       {"timers", std::vector<unsigned>(module.model->outputs)}};
 }

@@ -31,7 +31,6 @@ class RealLine {
     Device device;
     const Model* model;
     std::uint8_t address;
-    bool checksum;
     std::optional<std::uint32_t> serial_number;
     bool replies = true;
     std::size_t next_setting = 0;  ///< position in `properties`
@@ -44,7 +43,6 @@ class RealLine {
   void answer_pages();
   sim::RequestQueue::Reply answer_to(const sim::RequestQueue::Request& request);
   [[nodiscard]] std::size_t station_asked_by(const Data& request) const;
-  void speak_to(std::size_t position);
   void look_at(Module& module);
   void read_setting(Module& module, std::size_t position);
   void read_settings(Module& module);
