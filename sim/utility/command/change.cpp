@@ -83,7 +83,7 @@ void check_address(Opened& opened, const Plan& plan) {
     if (will_speak_modbus(opened, plan) && !is_modbus_address(address)) {
       sim::fail("address: '" + change.after + "': expected 1 to 247, because the module speaks Modbus");
     }
-    if (!is_free(opened.line, address)) {
+    if (!is_free(opened.line(), address)) {
       sim::fail("address: another module has the address " + change.after + "; choose a free one");
     }
   }

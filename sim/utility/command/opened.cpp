@@ -4,10 +4,8 @@
 
 namespace ex9000::utility {
 
-Opened::Opened(Environment& environment, const std::string& port, const std::string& module,
-               const Options& options)
-    : line(environment, parse_port(port), options.line),
-      device(find_device(environment, line, module, options.speaks)),
+Opened::Opened(Environment& environment, MasterLine& line, const std::string& module, const Options& options)
+    : device(find_device(environment, line, module, options.speaks)),
       identity(identify(device)),
       model(options.model.empty() ? identity.model : &sim::model_called(options.model)) {
   if (device.speaks_modbus() && identity.model != nullptr && model != identity.model) {

@@ -11,10 +11,10 @@ namespace ex9000::utility {
 class Opened {
  public:
   /// Throws like find_device; std::invalid_argument if `--model` is wrong or must be given.
-  Opened(Environment& environment, const std::string& port, const std::string& module,
-         const Options& options);
+  Opened(Environment& environment, MasterLine& line, const std::string& module, const Options& options);
 
-  MasterLine line;
+  [[nodiscard]] MasterLine& line() { return device.line(); }
+
   Device device;
   Identity identity;
   /// The functions of the tables need one.

@@ -8,6 +8,7 @@
 #include "sim/text/system_error.hpp"
 #include "sim/text/values.hpp"
 #include "sim/utility/command/change.hpp"
+#include "sim/utility/device/channels.hpp"
 #include "sim/utility/device/property.hpp"
 
 namespace ex9000::utility {
@@ -106,10 +107,11 @@ bool set(Environment& environment, const sim::Words& args, const Options& option
   if (modules.size() > 1 && wanted.count("address") != 0) {
     sim::fail("address: several modules cannot have the same; name one module");
   }
+  MasterLine line(environment, parse_port(args[0]), options.line);
   for (const std::string& module : modules) {
     const std::string lead = modules.size() == 1 ? "" : module + ": ";
     sim::with_place(lead, [&] {
-      Opened opened(environment, args[0], module, options);
+      Opened opened(environment, line, module, options);
       change(environment, opened, wanted, {options.dry_run, lead});
     });
   }
@@ -139,19 +141,26 @@ bool set_address_by_number(Environment& environment, const sim::Words& args, con
 }
 
 bool save(Environment& environment, const sim::Words& args, const Options& options) {
+  const sim::Words modules = expand_modules({args[1]});
+  MasterLine line(environment, parse_port(args[0]), options.line);
   YAML::Emitter out;
   out << YAML::BeginSeq;
   bool complete = true;
   bool any = false;
-  for (const std::string& module : expand_modules({args[1]})) {
+  for (const std::string& module : modules) {
     try {
-      Opened opened(environment, args[0], module, options);
+      Opened opened(environment, line, module, options);
+      const Values values = read_all(opened);
+      if (has_timed_out(opened.device)) {
+        environment.error << module
+                          << ": its host watchdog has timed out, which switched it off: the file says off"
+                          << std::endl;
+      }
       out << YAML::BeginMap << YAML::Key << "model" << YAML::Value << std::string(opened.model->designation);
       if (opened.identity.serial_number) {
         out << YAML::Key << "serial-number" << YAML::Value
             << sim::hex_long_text(*opened.identity.serial_number);
       }
-      const Values values = read_all(opened);
       out << YAML::Key << "settings" << YAML::Value << YAML::BeginMap;
       for (const Property& property : properties) {
         const auto value = values.find(std::string(property.key));
@@ -177,7 +186,8 @@ bool save(Environment& environment, const sim::Words& args, const Options& optio
 }
 
 bool restore(Environment& environment, const sim::Words& args, const Options& options) {
-  Opened opened(environment, args[0], args[1], options);
+  MasterLine line(environment, parse_port(args[0]), options.line);
+  Opened opened(environment, line, args[1], options);
   const std::string entry = expand_modules({options.entry.empty() ? args[1] : options.entry})[0];
   const Values wanted = entry_for(args[2], entry, !options.entry.empty(), *opened.model);
   return change(environment, opened, wanted, {options.dry_run, "", true});

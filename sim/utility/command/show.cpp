@@ -27,20 +27,38 @@ std::string value_of(const Row& row, Opened& opened) {
   }
 }
 
+/// In one line.
+std::string present_state(Opened& opened) {
+  std::string text;
+  try {
+    if (!replies(opened.device)) {
+      return "no reply";
+    }
+    for (const Fact& fact : facts) {
+      const std::string value = fact.changes ? value_of(fact, opened) : "";
+      text += value.empty() ? "" : (text.empty() ? "" : "  ") + std::string(fact.name) + " " + value;
+    }
+  } catch (const Failed& error) {
+    return error.what();
+  }
+  return text;
+}
+
 std::string head(Opened& opened) {
   const Identity& identity = opened.identity;
   std::string text = std::string(opened.model->designation) + " '" + identity.name + "'";
   text += identity.version.empty() ? "" : ", firmware " + identity.version;
   text += identity.serial_number ? ", serial number " + sim::hex_long_text(*identity.serial_number) : "";
   text += opened.device.speaks_modbus() ? ", Modbus" : ", ASCII";
-  const hal::SerialMode mode = opened.line.mode();
-  return text + (opened.line.has_modes() ? " at " + sim::mode_text(mode.baud, mode.format) : "") + "\n";
+  const hal::SerialMode mode = opened.line().mode();
+  return text + (opened.line().has_modes() ? " at " + sim::mode_text(mode.baud, mode.format) : "") + "\n";
 }
 
 }  // namespace
 
 bool show(Environment& environment, const sim::Words& args, const Options& options) {
-  Opened opened(environment, args[0], args[1], options);
+  MasterLine line(environment, parse_port(args[0]), options.line);
+  Opened opened(environment, line, args[1], options);
   environment.output << head(opened) << "settings\n";
   sim::Words warnings;
   std::map<std::string_view, std::string> values;
@@ -56,10 +74,10 @@ bool show(Environment& environment, const sim::Words& args, const Options& optio
     warnings.emplace_back(
         "the host watchdog is on, and the safe value is 0: a timeout switches all outputs off");
   }
-  const hal::SerialMode mode = opened.line.mode();
-  const bool other_format = opened.line.connection().has_formats() && values["format"] != "8N2" &&
+  const hal::SerialMode mode = opened.line().mode();
+  const bool other_format = opened.line().connection().has_formats() && values["format"] != "8N2" &&
                             values["format"] != sim::line_format_text(mode.format);
-  if (opened.line.has_modes() && (values["baud"] != std::to_string(mode.baud) || other_format)) {
+  if (opened.line().has_modes() && (values["baud"] != std::to_string(mode.baud) || other_format)) {
     warnings.push_back("from the next reset on, it speaks at " + values["baud"] + " baud " +
                        values["format"]);
   }
@@ -82,25 +100,25 @@ bool show(Environment& environment, const sim::Words& args, const Options& optio
 }
 
 bool poll(Environment& environment, const sim::Words& args, const Options& options) {
-  Opened opened(environment, args[0], args[1], options);
+  const sim::Words names = expand_modules({args[1]});
+  MasterLine line(environment, parse_port(args[0]), options.line);
+  std::vector<Opened> modules;
+  for (const std::string& name : names) {
+    modules.emplace_back(environment, line, name, options);
+  }
   for (std::uint32_t round = 0; options.rounds == 0 || round < options.rounds; ++round) {
-    std::string text;
-    for (const Fact& fact : facts) {
-      const std::string value = fact.changes ? value_of(fact, opened) : "";
-      text += value.empty() ? "" : (text.empty() ? "" : "  ") + std::string(fact.name) + " " + value;
+    if (round != 0) {
+      line.connection().pause(options.every);
+      if (environment.output_is_terminal) {
+        environment.output << "\033[" << modules.size() << "A";  // up
+      }
     }
-    if (environment.output_is_terminal) {
-      environment.output << "\r\033[K" << text << std::flush;
-    } else {
-      environment.output << text << std::endl;
+    for (Opened& module : modules) {
+      const std::string lead = modules.size() == 1 ? "" : module.device.name() + ": ";
+      const char* const clear = environment.output_is_terminal ? "\033[K" : "";  // to the end of the line
+      environment.output << lead << present_state(module) << clear << std::endl;
     }
     environment.check_output();
-    if (round + 1 != options.rounds) {
-      opened.line.connection().pause(options.every);
-    }
-  }
-  if (environment.output_is_terminal) {
-    environment.output << std::endl;
   }
   return true;
 }

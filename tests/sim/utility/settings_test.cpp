@@ -1,6 +1,7 @@
 // `ex9000 show`, `poll`, `set`, `save` and `restore` with simulated modules.
 #include <gtest/gtest.h>
 
+#include "sim/utility/command/show.hpp"
 #include "tests/sim/utility/plant.hpp"
 #include "tests/support/directory.hpp"
 
@@ -84,7 +85,7 @@ TEST(Show, Warns) {
   }
   EXPECT_EQ(plant.run({"set", "port", "1", "watchdog-timeout=25.5s", "watchdog=on"}), 0);
   plant.act("1 hang");
-  EXPECT_EQ(plant.run({"poll", "port", "1", "--baud", "9600", "--every", "2s", "--count", "1"}), 1);
+  plant.wait(std::chrono::seconds(2));
   EXPECT_EQ(plant.run({"show", "port", "1", "--baud", "19200"}), 0) << plant.error();
   for (const char* warning :
        {"warning: the host watchdog is on, and the safe value is 0: a timeout switches all",
@@ -135,6 +136,43 @@ TEST(Poll, PrintsWhatChanges) {
   const std::string line =
       "inputs 02  latch high 02  latch low 00  counters 0 0 0 0 0 0 0 0  timeout status clear\n";
   EXPECT_EQ(plant.output(), line + line);
+}
+
+TEST(Poll, ShowsSeveralModulesInTheSamePlace) {
+  Plant plant({"EX9042D-M@05", "EX9044D@06,checksum=on"});
+  Environment environment = plant.environment();
+  environment.output_is_terminal = true;
+  Options options;
+  options.rounds = 2;
+  options.every = std::chrono::milliseconds(1);
+  plant.sends = [&, count = 0](const Data& /*frame*/) mutable {
+    const bool first_round_is_over = plant.output().find("6: ") != std::string::npos;
+    if (first_round_is_over && count++ == 0) {
+      plant.act("1 power off");
+    }
+    return true;
+  };
+  EXPECT_TRUE(poll(environment, {"port", "5,6"}, options));
+  EXPECT_EQ(
+      plant.output(),
+      "5: outputs 0000  timeout status clear\033[K\n"
+      "6: outputs 00  inputs 00  latch high 00  latch low 00  counters 0 0 0 0  timeout status clear\033[K\n"
+      "\033[2A"
+      "5: no reply\033[K\n"
+      "6: outputs 00  inputs 00  latch high 00  latch low 00  counters 0 0 0 0  timeout status "
+      "clear\033[K\n");
+}
+
+/// The echo of a request looks like the reply to it.
+TEST(Set, AnEchoIsNoReply) {
+  Plant plant({"EX9042D-M@05"});
+  plant.echoes = true;
+  unsigned writes = 0;
+  plant.sends = [&](const Data& frame) {
+    return frame[1] != 5 || ++writes != 1;  // the first one is lost
+  };
+  EXPECT_EQ(plant.run({"set", "port", "5", "watchdog=on"}), 0) << plant.error();
+  EXPECT_EQ(writes, 2U);
 }
 
 /// Each setting in the protocol that it needs, as `show` reads it after a power cycle.
@@ -352,6 +390,27 @@ TEST_F(Saved, AModuleInAsciiIsRestoredInTwoSteps) {
   EXPECT_EQ(fresh.output(),
             "checksum: off -> on, in force from the next reset on\nname: 9052M -> TANK\n"
             "release INIT*, and switch the module off and on\n");
+}
+
+TEST_F(Saved, AModuleThatDisappearsCostsOnlyItsOwnSettings) {
+  Plant plant({"EX9042D-M@01", "EX9042D-M@02"});
+  plant.sends = [&](const Data& frame) {
+    const bool protocol = frame[0] == 1 && frame[1] == 1 && frame[2] == 1;  // coil 0x0100
+    if (protocol) {
+      plant.act("1 power off");
+    }
+    return true;
+  };
+  EXPECT_EQ(plant.run({"save", "port", "1,2", file_}), 1);
+  EXPECT_EQ(plant.run({"restore", "port", "2", file_}), 0) << plant.error();
+  EXPECT_EQ(plant.output(), "nothing to change\n");
+}
+
+TEST_F(Saved, AWatchdogThatHasTimedOutIsReported) {
+  Plant plant({"EX9042D-M@01"});
+  EXPECT_EQ(plant.run({"set", "port", "1", "watchdog-timeout=100ms", "watchdog=on"}), 0);
+  EXPECT_EQ(plant.run({"save", "port", "1", file_}), 0);
+  EXPECT_EQ(plant.error(), "1: its host watchdog has timed out, which switched it off: the file says off\n");
 }
 
 TEST_F(Saved, AModuleThatDoesNotReplyCostsOnlyItsOwnSettings) {
