@@ -32,8 +32,8 @@ function settingRows(inputs) {
 }
 
 export class Drawer {
-  /// `state`: the parts of the module's state that have arrived. The settings of a real module are texts, and its copies
-  /// are not known.
+  /// `state`: the parts of the module's state that have arrived. The settings of a real module are texts, and its
+  /// copies are not known.
   constructor(layout, title, state) {
     this.simulated = layout.simulated;
     this.state = state;
