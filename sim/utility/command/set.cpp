@@ -10,6 +10,7 @@
 #include "sim/utility/command/change.hpp"
 #include "sim/utility/device/channels.hpp"
 #include "sim/utility/device/property.hpp"
+#include "sim/utility/modbus/register_map.hpp"
 
 namespace ex9000::utility {
 
@@ -119,7 +120,7 @@ bool set(Environment& environment, const sim::Words& args, const Options& option
 }
 
 bool set_address_by_number(Environment& environment, const sim::Words& args, const Options& options) {
-  constexpr unsigned kOwnAddress = 0x0080;  // in force after the reply
+  constexpr unsigned kOwnAddress = registers_of("own-address");  // in force after the reply
   const Addressee to = parse_addressee(args[1]);
   if (to.by_address()) {
     sim::fail("'" + args[1] + "': expected a serial number of 8 hex digits; 'ex9000 scan' shows it");

@@ -17,6 +17,13 @@ namespace ex9000::utility {
 using Time = std::chrono::nanoseconds;
 using Data = std::vector<std::uint8_t>;
 
+/// On a line.
+inline Time time_of(std::size_t bytes, hal::SerialMode mode) {
+  return Time(std::chrono::seconds(bits_of_character(mode.format))) * bytes / mode.baud;
+}
+/// In any format (Modbus over Serial Line V1.02, 2.5.1).
+inline Time longest_character(hal::SerialMode mode) { return time_of(1, {mode.baud, LineFormat::k8E1}); }
+
 /// The user wants the program to end.
 struct Interrupted : std::exception {
   [[nodiscard]] const char* what() const noexcept override { return "stopped"; }

@@ -18,7 +18,7 @@ class DconMaster {
   static constexpr std::chrono::milliseconds kPatience{300};
 
   DconMaster(Connection& connection, hal::SerialMode mode)
-      : connection_(connection), character_(Time(std::chrono::seconds(kBitsOfACharacter)) / mode.baud) {}
+      : connection_(connection), character_(longest_character(mode)) {}
 
   /// Of requests and replies.
   void set_checksum(bool on) { checksum_ = on; }
@@ -32,8 +32,6 @@ class DconMaster {
   [[nodiscard]] Heard heard() const { return heard_; }
 
  private:
-  static constexpr int kBitsOfACharacter = 11;
-
   Connection& connection_;
   Time character_;
   bool checksum_ = false;

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "sim/text/values.hpp"
+#include "sim/utility/modbus/register_map.hpp"
 
 namespace ex9000::utility {
 
@@ -11,13 +12,12 @@ namespace {
 
 constexpr unsigned kBitsOfAGroup = 8;
 
-// Coils and registers: firmware/registers/.
-constexpr unsigned kOutputCoils = 0x0000;
-constexpr unsigned kInputCoils = 0x0020;
-constexpr unsigned kLatchHighCoils = 0x0040;
-constexpr unsigned kLatchLowCoils = 0x0060;
-constexpr unsigned kTimeoutCoil = 0x010D;
-constexpr unsigned kCounters = 0x0000;
+constexpr unsigned kOutputCoils = coils_of("outputs");
+constexpr unsigned kInputCoils = coils_of("input-coils");
+constexpr unsigned kLatchHighCoils = coils_of("latch-high");
+constexpr unsigned kLatchLowCoils = coils_of("latch-low");
+constexpr unsigned kTimeoutCoil = coils_of("timeout-status");
+constexpr unsigned kCounters = registers_of("counters");
 
 /// `First` and `Second` (wire.md section 1): on a model with inputs and outputs these are outputs and inputs.
 /// Else the channels of the one kind: with more than 8, the high ones first.

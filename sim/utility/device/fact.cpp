@@ -6,6 +6,7 @@
 #include "sim/text/values.hpp"
 #include "sim/text/words.hpp"
 #include "sim/utility/device/channels.hpp"
+#include "sim/utility/modbus/register_map.hpp"
 
 namespace ex9000::utility {
 
@@ -13,15 +14,14 @@ namespace {
 
 constexpr unsigned kBitsOfAByte = 8;
 
-// Registers: firmware/registers/.
-constexpr unsigned kResetReason = 0x0301;
-constexpr unsigned kSecondsUp = 0x0302;
-constexpr unsigned kTimeouts = 0x0304;
-constexpr unsigned kStores = 0x0305;
-constexpr unsigned kSettingsSource = 0x0306;
-constexpr unsigned kLineTallies = 0x0308;
-constexpr unsigned kLineTalliesCount = 8;
-constexpr unsigned kUpdateState = 0x1010;
+constexpr unsigned kResetReason = registers_of("reset-reason");
+constexpr unsigned kSecondsUp = registers_of("uptime");
+constexpr unsigned kTimeouts = registers_of("timeout-count");
+constexpr unsigned kStores = registers_of("store-count");
+constexpr unsigned kSettingsSource = registers_of("settings-source");
+constexpr unsigned kLineTallies = registers_of("line-tallies");
+constexpr unsigned kLineTalliesCount = size_of("line-tallies");
+constexpr unsigned kUpdateState = registers_of("update-state");
 
 std::string bits_text(unsigned bits, unsigned channels) {
   std::string text = sim::hex_word_text(bits);

@@ -2,16 +2,17 @@
 
 #include "sim/text/values.hpp"
 #include "sim/utility/device/device.hpp"
+#include "sim/utility/modbus/register_map.hpp"
 
 namespace ex9000::utility {
 
 namespace {
 
-constexpr unsigned kModelText = 0x00C8;
-constexpr unsigned kModelTextSize = 20;
-constexpr unsigned kVersionText = 0x00FA;
-constexpr unsigned kVersionTextSize = 16;
-constexpr unsigned kSerialNumber = 0x010E;
+constexpr unsigned kModelText = registers_of("model-text");
+constexpr unsigned kModelTextSize = size_of("model-text");
+constexpr unsigned kVersionText = registers_of("version-text");
+constexpr unsigned kVersionTextSize = size_of("version-text");
+constexpr unsigned kSerialNumber = registers_of("serial-number");
 
 /// Without what the module does not have.
 template <class Read>
@@ -52,7 +53,7 @@ std::optional<std::uint32_t> serial_number_of(Device& device) {
 }
 
 Identity identify_in_modbus(Device& device) {
-  constexpr unsigned kCodeAt = 0x01E2;
+  constexpr unsigned kCodeAt = registers_of("module-code");
   Identity identity;
   if (const auto text =
           if_there([&] { return device.read(read_words(kModelText, kModelTextSize)).text(); })) {

@@ -9,26 +9,26 @@
 #include "sim/text/values.hpp"
 #include "sim/text/words.hpp"
 #include "sim/utility/device/find.hpp"
+#include "sim/utility/modbus/register_map.hpp"
 
 namespace ex9000::utility {
 
 namespace {
 
-// Registers and coils: firmware/registers/.
-constexpr unsigned kSafeCoils = 0x0080;
-constexpr unsigned kPowerOnCoils = 0x00A0;
-constexpr unsigned kProtocolCoil = 0x0100;
-constexpr unsigned kWatchdogCoil = 0x0104;
-constexpr unsigned kTimeoutStatusCoil = 0x010D;
-constexpr unsigned kEdgeCoil = 0x08CA;
-constexpr unsigned kAddressRegister = 0x01E4;
-constexpr unsigned kBaudCodeRegister = 0x01E5;
-constexpr unsigned kTimeoutRegister = 0x01E8;
-constexpr unsigned kFilterRegisters = 0x0240;
-constexpr unsigned kInvertedRegister = 0x0250;
-constexpr unsigned kFeedRegister = 0x0251;
-constexpr unsigned kDelayRegister = 0x0252;
-constexpr unsigned kUpdatesRegister = 0x0254;
+constexpr unsigned kSafeCoils = coils_of("safe-value");
+constexpr unsigned kPowerOnCoils = coils_of("power-on-value");
+constexpr unsigned kProtocolCoil = coils_of("protocol");
+constexpr unsigned kWatchdogCoil = coils_of("watchdog-enable");
+constexpr unsigned kTimeoutStatusCoil = coils_of("timeout-status");
+constexpr unsigned kEdgeCoil = coils_of("counting-edge");
+constexpr unsigned kAddressRegister = registers_of("address");
+constexpr unsigned kBaudCodeRegister = registers_of("baud-code");
+constexpr unsigned kTimeoutRegister = registers_of("watchdog-timeout");
+constexpr unsigned kFilterRegisters = registers_of("input-filters");
+constexpr unsigned kInvertedRegister = registers_of("inverted-inputs");
+constexpr unsigned kFeedRegister = registers_of("watchdog-feed");
+constexpr unsigned kDelayRegister = registers_of("response-delay");
+constexpr unsigned kUpdatesRegister = registers_of("updates-allowed");
 
 // --- `%AANNTTCCFF` and `$AA2` (manuals 2.1, 2.5) ---
 

@@ -34,7 +34,7 @@ bool begins_with(const Data& bytes, const Data& beginning) {
 class RtuMaster final : public Master {
  public:
   RtuMaster(Connection& connection, hal::SerialMode mode)
-      : connection_(connection), character_(Time(std::chrono::seconds(kBitsOfACharacter)) / mode.baud) {}
+      : connection_(connection), character_(longest_character(mode)) {}
 
   Data exchange(const Addressee& to, const Request& request, Time patience) override {
     wait_for_silence();
@@ -80,7 +80,6 @@ class RtuMaster final : public Master {
   Connection& connection() override { return connection_; }
 
  private:
-  static constexpr int kBitsOfACharacter = 11;  // Modbus over Serial Line V1.02, 2.5.1
   static constexpr std::chrono::microseconds kShortestSilence{1750};
   // A line that is never silent must not keep `exchange` for ever.
   static constexpr std::size_t kLongestFrame = 256;

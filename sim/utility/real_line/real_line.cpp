@@ -99,9 +99,7 @@ RequestQueue::Reply RealLine::answer_to(const RequestQueue::Request& request) {
     line_.connection().pause(RequestQueue::kTurnaround);
     return reply;
   }
-  constexpr int kBitsOfACharacter = 10;
-  const Time on_the_line =
-      Time(std::chrono::seconds(kBitsOfACharacter)) * request.bytes.size() / line_.mode().baud;
+  const Time on_the_line = time_of(request.bytes.size(), line_.mode());
   RawReply raw = raw_exchange(line_.connection(), request.bytes, request.timeout + on_the_line);
   reply.bytes = std::move(raw.bytes);
   reply.delay = std::max(Time(0), raw.delay - on_the_line);

@@ -35,7 +35,7 @@ class WatchedConnection final : public Connection {
     end_frame();
     const Time began = now();
     connection_->send(bytes);
-    see_({true, bytes, began, began + time_of(bytes), mode_});
+    see_({true, bytes, began, began + time_of(bytes.size(), mode_), mode_});
   }
 
   Data receive(Time patience) override {
@@ -43,7 +43,7 @@ class WatchedConnection final : public Connection {
     if (bytes.empty()) {
       end_frame();
     } else if (received_.empty()) {
-      began_ = now() - time_of(bytes);
+      began_ = now() - time_of(bytes.size(), mode_);
     }
     ended_ = bytes.empty() ? ended_ : now();
     received_.insert(received_.end(), bytes.begin(), bytes.end());
@@ -54,11 +54,6 @@ class WatchedConnection final : public Connection {
   boost::asio::io_context* io() override { return connection_->io(); }
 
  private:
-  [[nodiscard]] Time time_of(const Data& bytes) const {
-    constexpr int kBits = 10;
-    return Time(std::chrono::seconds(kBits)) * bytes.size() / mode_.baud;
-  }
-
   void end_frame() {
     if (!received_.empty()) {
       see_({false, std::exchange(received_, {}), began_, ended_, mode_});

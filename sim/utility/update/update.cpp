@@ -5,6 +5,7 @@
 #include "firmware/model/model.hpp"
 #include "firmware/update/request.hpp"
 #include "sim/text/fail.hpp"
+#include "sim/utility/modbus/register_map.hpp"
 
 namespace ex9000::utility {
 
@@ -14,14 +15,14 @@ using std::chrono::milliseconds;
 using std::chrono::seconds;
 using update::State;
 
-constexpr unsigned kSignatureRegister = 0x0122;
-constexpr unsigned kSignatureWords = 12;
-constexpr unsigned kUpdatesAllowedRegister = 0x0254;
-constexpr unsigned kVersionRegister = 0x0300;
-constexpr unsigned kBeginRegister = 0x1000;
-constexpr unsigned kStateRegister = 0x1010;  // then the next offset, high word first
-constexpr unsigned kActionRegister = 0x1013;
-constexpr unsigned kBlockRegister = 0x2000;
+constexpr unsigned kSignatureRegister = registers_of("update-signature");
+constexpr unsigned kSignatureWords = size_of("update-signature");
+constexpr unsigned kUpdatesAllowedRegister = registers_of("updates-allowed");
+constexpr unsigned kVersionRegister = registers_of("version");
+constexpr unsigned kBeginRegister = registers_of("update-begin");
+constexpr unsigned kStateRegister = registers_of("update-state");  // then the next offset, high word first
+constexpr unsigned kActionRegister = registers_of("update-action");
+constexpr unsigned kBlockRegister = registers_of("update-block");
 
 constexpr std::uint8_t kBadValue = 3;
 constexpr std::uint8_t kFailed = 4;

@@ -4,6 +4,7 @@
 
 #include "sim/text/values.hpp"
 #include "sim/utility/modbus/module.hpp"
+#include "sim/utility/modbus/register_map.hpp"
 
 namespace ex9000::utility {
 
@@ -13,13 +14,12 @@ constexpr hal::SerialMode kMode{9600, LineFormat::k8N1};
 constexpr unsigned kByteBits = 8;
 constexpr unsigned kOneGroup = 8;  // channels in a byte of `@AA`
 
-// Registers, see firmware/extensions.md.
-constexpr unsigned kNumber = 0x010E;
-constexpr unsigned kFilters = 0x0240;
-constexpr unsigned kInversion = 0x0250;
-constexpr unsigned kFeed = 0x0251;
-constexpr unsigned kDelay = 0x0252;
-constexpr unsigned kUpdates = 0x0254;
+constexpr unsigned kNumber = registers_of("serial-number");
+constexpr unsigned kFilters = registers_of("input-filters");
+constexpr unsigned kInversion = registers_of("inverted-inputs");
+constexpr unsigned kFeed = registers_of("watchdog-feed");
+constexpr unsigned kDelay = registers_of("response-delay");
+constexpr unsigned kUpdates = registers_of("updates-allowed");
 
 /// Hex digits of a reply. `at`: after the lead.
 unsigned hex_in(const std::string& reply, std::size_t at, std::size_t digits) {
@@ -273,7 +273,6 @@ bool InitMode::inputs_are_off(const Model& model) {
 
 Time InitMode::latency() {
   constexpr int kRoundTrips = 10;
-  constexpr Time kBitsOfACharacter = std::chrono::seconds(10);
   const Data request = dcon_frame("$00M", false);
   Connection& connection = line_.connection();
   Time shortest = DconMaster::kPatience;
@@ -293,8 +292,7 @@ Time InitMode::latency() {
       throw NotVerified("the port receives what it sends; switch this off, or use another adapter");
     }
     // A module waits for one character.
-    const auto characters = static_cast<std::int64_t>(request.size() + 1 + reply.size());
-    const Time took = connection.now() - begin - kBitsOfACharacter * characters / std::int64_t{kMode.baud};
+    const Time took = connection.now() - begin - time_of(request.size() + 1 + reply.size(), kMode);
     shortest = reply.empty() ? shortest : std::min(shortest, std::max(took, Time(0)));
   }
   return shortest;
