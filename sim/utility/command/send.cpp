@@ -13,7 +13,6 @@ namespace ex9000::utility {
 namespace {
 
 constexpr std::size_t kCrcBytes = 2;
-constexpr std::chrono::milliseconds kPatience{1000};
 
 bool is_dcon(const std::string& text) { return std::string("#$%@~").find(text[0]) != std::string::npos; }
 
@@ -64,7 +63,7 @@ bool send(Environment& environment, const sim::Words& args, const Options& optio
   print(environment, ">", frame, sim::Speaker::Master);
   Data reply;
   if (line.carries_all()) {
-    reply = raw_exchange(line.connection(), frame, kPatience).bytes;
+    reply = raw_exchange(line.connection(), frame, Module::kPatience).bytes;
   } else {
     reply = reply_of_gateway(line.modbus(), frame);
   }

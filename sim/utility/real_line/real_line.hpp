@@ -39,7 +39,7 @@ class RealLine {
   };
 
   [[nodiscard]] static Environment watched(Environment environment, WatchedConnection::See see);
-  void see(const PortFrame& frame);
+  void see(const PortFrame& seen);
   void answer_pages();
   sim::RequestQueue::Reply answer_to(const sim::RequestQueue::Request& request);
   [[nodiscard]] std::size_t station_asked_by(const Data& request) const;
