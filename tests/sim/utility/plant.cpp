@@ -16,16 +16,18 @@ class Plant::Line final : public TargetLine {
   void send(const Data& bytes) override {
     plant_.sent.push_back(bytes);
     plant_.heard_ = 0;
-    if (plant_.sends(bytes)) {
+    const std::optional<Data> reply = plant_.replies ? plant_.replies(bytes) : std::nullopt;
+    if (plant_.sends(bytes) && !reply) {
       TargetLine::send(bytes);
     }
-    if (plant_.echoes) {
-      echo_ = bytes;
+    at_once_ = plant_.echoes ? bytes : Data();
+    if (reply) {
+      at_once_.insert(at_once_.end(), reply->begin(), reply->end());
     }
   }
   Data receive(Time patience) override {
-    if (!echo_.empty()) {
-      return std::exchange(echo_, {});
+    if (!at_once_.empty()) {
+      return std::exchange(at_once_, {});
     }
     const Time end = now() + patience;
     while ((arrived_.empty() || arrived_.front().first > now()) && now() < end) {
@@ -51,7 +53,7 @@ class Plant::Line final : public TargetLine {
   }
 
   Plant& plant_;
-  Data echo_;
+  Data at_once_;                                       ///< the program gets it, without a time
   std::deque<std::pair<Time, std::uint8_t>> arrived_;  ///< and when the program gets it
 };
 

@@ -33,6 +33,8 @@ class Plant {
   [[nodiscard]] sim::VirtualTime now() { return target_.now(); }
   /// Gets each frame before it is sent; false: it is lost.
   std::function<bool(const Data& frame)> sends = [](const Data& /*frame*/) { return true; };
+  /// Replies to a frame in place of the modules, which do not get it; nullopt: they do.
+  std::function<std::optional<Data>(const Data& frame)> replies;
   /// Of the reply to the last frame, gets each byte and its position, and changes it; nullopt: it is lost.
   std::function<std::optional<std::uint8_t>(std::size_t at, std::uint8_t byte)> hears;
   Time delay{0};        ///< of each byte from the line to the program

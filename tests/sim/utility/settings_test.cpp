@@ -270,6 +270,74 @@ TEST(Set, RefusesWhatTheModuleCannotHaveAndChangesNothing) {
   }
 }
 
+TEST(Set, UpdatesAreAllowedOrNotInInitMode) {
+  Plant plant({"EX9052D-M@05,init=on"});
+  EXPECT_EQ(plant.run({"set", "port", "0", "updates-allowed=off"}), 0) << plant.error();
+  EXPECT_EQ(plant.output(), "updates-allowed: on -> off\n");
+  Plant locked({"EX9052D-M@05"});
+  EXPECT_EQ(locked.run({"set", "port", "5", "updates-allowed=off"}), 1);
+  EXPECT_EQ(locked.error(),
+            "ex9000: updates-allowed: refuses to change this; tie INIT* to GND and repeat the command\n");
+}
+
+/// A value is not stored while the host watchdog has timed out.
+TEST(Set, SaysThatATimeoutBlocksTheOutputs) {
+  for (const char* module : {"EX9043D@05", "EX9043D-M@05"}) {
+    Plant plant({module});
+    plant.run({"set", "port", "5", "watchdog-timeout=100ms", "watchdog=on"});
+    plant.wait();
+    EXPECT_EQ(plant.run({"set", "port", "5", "safe-value=3"}), 1);
+    EXPECT_NE(plant.error().find("host watchdog has timed out; "), std::string::npos) << plant.error();
+  }
+}
+
+/// Another device, or noise that has passed all checks.
+TEST(Show, SaysThatAReplyHasAnotherForm) {
+  struct Row {
+    const char* request;
+    const char* reply;
+    const char* error;
+  };
+  const Row kRows[] = {
+      {"$052", "!05400600", ""},
+      {"$052", "!0540FF00", "has the unknown baud code FF"},
+      {"$052", "!05", "replies '!05' to $AA2, not !AATTCCFF"},
+      {"~052", "!0512", "replies '12' to ~AA2, not EVV"},
+      {"@05", ">00", "replies '00', not four hex digits"},
+      {"#050", "!05x", "replies 'x' where a counter is expected"},
+      {"~05X0252", "!05XY", "replies 'XY' where hex digits are expected"},
+  };
+  for (const Row& row : kRows) {
+    Plant plant({"EX9052D@05"});
+    plant.replies = [&](const Data& frame) -> std::optional<Data> {
+      const std::string reply = std::string(row.reply) + "\r";
+      return std::string(frame.begin(), frame.end() - 1) == row.request
+                 ? std::optional(Data(reply.begin(), reply.end()))
+                 : std::nullopt;
+    };
+    EXPECT_EQ(plant.run({"show", "port", "5"}), *row.error == '\0' ? 0 : 1) << plant.output();
+    EXPECT_NE(plant.error().find(row.error), std::string::npos) << row.request << plant.error();
+  }
+}
+
+TEST(Show, RefusesWhatAPortCannotCarry) {
+  Plant plant({"EX9052D-M@05"});
+  struct Row {
+    std::vector<std::string> words;
+    const char* error;
+  };
+  const Row kRows[] = {
+      {{"show", "modbus-tcp:host", "0D000001"}, "carries no request by serial number"},
+      {{"show", "modbus-tcp:host", "5", "--ascii"}, "Modbus TCP carries no DCON"},
+      {{"show", "port", "0D000001", "--ascii"}, "a request by serial number is one of Modbus"},
+      {{"panel", "modbus-tcp:host"}, "Modbus TCP shows no frames of the line"},
+  };
+  for (const Row& row : kRows) {
+    EXPECT_EQ(plant.run(row.words), 2);
+    EXPECT_NE(plant.error().find(row.error), std::string::npos) << plant.error();
+  }
+}
+
 TEST(Set, SaysThatANameNeedsAscii) {
   Plant plant({"EX9052D-M@05"});
   EXPECT_EQ(plant.run({"set", "port", "5", "name=TANK"}), 1);
