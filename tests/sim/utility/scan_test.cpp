@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "sim/text/values.hpp"
+#include "sim/utility/command/scan_line.hpp"
 #include "tests/sim/utility/plant.hpp"
 
 namespace ex9000::utility {
@@ -113,6 +114,21 @@ TEST(Scan, ShowsTheStoredAddressInInitMode) {
       << plant.output();
 }
 
+TEST(Scan, ShowsABarInATerminal) {
+  Plant plant({"EX9043D@02"});
+  Environment environment = plant.environment();
+  environment.error_is_terminal = true;
+  Options options;
+  options.addresses = "2";
+  options.speaks = Speaks::Ascii;
+  options.line.baud = 9600;
+  options.places = {{"baud", ""}, {"format", ""}};
+  EXPECT_TRUE(scan_line(environment, {"port"}, options));
+  const std::string half(20, '#');
+  EXPECT_EQ(plant.error(), "\rscan [" + std::string(2 * half.size(), ' ') + "] 0 %\r\033[K\rscan [" + half +
+                               std::string(half.size(), ' ') + "] 50 %\rscan [" + half + half + "] 100 %\n");
+}
+
 TEST(Scan, PrintsJson) {
   Plant plant({"EX9042D-M@01", "EX9055D@04,checksum=on"});
   EXPECT_EQ(plant.run({"scan", "port", "--baud", "9600", "--format", "8N1", "--addresses", "1-4", "--json"}),
@@ -123,6 +139,17 @@ TEST(Scan, PrintsJson) {
                    R"({"address":4,"protocol":"ascii","baud":9600,"format":"8N1","checksum":true,)"
                    R"("model":"EX9055D","name":"9055","version":"D01.00","serial-number":"0D000002",)"
                    R"("last-reset":"power-on"})"}));
+  Plant others({"EX9043D-M@2A,init=on", "EX9052D@07", "EX9042D@07,name=PUMP"});
+  EXPECT_EQ(others.run({"scan", "port", "--baud", "9600", "--format", "8N1", "--addresses", "0-7", "--ascii",
+                        "--json"}),
+            0);
+  EXPECT_EQ(
+      lines_of(others.output()),
+      (Lines{
+          R"({"address":0,"protocol":"ascii","baud":9600,"format":"8N1","checksum":false,)"
+          R"("model":"EX9043D-M","name":"9043M","version":"D01.00","serial-number":"0D000001",)"
+          R"("last-reset":"power-on","stored-address":42})",
+          R"({"address":7,"protocol":"ascii","baud":9600,"format":"8N1","checksum":false,"garbled":true})"}));
 }
 
 /// EX9000_MODULES: how many; up to 247.

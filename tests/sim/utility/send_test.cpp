@@ -31,6 +31,13 @@ TEST(Send, AddsAChecksum) {
   EXPECT_EQ(plant.error(), "ex9000: no reply\n");
 }
 
+TEST(Send, LeavesOutTheEchoOfTheRequest) {
+  Plant plant({"EX9052D@01"});
+  plant.echoes = true;
+  EXPECT_EQ(plant.run({"send", "port", "$01M"}), 0);
+  EXPECT_NE(plant.output().find("\n< !019052\\r"), std::string::npos) << plant.output();
+}
+
 TEST(Send, ARequestToAllModulesGetsNoReply) {
   Plant plant({"EX9052D@01"});
   for (const char* request : {"#**", "00 05 0000 FF00"}) {

@@ -123,6 +123,17 @@ TEST(Show, SaysThatBytesAreNoReply) {
       << plant.error();
 }
 
+TEST(Show, SaysThatTheWiresMayBeSwapped) {
+  Plant plant({"EX9052D-M@05"});
+  plant.hears = [](std::size_t /*at*/, std::uint8_t byte) { return static_cast<std::uint8_t>(~byte); };
+  EXPECT_EQ(plant.run({"show", "port", "5"}), 1);
+  EXPECT_NE(
+      plant.error().find("no reply at 9600 baud 8N1, but bytes that are none: several modules with this "
+                         "address, noise, or A and B swapped; try 'ex9000 scan'\n"),
+      std::string::npos)
+      << plant.error();
+}
+
 TEST(Show, AsksForTheModelOfAModuleThatDoesNotTellIt) {
   Plant plant({"EX9052D@05,name=TANK"});
   EXPECT_EQ(plant.run({"show", "port", "5"}), 2);
@@ -247,6 +258,7 @@ TEST(Set, RefusesWhatTheModuleCannotHaveAndChangesNothing) {
   const std::pair<const char*, const char*> kRows[] = {
       {"speed=9", "'speed': expected one of protocol, baud"},
       {"baud", "'baud': expected KEY=VALUE"},
+      {"watchdog-feed=host-ok", "'watchdog-feed' is there twice; name each setting once"},
       {"baud=300", "baud: '300': expected"},
       {"power-on-value=01", "power-on-value: an EX9052D-M does not have this setting"},
       {"inverted-inputs=100", "inverted-inputs: '100': expected bits of the channels, at most 00FF"},
@@ -515,6 +527,7 @@ TEST_F(Saved, WrongFilesAreRefused) {
       {"- model: [", ": line 1: "},
       {"- model: EX9052D-M\n  settings: {name: {}}\n", ": line 2: "},
       {"model: EX9052D-M\n", ": expected a list of modules, as 'ex9000 save' writes it"},
+      {"- 5\n", ": line 1: expected a module with model and settings"},
       {"- model: EX9052D-M\n  settings: {speed: 1}\n", ": 'speed': expected one of"},
       {"- model: EX9052D-M\n  settings: {baud: 300}\n", "baud: '300': expected"},
   };
