@@ -70,7 +70,11 @@ std::string other_mode(MasterLine& line, const Addressee& to, std::uint8_t addre
       break;
     }
     for (auto rate = kBaudRates.rbegin(); rate != kBaudRates.rend() && found.empty(); ++rate) {
-      line.set_mode({*rate, format});
+      const hal::SerialMode mode{*rate, format};
+      if (mode == given) {
+        continue;
+      }
+      line.set_mode(mode);
       if ((speaks != Speaks::Ascii && to.request[0] != 0 && replies_in_modbus(line, to)) ||
           (speaks != Speaks::Modbus && to.by_address() && replies_in_ascii(line, address))) {
         found = sim::mode_text(*rate, format);

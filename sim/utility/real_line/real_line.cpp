@@ -109,11 +109,10 @@ RequestQueue::Reply RealLine::answer_to(const RequestQueue::Request& request) {
 /// Beyond all modules: none of them.
 std::size_t RealLine::station_asked_by(const Data& request) const {
   const bool dcon = sim::looks_like_dcon(request);
+  const std::string text(request.begin(), request.end());
   const auto asked = std::find_if(modules_.begin(), modules_.end(), [&](const Module& module) {
-    const std::string address = sim::hex_byte_text(module.address);
-    return module.device.speaks_modbus()
-               ? !dcon && request[0] == module.address
-               : dcon && std::equal(address.begin(), address.end(), request.begin() + 1);
+    return module.device.speaks_modbus() ? !dcon && request[0] == module.address
+                                         : dcon && text.substr(1, 2) == sim::hex_byte_text(module.address);
   });
   return static_cast<std::size_t>(asked - modules_.begin()) + 1;
 }

@@ -90,6 +90,7 @@ TEST_F(OnPanel, TheConsoleSendsARequestBetweenTwoLooks) {
   EXPECT_EQ(plate(0)["outputs"], 0x08);
   EXPECT_EQ(answer_to("05 0003 FF00", 9)["text"], "no reply within 500 ms");
   EXPECT_EQ(answer_to("#**", 1)["ok"], true);
+  EXPECT_EQ(answer_to("$", 1)["ok"], false);
 }
 
 TEST_F(OnPanel, AReplyIsOneOfTheModuleThatWasAsked) {
