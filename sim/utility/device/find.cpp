@@ -35,7 +35,7 @@ bool replies_in_ascii(MasterLine& line, std::uint8_t address) {
   const bool first = line.dcon().checksum();
   for (const bool checksum : {first, !first, first, !first}) {
     line.dcon().set_checksum(checksum);
-    if (line.dcon().ask(harmless_command(address), kPatience)) {
+    if (is_reply_of(line.dcon().ask(harmless_command(address), kPatience), address)) {
       return true;
     }
   }
@@ -112,6 +112,10 @@ sim::Words expand_modules(const sim::Words& texts) {
   return modules;
 }
 
+bool is_reply_of(const std::optional<std::string>& reply, std::uint8_t address) {
+  return reply && reply->compare(1, 2, sim::hex_byte_text(address)) == 0;
+}
+
 bool replies(Device& device) {
   MasterLine& line = device.line();
   if (device.speaks_modbus()) {
@@ -119,7 +123,8 @@ bool replies(Device& device) {
   }
   const std::string command = harmless_command(device.address());
   line.dcon().set_checksum(device.checksum());
-  return line.dcon().ask(command, kPatience) || line.dcon().ask(command, kPatience);
+  const auto once = [&] { return is_reply_of(line.dcon().ask(command, kPatience), device.address()); };
+  return once() || once();
 }
 
 bool is_free(MasterLine& line, std::uint8_t address) {

@@ -1,6 +1,7 @@
 // Finds the module that a command line names.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "sim/text/words.hpp"
@@ -22,6 +23,9 @@ sim::Words expand_modules(const sim::Words& texts);
 
 /// Any module replies to it: function 46, sub-function 00 (manuals), reads the code; other devices refuse it.
 const Request& harmless_request();
+
+/// A DCON reply with an address is one of another module if it has another, for example a late one.
+bool is_reply_of(const std::optional<std::string>& reply, std::uint8_t address);
 
 /// Asked twice.
 bool replies(Device& device);

@@ -137,8 +137,9 @@ class Scan {
     }
     FoundModule found = module(Speaks::Ascii, address);
     found.checksum = line_.dcon().checksum();
-    found.garbled = !reply;
-    if (reply) {
+    // A module in INIT mode answers at 00 with its own address.
+    found.garbled = !reply || (address != 0 && !is_reply_of(reply, address));
+    if (reply && !found.garbled) {
       found.stored_address = stored_address_in(*reply, address);
       read_identity(found, Device::in_ascii(line_, address));
     }

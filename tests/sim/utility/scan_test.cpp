@@ -106,6 +106,23 @@ TEST(Scan, ShowsBytesThatAreNoReply) {
       << plant.output();
 }
 
+/// As a late one is.
+TEST(Scan, TakesNoReplyOfAnotherModule) {
+  Plant plant({"EX9052D@06"});
+  plant.replies = [](const Data& frame) -> std::optional<Data> {
+    const std::string reply = "!06400600\r";
+    return frame.size() > 2 && frame[2] == '5' ? std::optional(Data(reply.begin(), reply.end()))
+                                               : std::nullopt;
+  };
+  EXPECT_EQ(plant.run({"scan", "port", "--baud", "9600", "--format", "8N1", "--addresses", "5-6", "--ascii"}),
+            0);
+  EXPECT_NE(plant.output().find("5 (05)  ascii 9600 baud 8N1  bytes, but no reply: "), std::string::npos)
+      << plant.output();
+  EXPECT_NE(plant.output().find("6 (06)  ascii 9600 baud 8N1  EX9052D '9052'"), std::string::npos)
+      << plant.output();
+  EXPECT_EQ(plant.run({"show", "port", "5", "--ascii"}), 1);
+}
+
 TEST(Scan, ShowsTheStoredAddressInInitMode) {
   Plant plant({"EX9043D-M@2A,init=on,baud=115200"});
   EXPECT_EQ(plant.run({"scan", "port", "--addresses", "0"}), 0);
