@@ -13,20 +13,28 @@ namespace {
 
 /// More often shows no more, and fills the list of frames.
 constexpr std::chrono::milliseconds kBetweenLooks{100};
+/// For a reply to a poll: longer would make pages wait for a module that is off.
+constexpr std::chrono::milliseconds kPatience{300};
 
-/// Without those whose model is not known.
+/// Without those whose model is not known, by address.
 std::vector<FoundModule> modules_to_show(Environment& environment, std::vector<FoundModule> found) {
   const auto unknown = [&](const FoundModule& module) {
-    const bool known = !module.garbled && module.identity.model != nullptr;
-    if (!known) {
-      environment.error << "not shown: the module at address " << +module.address << std::endl;
+    if (!module.garbled && module.identity.model != nullptr) {
+      return false;
     }
-    return !known;
+    environment.error << "not shown: address " << +module.address << ": "
+                      << (module.garbled ? "several modules, or noise; connect one alone"
+                                         : "the model of '" + module.identity.name +
+                                               "' is unknown; give it the name that its maker did")
+                      << std::endl;
+    return true;
   };
   found.erase(std::remove_if(found.begin(), found.end(), unknown), found.end());
   if (found.empty()) {
     throw Failed("there is no module to show");
   }
+  std::stable_sort(found.begin(), found.end(),
+                   [](const FoundModule& a, const FoundModule& b) { return a.address < b.address; });
   return found;
 }
 
@@ -37,7 +45,7 @@ bool panel(Environment& environment, const sim::Words& args, const Options& opti
   if (port.kind == Port::Kind::ModbusTcp) {
     sim::fail("Modbus TCP shows no frames of the line; name a serial port, or tcp:HOST:PORT");
   }
-  RealLine real(environment, port, options.line);
+  RealLine real(environment, port, options.line, std::max<Time>(kPatience, options.timeout));
   Search search = search_of(real.line(), options);
   search.modes = {options.line};
   sim::Panel panel(

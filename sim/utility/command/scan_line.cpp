@@ -85,7 +85,7 @@ void parse_addresses(const std::string& text, Search& search) {
 void report_duplicates(Environment& environment, const std::vector<FoundModule>& modules) {
   std::map<std::tuple<std::string, Speaks, unsigned>, unsigned> counts;
   for (const FoundModule& module : modules) {
-    ++counts[{mode_of(module), module.speaks, module.address}];
+    counts[{mode_of(module), module.speaks, module.address}] += module.garbled ? 0 : 1;
   }
   for (const auto& [place, count] : counts) {
     const auto& [mode, speaks, address] = place;
@@ -100,6 +100,9 @@ void report_duplicates(Environment& environment, const std::vector<FoundModule>&
 }  // namespace
 
 Search search_of(MasterLine& line, const Options& options) {
+  if (options.fast && options.speaks == Speaks::Ascii) {
+    sim::fail("--fast: modules in ASCII have no such scan; leave out one of --fast and --ascii");
+  }
   Search search;
   // A module in 8N2 understands 8N1.
   const LineFormat wanted = options.line.format == LineFormat::k8N2 ? LineFormat::k8N1 : options.line.format;
@@ -139,16 +142,14 @@ std::vector<FoundModule> print_modules(Environment& environment, MasterLine& lin
       [&](std::size_t done, std::size_t of) { progress.show(done, of); });
   report_duplicates(environment, modules);
   if (modules.empty()) {
-    environment.error << "no module replies; check the supply and the wires A and B" << std::endl;
+    environment.error << "no module replies; check the supply and the wires A and B"
+                      << (search.fast ? ", or leave out --fast" : "") << std::endl;
   }
   return modules;
 }
 
 bool scan_line(Environment& environment, const sim::Words& args, const Options& options) {
   const Port port = parse_port(args[0]);
-  if (options.fast && options.speaks == Speaks::Ascii) {
-    sim::fail("--fast: modules in ASCII have no such scan; leave out one of --fast and --ascii");
-  }
   if (port.kind == Port::Kind::ModbusTcp && (options.fast || options.speaks == Speaks::Ascii)) {
     sim::fail("Modbus TCP carries neither DCON nor a scan by serial numbers; leave out --fast and --ascii");
   }

@@ -63,7 +63,7 @@ bool send(Environment& environment, const sim::Words& args, const Options& optio
   print(environment, ">", frame, sim::Speaker::Master);
   Data reply;
   if (line.carries_all()) {
-    reply = raw_exchange(line.connection(), frame, Module::kPatience).bytes;
+    reply = raw_exchange(line.connection(), frame, Module::kPatience, false).bytes;
   } else {
     reply = reply_of_gateway(line.modbus(), frame);
   }

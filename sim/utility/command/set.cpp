@@ -176,6 +176,9 @@ bool save(Environment& environment, const sim::Words& args, const Options& optio
     } catch (const Failed& error) {
       environment.error << module << ": not saved: " << error.what() << std::endl;
       complete = false;
+    } catch (const std::invalid_argument& error) {  // its model is unknown, or it is not the one of --model
+      environment.error << module << ": not saved: " << error.what() << std::endl;
+      complete = false;
     }
   }
   out << YAML::EndSeq;

@@ -31,7 +31,7 @@ std::string value_of(const Row& row, Opened& opened) {
 std::string present_state(Opened& opened) {
   std::string text;
   try {
-    if (!replies(opened.device)) {
+    if (!opened.device.replies()) {
       return "no reply";
     }
     for (const Fact& fact : facts) {
@@ -104,19 +104,31 @@ bool poll(Environment& environment, const sim::Words& args, const Options& optio
   MasterLine line(environment, parse_port(args[0]), options.line);
   std::vector<Opened> modules;
   for (const std::string& name : names) {
-    modules.emplace_back(environment, line, name, options);
+    try {
+      modules.emplace_back(environment, line, name, options);
+    } catch (const Failed& error) {
+      if (names.size() == 1) {
+        throw;
+      }
+      environment.error << error.what() << std::endl;
+    }
   }
+  if (modules.empty()) {
+    throw Failed("there is no module to poll");
+  }
+  const bool in_place = environment.output_is_terminal;
+  const char* const begin = in_place ? "\033[?7l" : "";      // a long line is cut
+  const char* const end = in_place ? "\033[K\033[?7h" : "";  // what has been in the rest of the line goes
   for (std::uint32_t round = 0; options.rounds == 0 || round < options.rounds; ++round) {
     if (round != 0) {
       line.connection().pause(options.every);
-      if (environment.output_is_terminal) {
+      if (in_place) {
         environment.output << "\033[" << modules.size() << "A";  // up
       }
     }
     for (Opened& module : modules) {
       const std::string lead = modules.size() == 1 ? "" : module.device.name() + ": ";
-      const char* const clear = environment.output_is_terminal ? "\033[K" : "";  // to the end of the line
-      environment.output << lead << present_state(module) << clear << std::endl;
+      environment.output << begin << lead << present_state(module) << end << std::endl;
     }
     environment.check_output();
   }

@@ -102,9 +102,9 @@ life of its master.
     {"panel PORT",
      "show the modules in a browser: inputs, outputs, settings, frames, and a console",
      R"(
-Looks for the modules first, as scan does, but only at one rate and format. Then prints the address of the
-page, and polls the modules until Ctrl-C; a module with watchdog-feed=requests takes each request for a sign
-of life of its master.
+Looks for the modules first, as scan does, but only at one rate and format; PORT is a serial port or
+tcp:HOST:PORT. Then prints the address of the page, and polls the modules until Ctrl-C; a module with
+watchdog-feed=requests takes each request for a sign of life of its master.
 
 Examples:
   ex9000 panel /dev/ttyUSB0 --baud 19200 --addresses 1-12 --modbus

@@ -68,6 +68,10 @@ class Connection {
       receive(left);
     }
   }
+
+  /// After a reply to a request that has been repeated since `began`: it may be that to the first try and as
+  /// late as this, and so may be those to the others.
+  void drop_late_replies(Time began) { pause(now() - began); }
 };
 
 }  // namespace ex9000::utility

@@ -74,6 +74,9 @@ class TcpConnection final : public AsioConnection<tcp::socket> {
     if (!error) {
       boost::asio::connect(stream(), places, error);
     }
+    if (error == boost::asio::error::interrupted) {
+      throw Interrupted();
+    }
     if (error) {
       sim::unavailable(port.name + ": " + error.message() +
                        "; name a host and a port that accept connections");

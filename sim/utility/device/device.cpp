@@ -48,7 +48,7 @@ void Device::moves_to(std::uint8_t address) {
 }
 
 Answer Device::read(const Request& request) {
-  Answer answer = module_->ask(request);
+  Answer answer = module_->ask(request, patience_.value_or(Module::kPatience));
   if (answer.exception == kIllegalFunction || answer.exception == kIllegalAddress) {
     throw Absent("does not have this: " + exception_text(answer.exception));
   }
@@ -65,9 +65,16 @@ std::string Device::ask(const std::string& command, const std::string& reply) {
   const std::string request = with_address(command, address_);
   const std::string expected = with_address(reply, address_);
   line_->dcon().set_checksum(checksum_);
+  const Time patience = patience_.value_or(DconMaster::kPatience);
+  const Time began = line_->connection().now();
   unsigned refusals = 0;
+  bool may_be_late = false;
   for (unsigned i = 0; i < kTries; ++i) {
-    const std::optional<std::string> text = line_->dcon().ask(request);
+    const std::optional<std::string> text = line_->dcon().ask(request, patience);
+    if (text && may_be_late) {
+      line_->connection().drop_late_replies(began);
+    }
+    may_be_late = !text;
     if (text && (*text == "?" || text->compare(0, 3, "?" + sim::hex_byte_text(address_)) == 0)) {
       if (++refusals == 2) {  // the first one may refuse what noise has made of the request
         throw Absent("refuses " + request);

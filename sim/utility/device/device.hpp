@@ -35,6 +35,10 @@ class Device {
   [[nodiscard]] std::uint8_t address() const { return address_; }
   [[nodiscard]] bool checksum() const { return checksum_; }
   MasterLine& line() { return *line_; }
+  /// For a reply, in place of those of Module and DconMaster.
+  void set_patience(Time patience) { patience_ = patience; }
+  /// Asked `tries` times for something harmless.
+  bool replies(unsigned tries = 2);
 
   // --- Modbus ---
 
@@ -68,6 +72,7 @@ class Device {
   std::uint8_t address_ = 0;
   bool checksum_ = false;
   bool in_init_ = false;
+  std::optional<Time> patience_;
 };
 
 /// What a module is.

@@ -1,6 +1,7 @@
 #include "sim/utility/device/find.hpp"
 
 #include <algorithm>
+#include <initializer_list>
 
 #include "firmware/model/baud.hpp"
 #include "sim/text/fail.hpp"
@@ -18,10 +19,13 @@ bool is_serial_number(const std::string& text) {
          text.find_first_not_of("0123456789ABCDEFabcdef") == std::string::npos;
 }
 
-bool replies_in_modbus(MasterLine& line, const Addressee& to) {
-  constexpr unsigned kTries = 2;
-  for (unsigned i = 0; i < kTries; ++i) {
-    if (!line.modbus().exchange(to, harmless_request(), kPatience).empty()) {
+bool replies_in_modbus(MasterLine& line, const Addressee& to, Time patience = kPatience, unsigned tries = 2) {
+  const Time began = line.connection().now();
+  for (unsigned i = 0; i < tries; ++i) {
+    if (!line.modbus().exchange(to, harmless_request(), patience).empty()) {
+      if (i != 0) {
+        line.connection().drop_late_replies(began);
+      }
       return true;
     }
   }
@@ -30,16 +34,27 @@ bool replies_in_modbus(MasterLine& line, const Addressee& to) {
 
 std::string harmless_command(std::uint8_t address) { return "$" + sim::hex_byte_text(address) + "M"; }
 
-bool replies_in_ascii(MasterLine& line, std::uint8_t address) {
+bool replies_in_ascii(MasterLine& line, std::uint8_t address, std::initializer_list<bool> checksums,
+                      Time patience = kPatience) {
   line.connection().send({'\r'});  // ends what the bytes of a Modbus request may have begun
-  const bool first = line.dcon().checksum();
-  for (const bool checksum : {first, !first, first, !first}) {
+  const Time began = line.connection().now();
+  bool repeated = false;
+  for (const bool checksum : checksums) {
     line.dcon().set_checksum(checksum);
-    if (is_reply_of(line.dcon().ask(harmless_command(address), kPatience), address)) {
+    if (is_reply_of(line.dcon().ask(harmless_command(address), patience), address)) {
+      if (repeated) {
+        line.connection().drop_late_replies(began);
+      }
       return true;
     }
+    repeated = true;
   }
   return false;
+}
+
+bool replies_in_ascii(MasterLine& line, std::uint8_t address) {
+  const bool first = line.dcon().checksum();
+  return replies_in_ascii(line, address, {first, !first, first, !first});
 }
 
 /// What the line has shown, and what to look at.
@@ -116,15 +131,13 @@ bool is_reply_of(const std::optional<std::string>& reply, std::uint8_t address) 
   return reply && reply->compare(1, 2, sim::hex_byte_text(address)) == 0;
 }
 
-bool replies(Device& device) {
-  MasterLine& line = device.line();
-  if (device.speaks_modbus()) {
-    return replies_in_modbus(line, device.module().addressee());
+bool Device::replies(unsigned tries) {
+  const Time patience = patience_.value_or(kPatience);
+  if (speaks_modbus()) {
+    return replies_in_modbus(*line_, module_->addressee(), patience, tries);
   }
-  const std::string command = harmless_command(device.address());
-  line.dcon().set_checksum(device.checksum());
-  const auto once = [&] { return is_reply_of(line.dcon().ask(command, kPatience), device.address()); };
-  return once() || once();
+  return tries == 1 ? replies_in_ascii(*line_, address_, {checksum_}, patience)
+                    : replies_in_ascii(*line_, address_, {checksum_, checksum_}, patience);
 }
 
 bool is_free(MasterLine& line, std::uint8_t address) {

@@ -27,9 +27,6 @@ const Request& harmless_request();
 /// A DCON reply with an address is one of another module if it has another, for example a late one.
 bool is_reply_of(const std::optional<std::string>& reply, std::uint8_t address);
 
-/// Asked twice.
-bool replies(Device& device);
-
 /// Nobody replies at this address, in either protocol, and nothing else is heard. In the mode of the line.
 bool is_free(MasterLine& line, std::uint8_t address);
 

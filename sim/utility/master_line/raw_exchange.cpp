@@ -18,17 +18,25 @@ bool has_equal_reply(const Data& request) {
 
 }  // namespace
 
-RawReply raw_exchange(Connection& connection, const Data& request, Time patience) {
-  constexpr std::chrono::milliseconds kEnd{50};  // an adapter may hold bytes back for 16 ms
-  constexpr std::size_t kLongest = 300;
+void raw_send(Connection& connection, const Data& request) {
   connection.pause(kSilence);
+  if (sim::looks_like_dcon(request)) {
+    connection.send({'\r'});  // ends what the bytes of a Modbus request may have begun
+  }
   connection.send(request);
+}
+
+RawReply raw_exchange(Connection& connection, const Data& request, Time patience, bool echoes) {
+  constexpr std::chrono::milliseconds kEnd{50};  // an adapter may hold bytes back for 16 ms
+  constexpr std::size_t kLongestReply = 300;
+  const std::size_t longest = request.size() + kLongestReply;  // with the echo
+  raw_send(connection, request);
   const Time sent = connection.now();
   const Time end = sent + patience;
   const bool dcon = sim::looks_like_dcon(request);
   RawReply reply;
   Data& bytes = reply.bytes;
-  while (bytes.size() < kLongest && (!dcon || bytes.empty() || bytes.back() != '\r' || bytes == request)) {
+  while (bytes.size() < longest && (!dcon || bytes.empty() || bytes.back() != '\r' || bytes == request)) {
     const bool waits = bytes.empty() || bytes == request;
     const Data more = connection.receive(waits ? end - connection.now() : Time(kEnd));
     if (more.empty()) {
@@ -38,7 +46,7 @@ RawReply raw_exchange(Connection& connection, const Data& request, Time patience
     bytes.insert(bytes.end(), more.begin(), more.end());
   }
   if (bytes == request) {
-    return !dcon && has_equal_reply(request) ? reply : RawReply();
+    return !dcon && !echoes && has_equal_reply(request) ? reply : RawReply();
   }
   if (bytes.size() > request.size() && std::equal(request.begin(), request.end(), bytes.begin())) {
     bytes.erase(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(request.size()));

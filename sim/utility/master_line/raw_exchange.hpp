@@ -10,8 +10,11 @@ struct RawReply {
   Time delay{0};  ///< from the moment when the port took the request to the first byte
 };
 
-/// A DCON reply ends with CR, any other one with a silence. `patience`: for its first byte. Throws what
-/// Connection throws.
-RawReply raw_exchange(Connection& connection, const Data& request, Time patience);
+/// Sends after a silence, so that modules take it for a request of its own. Throws what Connection throws.
+void raw_send(Connection& connection, const Data& request);
+
+/// A DCON reply ends with CR, any other one with a silence. `patience`: for its first byte. `echoes`: what
+/// equals the request is its echo, else perhaps its reply. Throws what Connection throws.
+RawReply raw_exchange(Connection& connection, const Data& request, Time patience, bool echoes);
 
 }  // namespace ex9000::utility

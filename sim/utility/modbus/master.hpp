@@ -20,11 +20,15 @@ class Master {
   /// end of the request to the beginning of the reply. Throws what Connection throws.
   virtual Data exchange(const Addressee& to, const Request& request, Time patience) = 0;
   virtual Connection& connection() = 0;
+  /// The adapter receives what it sends, as the last request has shown whose echo does not look like its
+  /// reply, which that of functions 05 and 06 does.
+  [[nodiscard]] bool echoes() const { return echoes_; }
   /// In the last exchange, if it had no reply.
   [[nodiscard]] Heard heard() const { return heard_; }
 
  protected:
   Heard heard_ = Heard::Nothing;
+  bool echoes_ = false;
 };
 
 /// Makes a request or a reply a frame.

@@ -43,8 +43,12 @@ std::optional<Answer> Module::try_once(const Request& request, Time patience) {
 
 Answer Module::ask(const Request& request, Time patience) {
   constexpr unsigned kTries = 4;
+  const Time began = master_->connection().now();
   for (unsigned i = 0; i < kTries; ++i) {
     if (auto answer = try_once(request, patience)) {
+      if (i != 0) {
+        master_->connection().drop_late_replies(began);
+      }
       return *answer;
     }
   }

@@ -94,9 +94,6 @@ class RtuMaster final : public Master {
 
   Connection& connection_;
   Time character_;
-  /// The adapter receives what it sends, as the last request has shown whose echo does not look like its
-  /// reply, which that of functions 05 and 06 does.
-  bool echoes_ = false;
 };
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "sim/utility/device/channels.hpp"
 #include "sim/utility/device/property.hpp"
 #include "sim/utility/master_line/raw_exchange.hpp"
+#include "sim/utility/modbus/register_map.hpp"
 
 namespace ex9000::utility {
 
@@ -15,6 +16,8 @@ namespace {
 
 using sim::Message;
 using sim::RequestQueue;
+
+constexpr std::size_t kLongestFrame = 256;
 
 }  // namespace
 
@@ -25,9 +28,10 @@ Environment RealLine::watched(Environment environment, WatchedConnection::See se
   return environment;
 }
 
-RealLine::RealLine(const Environment& environment, const Port& port, hal::SerialMode mode)
+RealLine::RealLine(const Environment& environment, const Port& port, hal::SerialMode mode, Time patience)
     : environment_(watched(environment, [this](const PortFrame& frame) { see(frame); })),
       line_(environment_, port, mode),
+      patience_(patience),
       began_(line_.connection().now()) {}
 
 void RealLine::show_on(sim::Panel& panel, const std::vector<FoundModule>& found) {
@@ -41,6 +45,7 @@ void RealLine::show_on(sim::Panel& panel, const std::vector<FoundModule>& found)
             ? Device::in_ascii(line_, each.address)
             : Device::in_modbus(line_, number ? with_serial_number(*number) : at_address(each.address));
     device.set_in_init(each.stored_address.has_value());
+    device.set_patience(patience_);
     modules_.push_back({std::move(device), each.identity.model, each.address, number});
     shown.models.push_back(each.identity.model);
   }
@@ -48,7 +53,6 @@ void RealLine::show_on(sim::Panel& panel, const std::vector<FoundModule>& found)
   for (std::size_t i = 0; i < modules_.size(); ++i) {
     progress.show(i, modules_.size());
     speaker_ = i + 1;
-    read_settings(modules_[i]);
     look_at(modules_[i]);
   }
   progress.show(1, 1);
@@ -74,34 +78,63 @@ void RealLine::see(const PortFrame& seen) {
 }
 
 void RealLine::look() {
+  turn_ = (turn_ + 1) % modules_.size();
   for (std::size_t i = 0; i < modules_.size(); ++i) {
-    answer_pages();
-    speaker_ = i + 1;
-    look_at(modules_[i]);
-  }
-}
-
-void RealLine::answer_pages() {
-  while (!asked_.empty()) {
-    const RequestQueue::Request request = std::move(asked_.front());
-    asked_.pop_front();
-    if (!request.owner.expired()) {
-      request.done(answer_to(request));
+    answer_page();
+    if (modules_[i].replies || i == turn_) {
+      speaker_ = i + 1;
+      look_at(modules_[i]);
     }
   }
 }
 
+/// One request: pages must not keep the modules from being polled.
+void RealLine::answer_page() {
+  if (asked_.empty()) {
+    return;
+  }
+  const RequestQueue::Request request = std::move(asked_.front());
+  asked_.pop_front();
+  if (!request.owner.expired()) {
+    speaker_ = station_asked_by(request.bytes);
+    const RequestQueue::Reply reply = answer_to(request);
+    note_effect(request.bytes, reply.bytes);
+    request.done(reply);
+  }
+}
+
+/// It may have changed settings, also those of all modules, or the address of one in ASCII (`%AANNTTCCFF`).
+void RealLine::note_effect(const Data& request, const Data& reply) {
+  const bool of_one = speaker_ <= modules_.size();
+  for (std::size_t i = 0; i < modules_.size(); ++i) {
+    modules_[i].known = modules_[i].known && of_one && speaker_ != i + 1;
+  }
+  constexpr std::size_t kNewAddressAt = 3;
+  const std::string command(request.begin(), request.end());
+  const std::string digits = command.size() > kNewAddressAt ? command.substr(kNewAddressAt, 2) : "";
+  const bool is_address =
+      digits.size() == 2 && digits.find_first_not_of("0123456789ABCDEF") == std::string::npos;
+  if (of_one && command[0] == '%' && is_address &&
+      std::string(reply.begin(), reply.end()).rfind("!" + digits, 0) == 0) {
+    Module& module = modules_[speaker_ - 1];
+    module.address = sim::parse_hex_byte(digits);
+    module.device.moves_to(module.address);
+  }
+}
+
 RequestQueue::Reply RealLine::answer_to(const RequestQueue::Request& request) {
-  speaker_ = station_asked_by(request.bytes);
   RequestQueue::Reply reply;
   if (!request.expects_reply) {
-    line_.connection().send(request.bytes);
+    raw_send(line_.connection(), request.bytes);
     line_.connection().pause(RequestQueue::kTurnaround);
     return reply;
   }
   const Time on_the_line = time_of(request.bytes.size(), line_.mode());
-  RawReply raw = raw_exchange(line_.connection(), request.bytes, request.timeout + on_the_line);
+  RawReply raw =
+      raw_exchange(line_.connection(), request.bytes, request.timeout + on_the_line, line_.modbus().echoes());
   reply.bytes = std::move(raw.bytes);
+  reply.damaged = reply.bytes.size() > kLongestFrame ||
+                  (sim::looks_like_dcon(request.bytes) && !reply.bytes.empty() && reply.bytes.back() != '\r');
   reply.delay = std::max(Time(0), raw.delay - on_the_line);
   return reply;
 }
@@ -118,61 +151,72 @@ std::size_t RealLine::station_asked_by(const Data& request) const {
 }
 
 void RealLine::look_at(Module& module) {
-  if (!replies(module.device)) {
-    module.replies = false;
-    module.face["plate"] = silent_plate(module);
-    return;
+  if (module.device.replies(module.replies ? 2 : 1)) {
+    try {
+      read_state(module);
+      module.replies = true;
+      return;
+    } catch (const Failed&) {  // NOLINT(bugprone-empty-catch)
+      // it has stopped to reply
+    }
   }
-  if (!std::exchange(module.replies, true)) {
+  module.replies = false;
+  module.known = false;
+  Message plate = nameplate_of(module);
+  plate.update({{"powered", false}, {"listening", false}, {"led", "no reply"}});
+  module.face["plate"] = std::move(plate);
+}
+
+void RealLine::read_state(Module& module) {
+  const Model& model = *module.model;
+  if (!module.known) {
     read_settings(module);
   }
-  try {
-    const bool timed_out = has_timed_out(module.device);
-    Message plate = plate_of(module, timed_out);
-    plate["outputs"] = module.model->has_outputs() ? outputs_of(module.device, *module.model) : 0;
-    plate["inputs"] = module.model->has_inputs() ? inputs_of(module.device, *module.model) : 0;
-    if (module.model->has_inputs()) {
-      module.face["records"] = {{"high", latches_of(module.device, *module.model, true)},
-                                {"low", latches_of(module.device, *module.model, false)},
-                                {"counters", counters_of(module.device, *module.model)}};
-    }
-    read_setting(module, module.next_setting);
-    module.next_setting = (module.next_setting + 1) % properties.size();
-    module.face["plate"] = std::move(plate);
-    module.face["stored"] = {{"settings", module.settings}};
-    module.face["hostWatchdog"] = {{"enabled", module.settings["watchdog"] == "on"},
-                                   {"timedOut", timed_out},
-                                   {"timeout", module.settings["watchdog-timeout"]}};
-  } catch (const Failed&) {  // NOLINT(bugprone-empty-catch)
-    // a reply has been lost: the next look reads all again
+  read_setting(module, module.next_setting);
+  module.next_setting = (module.next_setting + 1) % properties.size();
+  const bool timed_out = has_timed_out(module.device);
+  Message plate = nameplate_of(module);
+  plate.update({{"powered", true},
+                {"listening", true},
+                {"led", timed_out ? "flashing" : "on"},
+                {"outputs", model.has_outputs() ? outputs_of(module.device, model) : 0},
+                {"inputs", model.has_inputs() ? inputs_of(module.device, model) : 0}});
+  if (model.has_inputs()) {
+    module.face["records"] = {{"high", latches_of(module.device, model, true)},
+                              {"low", latches_of(module.device, model, false)},
+                              {"counters", counters_of(module.device, model)}};
   }
+  module.face["plate"] = std::move(plate);
+  module.face["stored"] = {{"settings", module.settings}};
+  module.face["hostWatchdog"] = {{"enabled", module.settings["watchdog"] == "on"},
+                                 {"timedOut", timed_out},
+                                 {"timeout", module.settings["watchdog-timeout"]}};
 }
 
-Message RealLine::plate_of(Module& module, bool timed_out) {
-  const hal::SerialMode mode = line_.mode();
-  return {
-      {"powered", true},
-      {"listening", true},
-      {"initMode", module.device.in_init()},
-      {"address", module.address},
-      {"serialNumber", module.serial_number ? Message(sim::hex_long_text(*module.serial_number)) : Message()},
-      {"baud", mode.baud},
-      {"format", sim::line_format_text(mode.format)},
-      {"protocol", module.device.speaks_modbus() ? "modbus" : "ascii"},
-      {"checksum", module.device.checksum()},
-      {"led", timed_out ? "flashing" : "on"},
-      {"timers", std::vector<unsigned>(module.model->outputs)}};
-}
-
-/// Of one that does not reply.
-Message RealLine::silent_plate(const Module& module) {
-  return {{"powered", false}, {"listening", false}, {"address", module.address}, {"led", "no reply"}};
+/// What does not depend on whether it replies.
+Message RealLine::nameplate_of(const Module& module) const {
+  Message plate{{"initMode", module.device.in_init()},
+                {"address", module.address},
+                {"protocol", module.device.speaks_modbus() ? "modbus" : "ascii"},
+                {"checksum", module.device.checksum()}};
+  if (module.serial_number) {
+    plate["serialNumber"] = sim::hex_long_text(*module.serial_number);
+  }
+  if (line_.has_modes()) {
+    plate.update({{"baud", line_.mode().baud}, {"format", sim::line_format_text(line_.mode().format)}});
+  }
+  return plate;
 }
 
 void RealLine::read_settings(Module& module) {
   for (std::size_t i = 0; i < properties.size(); ++i) {
     read_setting(module, i);
   }
+  constexpr unsigned kOwnAddress = registers_of("own-address");
+  if (module.device.speaks_modbus() && module.serial_number) {
+    module.address = static_cast<std::uint8_t>(module.device.extension(kOwnAddress));
+  }
+  module.known = true;
 }
 
 void RealLine::read_setting(Module& module, std::size_t position) {
@@ -181,8 +225,8 @@ void RealLine::read_setting(Module& module, std::size_t position) {
     if (meets(*module.model, property.needs)) {
       module.settings[std::string(property.key)] = property.read(module.device, *module.model);
     }
-  } catch (const Failed&) {  // NOLINT(bugprone-empty-catch)
-    // the module does not have it, or a reply has been lost
+  } catch (const Absent&) {  // NOLINT(bugprone-empty-catch)
+    // the module does not have it
   }
 }
 

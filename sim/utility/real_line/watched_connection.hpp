@@ -1,6 +1,7 @@
 // A connection that shows its frames.
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <memory>
 #include <utility>
@@ -35,6 +36,7 @@ class WatchedConnection final : public Connection {
     end_frame();
     const Time began = now();
     connection_->send(bytes);
+    sent_ = bytes;
     see_({true, bytes, began, began + time_of(bytes.size(), mode_), mode_});
   }
 
@@ -47,6 +49,9 @@ class WatchedConnection final : public Connection {
     }
     ended_ = bytes.empty() ? ended_ : now();
     received_.insert(received_.end(), bytes.begin(), bytes.end());
+    if (received_.size() > kLongest) {
+      end_frame();
+    }
     return bytes;
   }
 
@@ -54,7 +59,15 @@ class WatchedConnection final : public Connection {
   boost::asio::io_context* io() override { return connection_->io(); }
 
  private:
+  static constexpr std::size_t kLongest = 600;  // the longest frame and its echo
+
+  /// Without the echo of what has been sent.
   void end_frame() {
+    if (received_.size() > sent_.size() && std::equal(sent_.begin(), sent_.end(), received_.begin())) {
+      received_.erase(received_.begin(), received_.begin() + static_cast<std::ptrdiff_t>(sent_.size()));
+      began_ += time_of(sent_.size(), mode_);
+    }
+    sent_.clear();
     if (!received_.empty()) {
       see_({false, std::exchange(received_, {}), began_, ended_, mode_});
     }
@@ -63,6 +76,7 @@ class WatchedConnection final : public Connection {
   std::unique_ptr<Connection> connection_;
   hal::SerialMode mode_;
   See see_;
+  Data sent_;  ///< last; empty: what has followed it has been seen
   Data received_;
   Time began_{0};
   Time ended_{0};

@@ -106,7 +106,11 @@ class Scan {
   /// collide.
   void modbus_at(std::uint8_t address, bool known) {
     const Addressee to = at_address(address);
-    const bool replies = !line_.modbus().exchange(to, harmless_request(), search_.patience).empty();
+    const unsigned tries = known ? 3 : 1;  // noise comes once
+    bool replies = false;
+    for (unsigned i = 0; i < tries && !replies; ++i) {
+      replies = !line_.modbus().exchange(to, harmless_request(), search_.patience).empty();
+    }
     if (replies ? known : line_.modbus().heard() != Heard::Noise) {
       return;
     }

@@ -50,7 +50,7 @@ class OnPanel : public ::testing::Test {
   static constexpr hal::SerialMode kMode{9600, LineFormat::k8N1};
 
   Plant plant_{{"EX9042D-M@01,name=PUMPS", "EX9052D@02,checksum=on", "EX9044D-M@03"}};
-  RealLine real_{plant_.environment(), {}, kMode};
+  RealLine real_{plant_.environment(), {}, kMode, std::chrono::milliseconds(300)};
   sim::Panel panel_{
       nullptr,
       [this](std::size_t /*line*/, sim::RequestQueue::Request request) { real_.ask(std::move(request)); }, 1};
@@ -65,9 +65,9 @@ TEST_F(OnPanel, AFaceShowsWhatTheModuleReports) {
   EXPECT_EQ(message_["hello"]["modules"][0]["model"], "EX9042D-M");
   EXPECT_EQ(message_["hello"]["modules"][1]["model"], "EX9044D-M");
   EXPECT_EQ(message_["hello"]["modules"][2]["model"], "EX9052D");
-  EXPECT_EQ(plate(0), Message::parse(R"({"powered": true, "listening": true, "initMode": false, "address": 1,
-      "serialNumber": "0D000001", "baud": 9600, "format": "8N1", "protocol": "modbus", "checksum": false,
-      "led": "on", "timers": [0,0,0,0,0,0,0,0,0,0,0,0,0], "outputs": 0, "inputs": 0})"));
+  EXPECT_EQ(plate(0), Message::parse(R"({"initMode": false, "address": 1, "protocol": "modbus",
+      "checksum": false, "serialNumber": "0D000001", "baud": 9600, "format": "8N1", "powered": true,
+      "listening": true, "led": "on", "outputs": 0, "inputs": 0})"));
   EXPECT_EQ(faces_[0]["stored"]["settings"]["name"], "PUMPS");
   EXPECT_EQ(plate(2)["protocol"], "ascii");
   EXPECT_EQ(plate(2)["checksum"], true);
@@ -112,8 +112,9 @@ TEST_F(OnPanel, AReplyIsOneOfTheModuleThatWasAsked) {
 TEST_F(OnPanel, AModuleThatDisappearsHasNoStateUntilItIsBack) {
   plant_.act("1 power off");
   look();
-  EXPECT_EQ(plate(0),
-            Message::parse(R"({"powered": false, "listening": false, "address": 1, "led": "no reply"})"));
+  EXPECT_EQ(plate(0), Message::parse(R"({"initMode": false, "address": 1, "protocol": "modbus",
+      "checksum": false, "serialNumber": "0D000001", "baud": 9600, "format": "8N1", "powered": false,
+      "listening": false, "led": "no reply"})"));
   EXPECT_EQ(plate(1)["powered"], true);
   plant_.act("1 power on");
   plant_.wait();
@@ -131,6 +132,42 @@ TEST_F(OnPanel, OneLostReplyChangesNothing) {
     EXPECT_EQ(plate(1)["powered"], true) << lost;
     EXPECT_EQ(plate(2)["powered"], true) << lost;
   }
+}
+
+TEST_F(OnPanel, RequestsOfPagesDoNotKeepModulesFromBeingPolled) {
+  const std::string request = R"({"id": 1, "line": 0, "address": 9, "ask": "03 0000 0008"})";
+  for (int i = 0; i < 10; ++i) {
+    EXPECT_TRUE(page_->ask(request));
+  }
+  plant_.act("3 input 1 on");
+  plant_.wait();
+  look();
+  EXPECT_EQ(plate(1)["inputs"], 0x02);
+}
+
+/// A frame with the byte of a DCON delimiter makes modules in ASCII wait for CR.
+TEST_F(OnPanel, ADconRequestAfterAModbusRequestGetsItsReply) {
+  for (int i = 0; i < 3; ++i) {
+    answer_to("05 0000 FF00", 0x24);
+    EXPECT_EQ(answer_to("$02MD3", 0)["ok"], true);
+  }
+}
+
+TEST_F(OnPanel, AnEchoIsNoReplyToAPage) {
+  plant_.echoes = true;
+  look();
+  plant_.act("1 power off");
+  EXPECT_EQ(answer_to("05 0003 FF00", 1)["ok"], false);
+}
+
+TEST_F(OnPanel, AFaceFollowsWhatAPageChanges) {
+  answer_to("06 0080 0007", 1);
+  EXPECT_EQ(plate(0)["address"], 7);
+  answer_to("05 0104 FF00", 7);
+  EXPECT_EQ(faces_[0]["hostWatchdog"]["enabled"], true);
+  EXPECT_EQ(answer_to("%02084006401D", 0)["ok"], true);  // with a checksum
+  EXPECT_EQ(plate(2)["address"], 8);
+  EXPECT_EQ(plate(2)["powered"], true);
 }
 
 TEST_F(OnPanel, AHostWatchdogThatTimesOutIsShown) {

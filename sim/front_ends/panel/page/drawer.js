@@ -57,7 +57,7 @@ export class Drawer {
     }
     const {settings} = stored;
     if (!this.simulated) {
-      this.drawTexts(plate.outputs ?? 0, settings);
+      this.drawTexts(plate.outputs, settings);
       return;
     }
     this.values?.show(plate.outputs, settings.powerOn, settings.safe);
@@ -95,7 +95,7 @@ export class Drawer {
     const show = (...words) => rows.forEach(({cells}, row) => cells.forEach((cell, channel) => {
       const on = bit(words[row], channel);
       setAttribute(cell, "data-on", on);
-      setText(cell, on ? "1" : "0");
+      setText(cell, words[row] === undefined ? "" : on ? "1" : "0");
     }));
     return {element, show};
   }

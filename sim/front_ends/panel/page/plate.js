@@ -110,12 +110,11 @@ export class Plate {
     setAttribute(this.led, "aria-label", `Status LED ${plate.led}`);
     const supply = plate.switch && !plate.powered ? "no supply" : plate.led;
     setText(this.ledText, plate.initMode ? `${supply}, INIT mode` : supply);
-    const on = plate.listening;
     setText(this.address.value, plate.address === undefined ? "––" : hexByte(plate.address));
     setText(this.serialNumber.value, plate.serialNumber ?? "––");
-    setText(this.baud.value, on ? `${plate.baud} ${plate.format}` : "––");
-    const ascii = plate.checksum ? "ASCII+Σ" : "ASCII";
-    setText(this.protocol.value, !on ? "––" : plate.protocol === "modbus" ? "RTU" : ascii);
+    setText(this.baud.value, plate.baud === undefined ? "––" : `${plate.baud} ${plate.format}`);
+    const protocols = {modbus: "RTU", ascii: plate.checksum ? "ASCII+Σ" : "ASCII"};
+    setText(this.protocol.value, protocols[plate.protocol] ?? "––");
     this.outputs.forEach(({label, led, left}, channel) => {
       const lit = bit(plate.outputs, channel);
       const tenths = plate.timers?.[channel] ?? 0;
@@ -134,9 +133,10 @@ export class Plate {
       return;
     }
     if (!this.layout.simulated) {
-      setText(this.hostWatchdog.value, hostWatchdog.timedOut ? "timed out"
+      const known = plate?.listening;
+      setText(this.hostWatchdog.value, !known ? "––" : hostWatchdog.timedOut ? "timed out"
         : hostWatchdog.enabled ? hostWatchdog.timeout : "off");
-      setAttribute(this.hostWatchdog.box, "data-state", hostWatchdog.timedOut ? "expired" : "off");
+      setAttribute(this.hostWatchdog.box, "data-state", known && hostWatchdog.timedOut ? "expired" : "off");
       return;
     }
     const total = hostWatchdog.timeout * 1e5;
