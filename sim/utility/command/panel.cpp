@@ -14,7 +14,7 @@ namespace {
 /// More often shows no more, and fills the list of frames.
 constexpr std::chrono::milliseconds kBetweenLooks{100};
 /// For a reply to a poll: longer would make pages wait for a module that is off.
-constexpr std::chrono::milliseconds kPatience{300};
+constexpr std::chrono::milliseconds kPatienceForPolls{300};
 
 /// Without those whose model is not known, by address.
 std::vector<FoundModule> modules_to_show(Environment& environment, std::vector<FoundModule> found) {
@@ -45,7 +45,7 @@ bool panel(Environment& environment, const sim::Words& args, const Options& opti
   if (port.kind == Port::Kind::ModbusTcp) {
     sim::fail("Modbus TCP shows no frames of the line; name a serial port, or tcp:HOST:PORT");
   }
-  RealLine real(environment, port, options.line, std::max<Time>(kPatience, options.timeout));
+  RealLine real(environment, port, options.line, std::max<Time>(kPatienceForPolls, options.timeout));
   Search search = search_of(real.line(), options);
   search.modes = {options.line};
   sim::Panel panel(

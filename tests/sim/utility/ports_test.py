@@ -42,8 +42,8 @@ class Ports(unittest.TestCase):
         program = subprocess.Popen(  # pylint: disable=consider-using-with
             [UTILITY, "poll", port, "1", "--every", "10ms"], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
             encoding="utf-8")
-        self.addCleanup(program.communicate)
-        self.addCleanup(program.kill)
+        for at_the_end in (program.stdout.close, program.stderr.close, program.wait, program.kill):
+            self.addCleanup(at_the_end)
         self.assertTrue(program.stdout.readline().startswith("inputs 00 "))
         return program
 
@@ -77,7 +77,6 @@ class Ports(unittest.TestCase):
         program.stdout.close()
         self.assertEqual(program.wait(HANG), 1)
         self.assertIn("standard output: cannot be written", program.stderr.read())
-        program.stdout = None
 
     def test_wrong_arguments_and_ports_are_refused(self):
         for words, status, problem in (
