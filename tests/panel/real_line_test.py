@@ -22,7 +22,8 @@ class Utility:
 
     def __init__(self, port):
         self.process = subprocess.Popen(
-            [pathlib.Path(PROGRAM).parent / "ex9000", "panel", f"tcp:127.0.0.1:{port}", "--addresses", "1-3"],
+            [pathlib.Path(PROGRAM).parent / "ex9000", "panel", f"tcp:127.0.0.1:{port}", "--addresses", "1-3",
+             "--timeout", "2s"],
             stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
         for line in self.process.stdout:
             if line.startswith("panel: "):
@@ -70,7 +71,7 @@ class RealLine(Panel):
 
         self.browser.click("#consoles summary")
         self.browser.run("""document.querySelector("#consoles input[type=text]").value = "05 0003 FF00" """)
-        self.browser.click("#consoles form button")
+        self.browser.click("#consoles input[type=checkbox]")  # again and again
         self.browser.until(lit(8))
         self.browser.until(f"{REPLIES}.some((each) => each.startsWith('05 0003 FF00 → 01 05 00 03 FF 00 7C 3A'))")
         self.browser.until("""[...document.querySelectorAll("#filler .row")].some((row) =>

@@ -128,7 +128,8 @@ bool poll(Environment& environment, const sim::Words& args, const Options& optio
     }
     for (Opened& module : modules) {
       const std::string lead = modules.size() == 1 ? "" : module.device.name() + ": ";
-      environment.output << begin << lead << present_state(module) << end << std::endl;
+      const std::string state = present_state(module);  // may be interrupted
+      environment.output << begin << lead << state << end << std::endl;
     }
     environment.check_output();
   }

@@ -59,7 +59,8 @@ const std::vector<sim::Setting<Options>> known_options{
     {"addresses", sim::Form::Text, "FIRST-LAST", "only these addresses (default: all)",
      [](Options& taken, const std::string& value) { taken.addresses = value; }},
     {"timeout", sim::Form::Text, "TIME",
-     "how long to wait for a reply (default: 80ms: the response delay of a module may be 30ms)",
+     "how long to wait for a reply, for slow gateways (default of a scan: 80ms, because the\n"
+     "response delay of a module may be 30ms)",
      [](Options& taken, const std::string& value) { taken.timeout = sim::parse_time(value); }},
     {"json", sim::Form::Flag, "on|off", "print an object of JSON for each module",
      [](Options& taken, const std::string& value) { taken.json = sim::parse_on_off(value); }},
@@ -92,12 +93,12 @@ Examples:
 Reads only what has no side effect, but a module with watchdog-feed=requests takes each request for a sign of
 life of its master.
 )",
-     {"baud", "format", "ascii", "modbus", "model"},
+     {"baud", "format", "ascii", "modbus", "model", "timeout"},
      show},
     {"poll PORT MODULES",
      "print inputs, outputs, latches and counters again and again, in a terminal in the same place",
      "",
-     {"baud", "format", "ascii", "modbus", "model", "every", "count"},
+     {"baud", "format", "ascii", "modbus", "model", "timeout", "every", "count"},
      poll},
     {"panel PORT",
      "show the modules in a browser: inputs, outputs, settings, frames, and a console",
@@ -114,7 +115,7 @@ Examples:
     {"set PORT MODULES KEY=VALUE...",
      "change settings of modules",
      "",
-     {"baud", "format", "ascii", "modbus", "model", "dry-run"},
+     {"baud", "format", "ascii", "modbus", "model", "timeout", "dry-run"},
      set},
     {"address PORT SERIAL ADDRESS",
      "give the module with a serial number another address, in force at once",
@@ -126,7 +127,7 @@ For modules with the same address. They must speak Modbus.
     {"save PORT MODULES FILE",
      "save the settings of modules in a YAML file",
      "",
-     {"baud", "format", "ascii", "modbus", "model"},
+     {"baud", "format", "ascii", "modbus", "model", "timeout"},
      save},
     {"restore PORT MODULE FILE",
      "change a module's settings to those in a file",
@@ -134,7 +135,7 @@ For modules with the same address. They must speak Modbus.
 The file must have settings of the same model. If it has several modules, those of the module with the
 address or the serial number MODULE are taken, or those of --entry.
 )",
-     {"baud", "format", "ascii", "modbus", "model", "entry", "dry-run"},
+     {"baud", "format", "ascii", "modbus", "model", "timeout", "entry", "dry-run"},
      restore},
     {"send PORT REQUEST...",
      "send one request, and print it and its reply in words",

@@ -20,6 +20,8 @@ class DconMaster {
   DconMaster(Connection& connection, hal::SerialMode mode)
       : connection_(connection), character_(longest_character(mode)) {}
 
+  /// Of the line, from now on.
+  void set_mode(hal::SerialMode mode) { character_ = longest_character(mode); }
   /// Of requests and replies.
   void set_checksum(bool on) { checksum_ = on; }
   [[nodiscard]] bool checksum() const { return checksum_; }

@@ -68,13 +68,11 @@ std::string Device::ask(const std::string& command, const std::string& reply) {
   const Time patience = patience_.value_or(DconMaster::kPatience);
   const Time began = line_->connection().now();
   unsigned refusals = 0;
-  bool may_be_late = false;
   for (unsigned i = 0; i < kTries; ++i) {
     const std::optional<std::string> text = line_->dcon().ask(request, patience);
-    if (text && may_be_late) {
+    if (text && i != 0) {
       line_->connection().drop_late_replies(began);
     }
-    may_be_late = !text;
     if (text && (*text == "?" || text->compare(0, 3, "?" + sim::hex_byte_text(address_)) == 0)) {
       if (++refusals == 2) {  // the first one may refuse what noise has made of the request
         throw Absent("refuses " + request);

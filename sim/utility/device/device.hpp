@@ -37,8 +37,8 @@ class Device {
   MasterLine& line() { return *line_; }
   /// For a reply, in place of those of Module and DconMaster.
   void set_patience(Time patience) { patience_ = patience; }
-  /// Asked `tries` times for something harmless.
-  bool replies(unsigned tries = 2);
+  /// Asked twice for something harmless.
+  bool replies();
 
   // --- Modbus ---
 

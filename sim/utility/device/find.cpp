@@ -19,9 +19,10 @@ bool is_serial_number(const std::string& text) {
          text.find_first_not_of("0123456789ABCDEFabcdef") == std::string::npos;
 }
 
-bool replies_in_modbus(MasterLine& line, const Addressee& to, Time patience = kPatience, unsigned tries = 2) {
+bool replies_in_modbus(MasterLine& line, const Addressee& to, Time patience) {
+  constexpr unsigned kTries = 2;
   const Time began = line.connection().now();
-  for (unsigned i = 0; i < tries; ++i) {
+  for (unsigned i = 0; i < kTries; ++i) {
     if (!line.modbus().exchange(to, harmless_request(), patience).empty()) {
       if (i != 0) {
         line.connection().drop_late_replies(began);
@@ -35,7 +36,7 @@ bool replies_in_modbus(MasterLine& line, const Addressee& to, Time patience = kP
 std::string harmless_command(std::uint8_t address) { return "$" + sim::hex_byte_text(address) + "M"; }
 
 bool replies_in_ascii(MasterLine& line, std::uint8_t address, std::initializer_list<bool> checksums,
-                      Time patience = kPatience) {
+                      Time patience) {
   line.connection().send({'\r'});  // ends what the bytes of a Modbus request may have begun
   const Time began = line.connection().now();
   bool repeated = false;
@@ -52,9 +53,9 @@ bool replies_in_ascii(MasterLine& line, std::uint8_t address, std::initializer_l
   return false;
 }
 
-bool replies_in_ascii(MasterLine& line, std::uint8_t address) {
+bool replies_in_any_ascii(MasterLine& line, std::uint8_t address, Time patience) {
   const bool first = line.dcon().checksum();
-  return replies_in_ascii(line, address, {first, !first, first, !first});
+  return replies_in_ascii(line, address, {first, !first, first, !first}, patience);
 }
 
 /// What the line has shown, and what to look at.
@@ -74,7 +75,8 @@ std::string advice(Heard heard) {
 }
 
 /// What else may be: the evidence is a reply in another mode.
-std::string other_mode(MasterLine& line, const Addressee& to, std::uint8_t address, Speaks speaks) {
+std::string other_mode(MasterLine& line, const Addressee& to, std::uint8_t address, Speaks speaks,
+                       Time patience) {
   if (!line.has_modes()) {
     return "";
   }
@@ -90,8 +92,8 @@ std::string other_mode(MasterLine& line, const Addressee& to, std::uint8_t addre
         continue;
       }
       line.set_mode(mode);
-      if ((speaks != Speaks::Ascii && to.request[0] != 0 && replies_in_modbus(line, to)) ||
-          (speaks != Speaks::Modbus && to.by_address() && replies_in_ascii(line, address))) {
+      if ((speaks != Speaks::Ascii && to.request[0] != 0 && replies_in_modbus(line, to, patience)) ||
+          (speaks != Speaks::Modbus && to.by_address() && replies_in_any_ascii(line, address, patience))) {
         found = sim::mode_text(*rate, format);
       }
     }
@@ -131,13 +133,10 @@ bool is_reply_of(const std::optional<std::string>& reply, std::uint8_t address) 
   return reply && reply->compare(1, 2, sim::hex_byte_text(address)) == 0;
 }
 
-bool Device::replies(unsigned tries) {
+bool Device::replies() {
   const Time patience = patience_.value_or(kPatience);
-  if (speaks_modbus()) {
-    return replies_in_modbus(*line_, module_->addressee(), patience, tries);
-  }
-  return tries == 1 ? replies_in_ascii(*line_, address_, {checksum_}, patience)
-                    : replies_in_ascii(*line_, address_, {checksum_, checksum_}, patience);
+  return speaks_modbus() ? replies_in_modbus(*line_, module_->addressee(), patience)
+                         : replies_in_ascii(*line_, address_, {checksum_, checksum_}, patience);
 }
 
 bool is_free(MasterLine& line, std::uint8_t address) {
@@ -177,7 +176,8 @@ std::uint8_t parse_address(const std::string& text) {
   return static_cast<std::uint8_t>(*address);
 }
 
-Device find_device(Environment& environment, MasterLine& line, const std::string& text, Speaks speaks) {
+Device find_device(Environment& environment, MasterLine& line, const std::string& text, Speaks speaks,
+                   Time patience) {
   const bool by_number = is_serial_number(text);
   const std::uint8_t address = by_number ? 0 : parse_address(text);
   const Addressee to = by_number ? parse_addressee(text) : at_address(address);
@@ -191,12 +191,12 @@ Device find_device(Environment& environment, MasterLine& line, const std::string
     sim::fail("--ascii: Modbus TCP carries no DCON; name another port");
   }
   const bool may_be_modbus = speaks != Speaks::Ascii && (by_number || address != 0);
-  if (may_be_modbus && replies_in_modbus(line, to)) {
+  if (may_be_modbus && replies_in_modbus(line, to, patience)) {
     return Device::in_modbus(line, to);
   }
   const Heard asked_in_modbus = may_be_modbus ? line.modbus().heard() : Heard::Nothing;
   const bool may_be_ascii = speaks != Speaks::Modbus && !by_number && line.carries_all();
-  if (may_be_ascii && replies_in_ascii(line, address)) {
+  if (may_be_ascii && replies_in_any_ascii(line, address, patience)) {
     return Device::in_ascii(line, address);
   }
   const Heard heard = may_be_ascii ? std::max(asked_in_modbus, line.dcon().heard()) : asked_in_modbus;
@@ -205,7 +205,7 @@ Device find_device(Environment& environment, MasterLine& line, const std::string
     environment.error << text << ": no reply at " << mode << "; trying all other modes, for half a minute"
                       << std::endl;
   }
-  const std::string other = other_mode(line, to, address, speaks);
+  const std::string other = other_mode(line, to, address, speaks, patience);
   throw Failed(text + ": no reply at " + mode +
                (!other.empty() ? ", but one at " + other + "; set --baud and --format" : advice(heard)));
 }

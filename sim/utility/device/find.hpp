@@ -13,8 +13,10 @@ enum class Speaks : std::uint8_t { Unknown, Ascii, Modbus };
 
 /// `text`: an address, as 10 or 0x0A, or a serial number with 8 hex digits. Unknown: asks in Modbus, then in
 /// ASCII, with and without a checksum. Throws std::invalid_argument if it is neither; Failed if there is no
-/// reply, with what the line shows instead: it tries all other modes, and says so; what Connection throws.
-Device find_device(Environment& environment, MasterLine& line, const std::string& text, Speaks speaks);
+/// reply within `patience`, with what the line shows instead: it tries all other modes, and says so; what
+/// Connection throws.
+Device find_device(Environment& environment, MasterLine& line, const std::string& text, Speaks speaks,
+                   Time patience = std::chrono::milliseconds(200));
 
 /// `texts`: modules as above, several separated by commas, or ranges of addresses as 5-9. Returns each in one
 /// form: a decimal address, or a serial number in capitals. Throws std::invalid_argument if one is there

@@ -14,7 +14,6 @@ class MasterLine {
  public:
   MasterLine(Environment& environment, const Port& port, hal::SerialMode mode);
 
-  /// Also makes new masters.
   void set_mode(hal::SerialMode mode);
   [[nodiscard]] hal::SerialMode mode() const { return mode_; }
   /// A port on the network has its own mode: only one can be tried.

@@ -22,6 +22,7 @@ void raw_send(Connection& connection, const Data& request) {
   connection.pause(kSilence);
   if (sim::looks_like_dcon(request)) {
     connection.send({'\r'});  // ends what the bytes of a Modbus request may have begun
+    connection.pause(kSilence);
   }
   connection.send(request);
 }

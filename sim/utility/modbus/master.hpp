@@ -20,6 +20,8 @@ class Master {
   /// end of the request to the beginning of the reply. Throws what Connection throws.
   virtual Data exchange(const Addressee& to, const Request& request, Time patience) = 0;
   virtual Connection& connection() = 0;
+  /// Of the line, from now on.
+  virtual void set_mode(hal::SerialMode /*mode*/) {}
   /// The adapter receives what it sends, as the last request has shown whose echo does not look like its
   /// reply, which that of functions 05 and 06 does.
   [[nodiscard]] bool echoes() const { return echoes_; }

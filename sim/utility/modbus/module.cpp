@@ -32,7 +32,7 @@ std::string exception_text(std::uint8_t exception) {
 
 std::optional<Answer> Module::try_once(const Request& request, Time patience) {
   const Data pdu = master_->exchange(to_, request, patience);
-  if (pdu.empty()) {
+  if (pdu.empty() || ((pdu[0] & kExceptionBit) != 0 && pdu[1] == 0)) {  // no exception has the code 0
     return std::nullopt;
   }
   if ((pdu[0] & kExceptionBit) != 0) {

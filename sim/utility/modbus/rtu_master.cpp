@@ -78,6 +78,7 @@ class RtuMaster final : public Master {
   }
 
   Connection& connection() override { return connection_; }
+  void set_mode(hal::SerialMode mode) override { character_ = longest_character(mode); }
 
  private:
   static constexpr std::chrono::microseconds kShortestSilence{1750};

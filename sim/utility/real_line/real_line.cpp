@@ -19,6 +19,18 @@ using sim::RequestQueue;
 
 constexpr std::size_t kLongestFrame = 256;
 
+/// Modbus: other functions than those that only read. DCON: `%`, `~AA...`, `$AAP...`.
+bool may_change_settings(const Data& request) {
+  constexpr std::size_t kCommandAt = 3;
+  if (sim::looks_like_dcon(request)) {
+    return request[0] == '%' || request[0] == '~' ||
+           (request[0] == '$' && request.size() > kCommandAt && request[kCommandAt] == 'P');
+  }
+  constexpr std::uint8_t kLastRead = 0x04;
+  constexpr std::uint8_t kReadName = 0x11;
+  return request[1] > kLastRead && request[1] != kReadName;
+}
+
 }  // namespace
 
 Environment RealLine::watched(Environment environment, WatchedConnection::See see) {
@@ -78,7 +90,13 @@ void RealLine::see(const PortFrame& seen) {
 }
 
 void RealLine::look() {
-  turn_ = (turn_ + 1) % modules_.size();
+  for (std::size_t i = 1; i <= modules_.size(); ++i) {
+    const std::size_t next = (turn_ + i) % modules_.size();
+    if (!modules_[next].replies) {
+      turn_ = next;
+      break;
+    }
+  }
   for (std::size_t i = 0; i < modules_.size(); ++i) {
     answer_page();
     if (modules_[i].replies || i == turn_) {
@@ -103,20 +121,20 @@ void RealLine::answer_page() {
   }
 }
 
-/// It may have changed settings, also those of all modules, or the address of one in ASCII (`%AANNTTCCFF`).
+/// It may have changed settings, or the address of a module in ASCII (`%AANNTTCCFF`), but not in INIT mode.
 void RealLine::note_effect(const Data& request, const Data& reply) {
-  const bool of_one = speaker_ <= modules_.size();
-  for (std::size_t i = 0; i < modules_.size(); ++i) {
-    modules_[i].known = modules_[i].known && of_one && speaker_ != i + 1;
+  if (speaker_ > modules_.size()) {
+    return;
   }
+  Module& module = modules_[speaker_ - 1];
+  module.known = module.known && !may_change_settings(request);
   constexpr std::size_t kNewAddressAt = 3;
   const std::string command(request.begin(), request.end());
   const std::string digits = command.size() > kNewAddressAt ? command.substr(kNewAddressAt, 2) : "";
   const bool is_address =
       digits.size() == 2 && digits.find_first_not_of("0123456789ABCDEF") == std::string::npos;
-  if (of_one && command[0] == '%' && is_address &&
+  if (command[0] == '%' && is_address && !module.device.in_init() &&
       std::string(reply.begin(), reply.end()).rfind("!" + digits, 0) == 0) {
-    Module& module = modules_[speaker_ - 1];
     module.address = sim::parse_hex_byte(digits);
     module.device.moves_to(module.address);
   }
@@ -151,7 +169,7 @@ std::size_t RealLine::station_asked_by(const Data& request) const {
 }
 
 void RealLine::look_at(Module& module) {
-  if (module.device.replies(module.replies ? 2 : 1)) {
+  if (module.device.replies()) {
     try {
       read_state(module);
       module.replies = true;
@@ -212,21 +230,26 @@ void RealLine::read_settings(Module& module) {
   for (std::size_t i = 0; i < properties.size(); ++i) {
     read_setting(module, i);
   }
-  constexpr unsigned kOwnAddress = registers_of("own-address");
-  if (module.device.speaks_modbus() && module.serial_number) {
-    module.address = static_cast<std::uint8_t>(module.device.extension(kOwnAddress));
-  }
   module.known = true;
 }
 
+/// Before the first one, the address in force.
 void RealLine::read_setting(Module& module, std::size_t position) {
+  constexpr unsigned kOwnAddress = registers_of("own-address");
   const Property& property = properties[position];
   try {
+    if (position == 0 && module.device.speaks_modbus() && module.serial_number) {
+      module.address = static_cast<std::uint8_t>(module.device.extension(kOwnAddress));
+    }
     if (meets(*module.model, property.needs)) {
       module.settings[std::string(property.key)] = property.read(module.device, *module.model);
     }
   } catch (const Absent&) {  // NOLINT(bugprone-empty-catch)
     // the module does not have it
+  } catch (const Failed&) {
+    if (!module.device.replies()) {
+      throw;
+    }
   }
 }
 

@@ -60,7 +60,7 @@ class RealLine {
   std::vector<Module> modules_;
   std::size_t speaker_ = 0;  ///< who is being asked, from 1
   std::size_t replies_ = 0;  ///< who has been asked by the last frame
-  std::size_t turn_ = 0;     ///< who is asked in this look if it has not replied before
+  std::size_t turn_ = 0;     ///< who is asked in this look, of those that have not replied before
   std::deque<sim::RequestQueue::Request> asked_;
 };
 

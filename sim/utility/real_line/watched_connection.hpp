@@ -6,6 +6,7 @@
 #include <memory>
 #include <utility>
 
+#include "sim/line_monitor/frames/frame_meaning.hpp"
 #include "sim/utility/connection/connection.hpp"
 
 namespace ex9000::utility {
@@ -61,8 +62,11 @@ class WatchedConnection final : public Connection {
  private:
   static constexpr std::size_t kLongest = 600;  // the longest frame and its echo
 
-  /// Without the echo of what has been sent.
+  /// Without the echo of what has been sent; of Modbus, what equals it may also be the reply.
   void end_frame() {
+    if (received_ == sent_ && sim::looks_like_dcon(sent_)) {
+      received_.clear();
+    }
     if (received_.size() > sent_.size() && std::equal(sent_.begin(), sent_.end(), received_.begin())) {
       received_.erase(received_.begin(), received_.begin() + static_cast<std::ptrdiff_t>(sent_.size()));
       began_ += time_of(sent_.size(), mode_);

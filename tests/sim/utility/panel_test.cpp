@@ -170,6 +170,29 @@ TEST_F(OnPanel, AFaceFollowsWhatAPageChanges) {
   EXPECT_EQ(plate(2)["powered"], true);
 }
 
+TEST_F(OnPanel, EachLookAsksOneOfTheModulesThatDoNotReply) {
+  for (const char* module : {"1", "2", "3"}) {
+    plant_.act(std::string(module) + " power off");
+  }
+  look();
+  plant_.act("1 power on");
+  plant_.wait();
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_EQ(plate(0)["powered"], false);
+    look();
+    if (plate(0)["powered"] == true) {
+      break;
+    }
+  }
+  EXPECT_EQ(plate(0)["powered"], true);
+  plant_.act("3 power on");
+  plant_.wait();
+  look();
+  look();
+  EXPECT_EQ(plate(1)["powered"], true);
+  EXPECT_EQ(plate(2)["powered"], false);
+}
+
 TEST_F(OnPanel, AHostWatchdogThatTimesOutIsShown) {
   ASSERT_EQ(plant_.run({"set", "line", "1", "watchdog-timeout=0.5s", "watchdog=on"}), 0) << plant_.error();
   plant_.wait(std::chrono::seconds(1));
@@ -183,6 +206,34 @@ TEST_F(OnPanel, APageCannotActOnRealModules) {
   look();
   EXPECT_EQ(message_["reply"]["ok"], false);
   EXPECT_EQ(plate(0)["powered"], true);
+}
+
+/// In INIT mode, it answers at 00 until the next reset.
+TEST(OnPanelInInitMode, AModuleStaysAtAddress0) {
+  Plant plant({"EX9052D@05,init=on"});
+  RealLine real(plant.environment(), {}, {9600, LineFormat::k8N1}, std::chrono::milliseconds(300));
+  sim::Panel panel(
+      nullptr,
+      [&](std::size_t /*line*/, sim::RequestQueue::Request request) { real.ask(std::move(request)); }, 1);
+  Search search;
+  search.modes = {{9600, LineFormat::k8N1}};
+  search.speaks = Speaks::Ascii;
+  search.last = 0;
+  search.patience = std::chrono::milliseconds(80);
+  std::vector<FoundModule> found;
+  scan(
+      real.line(), search, [&](const FoundModule& module) { found.push_back(module); },
+      [](std::size_t /*done*/, std::size_t /*of*/) {});
+  real.show_on(panel, found);
+  const auto page = panel.viewer();
+  EXPECT_TRUE(page->ask(R"({"id": 1, "line": 0, "address": 0, "ask": "%0007400600"})"));
+  real.look();
+  panel.look();
+  const Message message = Message::parse(page->next());
+  EXPECT_EQ(message["answers"][0]["text"], "!07\\r");
+  EXPECT_EQ(message["state"]["modules"][0]["plate"]["powered"], true);
+  EXPECT_EQ(message["state"]["modules"][0]["plate"]["address"], 0);
+  EXPECT_EQ(message["state"]["modules"][0]["stored"]["settings"]["address"], "7");
 }
 
 }  // namespace

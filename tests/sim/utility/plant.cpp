@@ -20,7 +20,9 @@ class Plant::Line final : public TargetLine {
     if (plant_.sends(bytes) && !reply) {
       TargetLine::send(bytes);
     }
-    at_once_ = plant_.echoes ? bytes : Data();
+    if (plant_.echoes) {
+      at_once_.insert(at_once_.end(), bytes.begin(), bytes.end());
+    }
     if (reply) {
       at_once_.insert(at_once_.end(), reply->begin(), reply->end());
     }

@@ -40,7 +40,7 @@ class Ports(unittest.TestCase):
     def poll(self, port):
         """Returns the running program after its first line."""
         program = subprocess.Popen(  # pylint: disable=consider-using-with
-            [UTILITY, "poll", port, "1", "--every", "10ms"], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+            [UTILITY, "poll", port, "1", "--every", "10ms", "--timeout", "10s"], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
             encoding="utf-8")
         for at_the_end in (program.stdout.close, program.stderr.close, program.wait, program.kill):
             self.addCleanup(at_the_end)
@@ -53,7 +53,7 @@ class Ports(unittest.TestCase):
                 finished = self.run_utility("send", port, READ_NAME)
                 self.assertRegex(finished.stdout, HAS_REPLIED)
                 self.assertEqual(finished.returncode, 0)
-                shown = self.run_utility("show", port, "1")
+                shown = self.run_utility("show", port, "1", "--timeout", "10s")
                 self.assertIn("EX9052D-M '9052M'", shown.stdout)
                 self.assertEqual(shown.returncode, 0)
 

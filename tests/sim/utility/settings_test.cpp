@@ -169,6 +169,13 @@ TEST(Poll, PrintsWhatChanges) {
   EXPECT_EQ(plant.output(), line + line);
 }
 
+/// The search for the second one goes through all modes, and back.
+TEST(Poll, GoesOnWithoutAModuleThatIsMissing) {
+  Plant plant({"EX9042D-M@05"});
+  EXPECT_EQ(plant.run({"poll", "port", "5,6", "--count", "2"}), 0);
+  EXPECT_EQ(plant.output(), "outputs 0000  timeout status clear\noutputs 0000  timeout status clear\n");
+}
+
 TEST(Poll, ShowsSeveralModulesInTheSamePlace) {
   Plant plant({"EX9042D-M@05", "EX9044D@06,checksum=on"});
   Environment environment = plant.environment();
@@ -189,7 +196,7 @@ TEST(Poll, ShowsSeveralModulesInTheSamePlace) {
       "\033[?7l6: outputs 00  inputs 00  latch high 00  latch low 00  counters 0 0 0 0  timeout status clear";
   EXPECT_EQ(plant.output(), "\033[?7l5: outputs 0000  timeout status clear" + end + second + end +
                                 "\033[2A\033[?7l5: no reply" + end + second + end);
-  EXPECT_TRUE(poll(environment, {"port", "5,6"}, options));  // 5 is off
+  EXPECT_TRUE(poll(environment, {"port", "6,5"}, options));  // 5 is off
   EXPECT_NE(plant.error().find("5: no reply at 9600 baud 8N1"), std::string::npos) << plant.error();
 }
 

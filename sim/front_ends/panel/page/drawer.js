@@ -40,7 +40,8 @@ export class Drawer {
     this.values = layout.outputs.length ? this.valueTable(layout.outputs, title) : null;
     this.kept = make("h4", {});
     this.copies = (layout.simulated ? [1, 2] : []).map(() => ({caption: make("h4", {}), bytes: make("code", {})}));
-    this.settings = settingRows(layout.inputs).map(([name, textOf]) => ({name, textOf, value: make("dd", {})}));
+    const rows = layout.simulated ? settingRows(layout.inputs) : [];
+    this.settings = rows.map(([name, textOf]) => ({name, textOf, value: make("dd", {})}));
     this.list = make("dl", {}, ...this.settings.flatMap(({name, value}) => [make("dt", {}, name), value]));
     this.element = make("details", {class: "drawer", ontoggle: () => this.draw()},
       make("summary", {}, "Settings and values", make("span", {class: "hidden"}, ` of ${title}`)),
@@ -73,7 +74,7 @@ export class Drawer {
   }
 
   drawTexts(outputs, settings) {
-    const ofHex = (text) => parseInt(text ?? "0", 16);
+    const ofHex = (text) => text && parseInt(text, 16);
     this.values?.show(outputs, ofHex(settings["power-on-value"]), ofHex(settings["safe-value"]));
     setText(this.kept, "Settings");
     const shown = JSON.stringify(settings);

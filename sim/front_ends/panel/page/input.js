@@ -14,7 +14,7 @@ export class Input {
     this.held = null;
     this.level = new Switch(`${title}: input ${label}`, "led input", (on) =>
       tell(this.command(on), this.held === null ? undefined : this.command(this.held)));
-    this.count = make("span", {class: "count"}, "0");
+    this.count = make("span", {class: "count"}, "–");
     this.high = make("span", {class: "latch", role: "img"}, "H");
     this.low = make("span", {class: "latch", role: "img"}, "L");
     this.item = terminal(label, this.level.element,
