@@ -40,8 +40,8 @@ class Ports(unittest.TestCase):
     def poll(self, port):
         """Returns the running program after its first line."""
         program = subprocess.Popen(  # pylint: disable=consider-using-with
-            [UTILITY, "poll", port, "1", "--every", "10ms", "--timeout", "10s"], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-            encoding="utf-8")
+            [UTILITY, "poll", port, "1", "--every", "10ms", "--timeout", "10s"],
+            stdout=subprocess.PIPE, stderr=subprocess.PIPE, encoding="utf-8")
         for at_the_end in (program.stdout.close, program.stderr.close, program.wait, program.kill):
             self.addCleanup(at_the_end)
         self.assertTrue(program.stdout.readline().startswith("inputs 00 "))
