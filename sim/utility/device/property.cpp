@@ -8,6 +8,7 @@
 #include "sim/text/fail.hpp"
 #include "sim/text/values.hpp"
 #include "sim/text/words.hpp"
+#include "sim/utility/device/channels.hpp"
 #include "sim/utility/device/find.hpp"
 #include "sim/utility/modbus/register_map.hpp"
 
@@ -19,7 +20,6 @@ constexpr unsigned kSafeCoils = coils_of("safe-value");
 constexpr unsigned kPowerOnCoils = coils_of("power-on-value");
 constexpr unsigned kProtocolCoil = coils_of("protocol");
 constexpr unsigned kWatchdogCoil = coils_of("watchdog-enable");
-constexpr unsigned kTimeoutStatusCoil = coils_of("timeout-status");
 constexpr unsigned kEdgeCoil = coils_of("counting-edge");
 constexpr unsigned kAddressRegister = registers_of("address");
 constexpr unsigned kBaudCodeRegister = registers_of("baud-code");
@@ -181,7 +181,7 @@ void set_preset(Device& device, const Model& model, char letter, const std::stri
   try {
     device.write({pdu, reply, reply.size()});
   } catch (const Failed&) {
-    if (coil(device, kTimeoutStatusCoil)) {
+    if (has_timed_out(device)) {
       throw Failed("is refused, because the host watchdog has timed out; write 1 to coil 0x010D first");
     }
     throw;
